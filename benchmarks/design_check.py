@@ -4,17 +4,21 @@
     python benchmarks/design_check.py --smoke
 
 Copies of the shipped moorings under names of their own, in currents of growing speed that turn;
-prints the wall time of the whole process with one worker and with two, and the size of the report.
-`--smoke` checks two moorings in two environments.
+prints the wall time of the whole process with one worker and with two, the processor's time of a
+case over that of S1000 by scipy alone, and the size of the report. `--smoke` checks two moorings
+in two environments.
 """
 
 import itertools
+import resource
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
+import s1000_by_hand
 from machine import describe
 
 LINES = Path(__file__).resolve().parents[1] / "lines"
@@ -58,6 +62,12 @@ def write_environments(folder: Path, count: int) -> list[str]:
     return options
 
 
+def _of_processor(work: Callable[[], object]) -> float:
+    begin = time.process_time()
+    work()
+    return time.process_time() - begin
+
+
 def main() -> None:
     """Print all figures."""
     words = ["2", "2"] if sys.argv[1:] == ["--smoke"] else sys.argv[1:]
@@ -77,6 +87,13 @@ def main() -> None:
             spent = time.perf_counter() - start
             assert ended.returncode in (0, 1), ended.returncode
             print(f"{workers} workers: {spent:6.1f} s")
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        cases = 2 * moorings * environments  # of both runs
+        each = (used.ru_utime + used.ru_stime) / cases
+        scipy = min(_of_processor(lambda: s1000_by_hand.solve(1e-6)) for _ in range(40))
+        print(
+            f"a case: {1e3 * each:.1f} ms of the processor, {each / scipy:.1f} times scipy's S1000"
+        )
         for file in sorted(report.iterdir()):
             print(f"{file.name:16}{file.stat().st_size / 1e6:8.2f} MB")
 

@@ -23,14 +23,15 @@ if TYPE_CHECKING:
     from calm.checks.design_check import check
     from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
+    from calm.gridding.gridded_record import GriddedRecord, grid
     from calm.motion.motion_estimate import estimate_motion
     from calm.motion.study import MotionEstimate
     from calm.ranging import locate
 
 __all__ = [
-    "CalmError", "Design", "InputError", "LegResult", "MotionEstimate", "NoEquilibrium", "Profiles",
-    "Result", "UsageError", "__version__", "check", "drop_plan", "estimate_motion", "explain",
-    "load", "locate", "size", "solve_profiles",
+    "CalmError", "Design", "GriddedRecord", "InputError", "LegResult", "MotionEstimate",
+    "NoEquilibrium", "Profiles", "Result", "UsageError", "__version__", "check", "drop_plan",
+    "estimate_motion", "explain", "grid", "load", "locate", "size", "solve_profiles",
 ]  # fmt: skip
 
 _HOMES = {
@@ -42,6 +43,7 @@ _HOMES = {
     "calm.checks.design_check": ("check",),
     "calm.drop.plan": ("drop_plan",),
     "calm.errors": ("CalmError", "InputError", "NoEquilibrium", "UsageError"),
+    "calm.gridding.gridded_record": ("GriddedRecord", "grid"),
     "calm.motion.motion_estimate": ("estimate_motion",),
     "calm.motion.study": ("MotionEstimate",),
     "calm.ranging": ("locate",),

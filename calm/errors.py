@@ -122,7 +122,7 @@ def how_to_install(missing: ModuleNotFoundError) -> str | None:
         return None
     for extra, libraries in EXTRAS.items():
         if library in libraries:
-            return f"this needs {library}: pip install 'calm-mooring[{extra}]'"
+            return f"this needs {library}: in CALM's checkout, pip install '.[{extra}]'"
     return f"this needs {library}, which is not installed: pip install {library}"
 
 

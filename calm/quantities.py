@@ -82,21 +82,33 @@ class Quantity:
         _, scale, places = _layout(self.unit, self.display, self.decimals)
         return f"{value * scale:z.{places}f}"
 
-    def say(self, value: float | None) -> str:
-        """Format a value [`unit`] with the displayed unit, for a sentence, such as ``113.2 m``."""
+    def say(self, value: float | None, *beside: float | None) -> str:
+        """Format a value [`unit`] with its unit, for a sentence, such as ``113.2 m``.
+
+        A force whose usual unit is kN is in N if it is below 1 kN, and so are all values `beside`
+        it.
+        """
         if value is None or value != value:
             return "unknown"
-        return self._with_unit(self.format(value))
+        number, unit = self.number_and_unit(value, *beside)
+        return _with_unit(number, unit)
+
+    def number_and_unit(self, value: float, *beside: float | None) -> tuple[str, str]:
+        """Format a value [`unit`] as by `say`, with number and unit apart."""
+        largest = max(abs(one) for one in (value, *beside) if one is not None)
+        if self.display_unit == "kN" and largest < 999.5 and "force" not in _shown:
+            return f"{value:z.{2 if largest < 9.95 else 0}f}", "N"
+        return self.format(value), self.display_unit
 
     def figure(self, value: float) -> str:
         """Format a value [`unit`] to four significant digits with the displayed unit, for data
         sheets.
         """
-        return self._with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}")
+        return _with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}", self.display_unit)
 
-    def _with_unit(self, text: str) -> str:
-        unit = self.display_unit
-        return f"{text}{'' if unit in ('', '°') else ' '}{unit}"
+
+def _with_unit(text: str, unit: str) -> str:
+    return f"{text}{'' if unit in ('', '°') else ' '}{unit}"
 
 
 _USUAL = {
@@ -117,6 +129,7 @@ _TABLE = (
              "Length along the line; in results, as stretched by its load.", 2, "L"),
     Quantity("cut_length", "cut length", "m", "Length before any load.", 2),
     Quantity("tension", "tension", "N", "Pull in the line.", 0, "T"),
+    Quantity("load", "load", "N", "Force on a part, in the design check.", 2, "", "kN"),
     Quantity("tilt", "tilt", "deg", "Angle of the axis from the vertical, 0 upright.", 1, "", "°"),
     Quantity("knockdown", "knockdown", "m", "Increase of depth relative to still water."),
     Quantity("safety_factor", "safety factor", "", "Breaking load divided by the maximum tension."),

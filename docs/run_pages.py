@@ -8,8 +8,9 @@ A page runs from top to bottom in a folder with nothing but `lines/` and `docs/f
 checkout:
 
 - a block ``sh`` runs in bash; ``python`` runs, too;
-- a block ``text`` right below one is what it prints on standard output. A line `…` stands for any
-  lines, `…` in a line for any words; writing takes the lines that begin as those shown;
+- a block ``text`` right below one is what it prints on standard output, and it must print
+  something. A line `…` stands for any lines, `…` in a line for any words; writing takes the lines
+  that begin as those shown;
 - a block of any language below `<!-- file: NAME -->` is written to that file;
 - a block ``diff`` below `<!-- edit: NAME -->` changes lines of that file, those with - to those
   with +;
@@ -155,7 +156,8 @@ def follow(page: Path, *, check: bool) -> None:
     Raises
     ------
     PageError
-        A command fails, or, with `check`, shows something else than the page.
+        A command fails or prints nothing above a block ``text``, or, with `check`, shows something
+        else than the page.
     """
     text = page.read_text(encoding="utf-8")
     changes: list[tuple[Block, str]] = []
@@ -176,9 +178,11 @@ def follow(page: Path, *, check: bool) -> None:
             elif (
                 block.language == "text"
                 and not text[below : block.start - len("```text\n")].strip()
-                and not agrees(block.text, printed)
             ):
-                changes.append((block, printed))
+                if not printed.strip():
+                    raise PageError("a command prints nothing; leave out the block below it")
+                if not agrees(block.text, printed):
+                    changes.append((block, printed))
         if check and changes:
             raise PageError(
                 "".join(f"shown:\n{block.text}printed:\n{printed}" for block, printed in changes)

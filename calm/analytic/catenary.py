@@ -200,7 +200,8 @@ def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: f
     plumb = 2.0 * z / (1.0 + sqrt(1.0 + 2.0 * weight * z / stiffness))
     if plumb < length and length - plumb >= x:
         raise ValueError(
-            f"a line of {length:g} m lies slack: {plumb:g} m hang and the rest reaches {x:g} m"
+            f"a line of {length:g} m is slack: {plumb:g} m are suspended and the rest reaches "
+            f"{x:g} m"
         )
 
 

@@ -167,7 +167,6 @@ def _on_branch(
 
 
 def _distinct(pieces: list[Piece]) -> list[Piece]:
-    """Remove duplicate pieces."""
     kept: list[Piece] = []
     for piece in sorted(pieces):
         close = 1e-6 * (piece[1] - piece[0]) + 1e-10 * (1.0 + abs(piece[0]))

@@ -1,5 +1,6 @@
 """Conversion of a file's pieces and environment to the arrays of the march."""
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import cbrt, pi, sqrt
@@ -54,7 +55,20 @@ def assemble_line(
     solver : laws of drag, friction and strumming; the defaults if None
     gravity : acceleration of gravity for weights from masses [m/s²]
     """
-    solver = solver or Solver()
+    # the environments of a mooring have its lines in common, and all that is stored with them
+    given = tuple(pieces), solver or Solver(), gravity
+    for known, line in list(_ASSEMBLED):
+        if known == given:
+            return line
+    _ASSEMBLED.append((given, line := _assembled(*given)))
+    return line
+
+
+_ASSEMBLED: deque[tuple[object, Line]] = deque(maxlen=32)
+"""The latest lines, with what they were built from."""
+
+
+def _assembled(pieces: Sequence[files.Piece], solver: Solver, gravity: float) -> Line:
     anchor = pieces[-1].component
     moored = isinstance(anchor, files.Anchor)
     above = pieces[:-1] if moored else pieces

@@ -6,7 +6,7 @@ import difflib
 import operator
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, lru_cache
@@ -20,9 +20,9 @@ from calm.shipped import shipped_folder
 from calm.units import QuantityError, parse_quantity
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
-_ELSEWHERE = 4
+_OTHER_FIELD_RANK = 4
 """Rank of a component whose id does not contain all words."""
-_BETWEEN = re.compile(r"[\s_-]+")
+_SEPARATORS = re.compile(r"[\s_-]+")
 _SIZE = re.compile(
     r"(?<![\w.,/])((?:\d+[ -])?\d+/\d+|\d+(?:[.,]\d+)?)[ -]?"
     r"(mm|cm|inch(?:es)?|in|\"|″|(?<=/\d)|(?<=/\d\d))(?!\w)"
@@ -30,10 +30,12 @@ _SIZE = re.compile(
 """A number with its unit; a fraction without a unit is in inches."""
 _OF_A_SIZE = 0.02
 """Relative difference up to which sizes count as equal, such as rounded millimetres and inches."""
-_USED = re.compile(r"\buse: *([\w-]+)")
-_ALIKE = 0.8
+_USE_KEY = re.compile(r"\buse: *([\w-]+)")
+_MIN_SIMILARITY = 0.8
 """Similarity above which a word counts as misspelt: `releese` and `release` have 0.86."""
-_SHORT = 5
+_MIN_SIMILARITY_SHORT = 0.75
+"""Similarity above which a word of `_SHORT` letters counts as misspelt: `wyre` and `wire`."""
+_SHORT_WORD = 4
 """Number of letters below which an unknown word does not count as misspelt."""
 
 
@@ -132,30 +134,55 @@ class Index:
         by : key of a column to sort by: largest first, unknown values last
         """
         plain, limits = _parsed(text)
-        words = _words(plain)
-        sizes = [(_words(found[0]), _metres(*found.groups())) for found in _SIZE.finditer(plain)]
-        others = _words(_SIZE.sub(" ", plain))
-        only = None if kinds is None else frozenset(kinds)
+        terms = _terms(plain)
         hits = [
-            each
-            for each in self._listed.values()
-            if (only is None or each.kind in only)
-            and all(word in each.searched for word in others)
-            and all(
-                any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes)
-                or all(word in each.searched for word in parts)
-                for parts, size in sizes
-            )
-            and all(limit.holds(self.figures(each.id)) for limit in limits)
+            each for each in self._of(kinds, limits) if all(term.matches(each) for term in terms)
         ]
         if by is not None:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
+        return self._ranked(hits, terms, first)
+
+    def nearly(
+        self, text: str, kinds: Iterable[str] | None = None, *, first: Sequence[str] = ()
+    ) -> tuple[list[Listed], list[str]]:
+        """Find the components that contain most words of a text, and meet all its limits.
+
+        Returns
+        -------
+        found : components with the largest number of words, ordered as by `search`; empty if no
+            component has any of the words
+        unknown : words that no component contains
+        """
+        plain, limits = _parsed(text)
+        every, terms = [*self._of(kinds, limits)], _terms(plain)
+        counts = {each.id: sum(term.matches(each) for term in terms) for each in every}
+        most = max(counts.values(), default=0)
+        found = [each for each in every if counts[each.id] == most] if most else []
+        known = [term for term in terms if any(map(term.matches, every))]
+        unknown = [term.text for term in terms if term not in known]
+        return self._ranked(found, known, first), unknown
+
+    def _of(self, kinds: Iterable[str] | None, limits: Sequence[Wanted]) -> Iterator[Listed]:
+        only = None if kinds is None else frozenset(kinds)
+        for each in self._listed.values():
+            if (only is None or each.kind in only) and all(
+                limit.holds(self.figures(each.id)) for limit in limits
+            ):
+                yield each
+
+    def _ranked(
+        self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
+    ) -> list[Listed]:
+        """Sort by `_rank` in the terms that a component matches, with the ids of `first` first."""
         places = {id: number for number, id in enumerate(first)}
 
         def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
+            own = [term for term in terms if term.matches(each)]
+            words = [word for term in own for word in term.words]
+            others = [word for term in own if term.size is None for word in term.words]
             rank = _rank(each, words, others)
-            place = places.get(each.id, len(places)) if rank < _ELSEWHERE else len(places)
-            elsewhere = rank > _ELSEWHERE
+            place = places.get(each.id, len(places)) if rank < _OTHER_FIELD_RANK else len(places)
+            elsewhere = rank > _OTHER_FIELD_RANK
             return rank > 0, place, elsewhere, each.second, rank, -_uses()[each.id]
 
         return sorted(hits, key=order)
@@ -165,17 +192,44 @@ class Index:
         contains.
         """
         every = " ".join(each.searched for each in self._listed.values())
-        own = _BETWEEN.split(" ".join(each.own_words for each in self._listed.values()))
-        known = {word for word in own if word.isalpha() and len(word) >= _SHORT - 1}
+        own = _SEPARATORS.split(" ".join(each.own_words for each in self._listed.values()))
+        known = {word for word in own if word.isalpha() and len(word) >= _SHORT_WORD}
         for word in _words(_SIZE.sub(" ", _parsed(text)[0])):
-            if len(word) >= _SHORT and word.isalpha() and word not in every:
-                near = difflib.get_close_matches(word, known, 1, _ALIKE)
+            if len(word) >= _SHORT_WORD and word.isalpha() and word not in every:
+                alike = _MIN_SIMILARITY if len(word) > _SHORT_WORD else _MIN_SIMILARITY_SHORT
+                near = difflib.get_close_matches(word, known, 1, alike)
                 text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
         return text
 
     def _least_first(self, id: str, by: str) -> float:
         value = self.figures(id).get(by)
         return inf if value is None else -abs(value)
+
+
+@dataclass(frozen=True)
+class Term:
+    """A word of a search, or a size of one or several words with its value [m]."""
+
+    text: str
+    words: tuple[str, ...]
+    size: float | None = None
+
+    def matches(self, each: Listed) -> bool:
+        """Whether a component has the size, or contains the words."""
+        size = self.size
+        if size is not None and any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes):
+            return True
+        return all(word in each.searched for word in self.words)
+
+
+def _terms(plain: str) -> list[Term]:
+    """Split a text without limits into its words and sizes."""
+    words = [Term(word, (word,)) for word in _words(_SIZE.sub(" ", plain))]
+    sizes = [
+        Term(found[0], tuple(_words(found[0])), _metres(*found.groups()))
+        for found in _SIZE.finditer(plain)
+    ]
+    return words + sizes
 
 
 def _parsed(text: str) -> tuple[str, list[Wanted]]:
@@ -186,7 +240,7 @@ def _parsed(text: str) -> tuple[str, list[Wanted]]:
 
 
 def _words(text: str) -> list[str]:
-    return [word for word in _BETWEEN.split(text) if word]
+    return [word for word in _SEPARATORS.split(text) if word]
 
 
 def _metres(number: str, unit: str) -> float:
@@ -199,7 +253,7 @@ def _metres(number: str, unit: str) -> float:
 def _uses() -> Counter[str]:
     """Number of uses of each component in the shipped lines."""
     files = sorted(shipped_folder("lines").glob("*.yaml"))
-    return Counter(id for file in files for id in _USED.findall(file.read_text("utf-8")))
+    return Counter(id for file in files for id in _USE_KEY.findall(file.read_text("utf-8")))
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
@@ -211,14 +265,14 @@ def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     """
     if not words:
         return 0
-    joined, id = "".join(words), _BETWEEN.sub("", each.id)
+    joined, id = "".join(words), _SEPARATORS.sub("", each.id)
     if id == joined:
         return 0
     if id.startswith(joined) or id.endswith(joined):
         return 1
     if all(word in each.id for word in words):
         return 2 if id.startswith(words[0]) else 3
-    return _ELSEWHERE + any(word not in each.own_words for word in others)
+    return _OTHER_FIELD_RANK + any(word not in each.own_words for word in others)
 
 
 @lru_cache(4096)  # an index is rebuilt whenever a file's own components change
@@ -307,17 +361,17 @@ except loads and depth are per metre for a cable or chain.
 """
 
 
-_ALSO = {
+_COLUMN_SYNONYMS = {
     "mbl": "breaking",
     "wll": "working",
     "swl": "working",
     "buoyancy": "net",
     "rating": "depth",
 }
-_ASKED = re.compile(r"([a-z]+)(<=|>=|<|>)([-+]?[\d.].*)")
+_LIMIT = re.compile(r"([a-z]+)(<=|>=|<|>)([-+]?[\d.].*)")
 
 
-_HOLDS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
+_RELATIONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 
 
 Figures = dict[str, float | None]
@@ -353,7 +407,7 @@ class Wanted:
     def holds(self, figures: Figures) -> bool:
         """Whether the limit is met; false if the value is unknown."""
         value = figures.get(self.key)
-        return value is not None and bool(_HOLDS[self.relation](value, self.limit))
+        return value is not None and bool(_RELATIONS[self.relation](value, self.limit))
 
 
 def wanted(word: str) -> Wanted | None:
@@ -361,10 +415,10 @@ def wanted(word: str) -> Wanted | None:
 
     A number without a unit has the unit of its column.
     """
-    found = _ASKED.fullmatch(word)
+    found = _LIMIT.fullmatch(word)
     if found is None:
         return None
-    key = _ALSO.get(found[1], found[1])
+    key = _COLUMN_SYNONYMS.get(found[1], found[1])
     column = next((each for each in COLUMNS if each.key == key), None)
     if column is None:
         return None

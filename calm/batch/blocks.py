@@ -18,7 +18,7 @@ from calm.batch.statuses import STATUSES, Ending, endings
 from calm.dataset.netcdf import Chunks, ResultLayout, packed, write_netcdf
 from calm.records.record import Levels
 
-AHEAD = 2
+IN_PROGRESS = 2
 """Blocks in progress for each worker. This bounds the memory of a batch."""
 
 Task = TypeVar("Task")
@@ -112,7 +112,9 @@ def in_threads(
     count = workers or processors()
     pool = ThreadPoolExecutor(count)
     try:
-        yield from in_order(lambda task: pool.submit(solve, task), tasks, lambda: AHEAD * count)
+        yield from in_order(
+            lambda task: pool.submit(solve, task), tasks, lambda: IN_PROGRESS * count
+        )
     finally:
         pool.shutdown(cancel_futures=True)
 

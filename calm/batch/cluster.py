@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from functools import lru_cache
 
-from calm.batch.blocks import AHEAD, BlockTask, Promise, SolvedBlock, in_order, solve_block
+from calm.batch.blocks import (
+    IN_PROGRESS,
+    BlockTask,
+    Promise,
+    SolvedBlock,
+    in_order,
+    solve_block,
+)
 from calm.batch.profiles import Batch
 from calm.case import Design
 from calm.errors import UsageError
@@ -53,7 +60,7 @@ def on_cluster(
 
     def ahead() -> int:
         threads: dict[str, int] = client.nthreads()
-        return AHEAD * sum(threads.values())
+        return IN_PROGRESS * sum(threads.values())
 
     with client:
         if not client.nthreads():
@@ -65,8 +72,8 @@ def on_cluster(
         except (ImportError, AttributeError, RuntimeError) as error:
             # dask raises these for missing modules
             raise UsageError(
-                f"the scheduler or a worker cannot take the work: {error}; "
-                f"calm-mooring {__version__} is needed there too"
+                f"the scheduler or a worker cannot run the tasks: {error}; install "
+                f"calm-mooring {__version__} there, too"
             ) from None
 
 

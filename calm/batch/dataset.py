@@ -20,7 +20,7 @@ from calm.files.mooring_file import leg_numbers
 from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
-_BESIDE = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
+_COORDINATES = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
 """Label and depth variables of each dimension, the coordinates of its variables."""
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
@@ -53,10 +53,10 @@ def layout_of(mooring: Design, record: Record) -> ResultLayout:
         sizes["clamp"] = len(clamps)
         variables.append(labels("clamp_label", "clamp", clamps, CLAMPS))
     entered = Profiles.columns()
-    for dimension, beside in _BESIDE.items():
+    for dimension, coordinates in _COORDINATES.items():
         if dimension in sizes:
             columns = terms(entered[dimension])
-            variables += numbers(("time", dimension), columns, f"{beside}{where}")
+            variables += numbers(("time", dimension), columns, f"{coordinates}{where}")
     legs = mooring.file.legs
     along = ("time", "leg") if legs else ("time",)
     variables += numbers(along, terms(entered[""]), where.strip())

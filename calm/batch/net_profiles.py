@@ -40,11 +40,11 @@ from calm.solve.net import NetSearch, NetSolution
 from calm.solve.problem import CHOSEN, FINE
 from calm.solve.solution import FOUND
 
-ROUGHLY = 1e-6
+TOLERANCE = 1e-6
 """Tolerance of lengths and forces, in shares, larger than in a single run to save time."""
 BLOCK = 256
 """Number of profiles that a thread takes at a time."""
-TO_SOLVE = 1
+SOLVE_ALONE = 1
 """Outcome of a profile that has to be solved alone."""
 Column = tuple[float, ...]
 
@@ -122,8 +122,8 @@ def solve_net_rows(
         ending = ask(NetTask(leg_closing.CLOSE, net, arrays.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
-            ending = ask(NetTask(leg_closing.SETTLE, net, arrays.x, how, ROUGHLY, True), 0.0)
-        endings[case] = TO_SOLVE
+            ending = ask(NetTask(leg_closing.SETTLE, net, arrays.x, how, TOLERANCE, True), 0.0)
+        endings[case] = SOLVE_ALONE
         if ending == FOUND and is_valid(net, arrays):
             endings[case] = 0
             write_net(net, arrays, rows, case)
@@ -265,13 +265,13 @@ class NetProfiles:
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]))
         else:
-            endings[endings == 0] = TO_SOLVE
+            endings[endings == 0] = SOLVE_ALONE
         for ending, name in OF_PROFILES.items():
             status[endings == ending] = STATUSES.index(name)
         columns = self._columns(rows)
         for name in columns:
             columns[name][endings != 0] = np.nan
-        for case in np.flatnonzero(endings == TO_SOLVE).tolist():
+        for case in np.flatnonzero(endings == SOLVE_ALONE).tolist():
             self._solve_alone(current, case, columns, status)
         return columns
 

@@ -104,7 +104,6 @@ class Profiles(Columnar):
         return cls(**labels, **known, status=status)
 
     def __repr__(self) -> str:
-        """Summary with the numbers of profiles, components and clamps."""
         parts = f"{len(self.component_label)} components, {len(self.clamp_label)} clamps"
         failed = np.count_nonzero(self.status)
         return f"Profiles({self.status.size} profiles, {failed} not solved; {parts})"
@@ -189,7 +188,7 @@ def solve_profiles(
     batch = Batch(mooring)
     if is_record(u):
         if any(each is not None for each in (v, depth, w)):
-            raise TypeError("a record holds the whole current; give no v, depth or w beside it")
+            raise TypeError("a record contains the whole current; leave out v, depth and w")
         levels, east, north, up = _recorded(mooring, u)
         return batch.solve(east, north, levels, up, workers=workers)
     if v is None or depth is None:
@@ -384,13 +383,14 @@ def _checked(
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
-            f"u, v and w must have one shape, profiles by levels; they have {east.shape}, "
-            f"{north.shape}, {up.shape}"
+            "u, v and w must have the same shape, profiles by levels; they have "
+            f"{east.shape}, {north.shape}, {up.shape}"
         )
     levels = east.shape[-1]
     if down.shape not in {(levels,), (1, levels), east.shape}:
         raise ValueError(
-            f"depth must be of shape {(levels,)}, or as u, {east.shape}: it is of {down.shape}"
+            f"depth must have the shape {(levels,)}, or that of u, {east.shape}; it has "
+            f"{down.shape}"
         )
     shape = east.shape[:-1]
     count = prod(shape)
@@ -403,7 +403,7 @@ def _numbers(values: ArrayLike) -> NDArray[Any]:
     """Convert to an array, with NaN for masked values."""
     array: NDArray[Any] = np.ma.filled(values, np.nan) if np.ma.isMA(values) else np.asarray(values)
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"a current is numbers, not {array.dtype}")
+        raise TypeError(f"the current must be numeric, not {array.dtype}")
     return array
 
 

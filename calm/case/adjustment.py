@@ -73,7 +73,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     for each in (part.component for part in parts):
         if isinstance(each, Chain | Anchor):
             article = "an anchor" if isinstance(each, Anchor) else f"a {each.kind}"
-            raise LookupError(f"{article} has a weight and no buoyancy to change")
+            raise LookupError(f"{article} has a weight instead of a buoyancy")
     if any(part.component != component for part in parts):
         raise LookupError("these parts differ; select one")
     now = component.net_buoyancy
@@ -85,8 +85,8 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
     def to(value: float) -> MooringFile:
         # remove other keys from which the net buoyancy could follow, as in an override on the line
-        gone = "weight" if cable else "volume"
-        lifted = component.model_copy(update={"buoyancy": value, gone: None})
+        replaced = "weight" if cable else "volume"
+        lifted = component.model_copy(update={"buoyancy": value, replaced: None})
 
         def changed(clamp: Clamp) -> Clamp:
             return replace(clamp, component=lifted) if clamp.place in places else clamp
@@ -136,7 +136,7 @@ def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     """Change the number of copies of a component in line, each with its own clamps."""
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
-        raise LookupError("clamped instruments are not counted; only pieces in line are")
+        raise LookupError("only pieces in line have a count, not clamped instruments")
     if isinstance(pieces[0].component, Anchor):
         raise LookupError("a line has one anchor")
     _refuse_several_items(pieces)

@@ -19,7 +19,7 @@ import numpy as np
 from calm.assemble import assemble_water
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
-from calm.case.memory import Forgetful, Memory
+from calm.case.memory import Memory, NoMemory
 from calm.case.parts import Origin, OtherEnvironment
 from calm.case.profilers import ProfilerTravel, profilers_of
 from calm.case.result_tables import (
@@ -85,7 +85,7 @@ class Design:
 
     file: MooringFile
     for_surface: bool | None = None
-    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    memory: Memory = field(default_factory=NoMemory, repr=False, compare=False)
     lines: tuple[Line, ...] | None = field(default=None, repr=False, compare=False)
     given_water: Water | None = field(default=None, repr=False, compare=False)
     near: NetSolution | None = field(default=None, repr=False, compare=False)
@@ -255,7 +255,7 @@ class Design:
         return (self.leg.equilibrium(self.water),)
 
     @cached_property
-    def meant(self) -> tuple[Leg, ...]:
+    def typed_legs(self) -> tuple[Leg, ...]:
         """Legs with `for_surface` set: a leg counts as a surface leg if it floats at the surface in
         still water.
         """
@@ -310,7 +310,7 @@ class Design:
 def solved_alone(leg: Leg) -> LegResult:
     """Solve a leg alone, with its profilers at all positions; raises NoEquilibrium."""
     solution = leg.equilibrium()
-    still = leg.still_beside(solution)
+    still = leg.still_counterpart(solution)
     return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
 
 
@@ -327,8 +327,8 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
     for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
         leg.refuse_a_lifted_anchor(solution)
         leg.refuse_in_the_slope(solution)
-        meant = replace(leg, for_surface=bool((before or solution).afloat))
-        legs.append(LegResult(leg=meant, solution=solution, still=before))
+        typed = replace(leg, for_surface=bool((before or solution).afloat))
+        legs.append(LegResult(leg=typed, solution=solution, still=before))
     places = zip(nodes_of(design.file.legs), found.nodes, found.imbalance, strict=True)
     return Result(
         design=design,
@@ -401,8 +401,8 @@ class Result:
             return self.leg.warnings
         return (
             *self.file.notices,
-            *(said for leg in self.legs for said in leg.warnings),
-            *(said for leg in self.legs if (said := _upside_down(leg))),
+            *(warning for leg in self.legs for warning in leg.warnings),
+            *(warning for leg in self.legs if (warning := _upside_down(leg))),
             *(
                 f"The anchors of legs {one.leg} and {other.leg} are at the same position but are "
                 "checked separately. If they are one anchor, join the legs at a node above it."
@@ -603,12 +603,12 @@ class Result:
         from calm.version import __version__
 
         document = self.file.document
-        told = ("type", "status", "iterations", "segments", "miss", "closure")
+        own_names = ("type", "status", "iterations", "segments", "miss", "closure")
         return {
             "calm": __version__,
             "name": self.name,
             **({} if document is None else {"document": document.to_dict()}),
-            **{name: getattr(self, name) for name in told},
+            **{name: getattr(self, name) for name in own_names},
             "accuracy": {k: v for k, v in asdict(self.accuracy).items() if v is not None},
             **(self._document_of_legs() if self.several else self._document_of_leg()),
             "components": documents(self.components, self.file),

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar, cast
 import numpy as np
 
 from calm.case.leg import Leg
-from calm.case.memory import Forgetful
+from calm.case.memory import NoMemory
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.line import Floats, Line, Water
@@ -142,7 +142,7 @@ def drawn_water(water: Water, draw: Draw) -> Water:
     )
 
 
-class Neighbours(Forgetful):
+class Neighbours(NoMemory):
     """Solver for small changes of a mooring, from its equilibrium, or anew if that fails."""
 
     def __init__(self, leg: Leg) -> None:

@@ -115,9 +115,9 @@ def end_loads(leg: Leg, components: Components, solution: Solution) -> Iterator[
         yield _end_load(leg.name, solution.force[-1], place)
     if leg.anchored:
         row, load = components[len(components) - 1], anchor_load(leg, solution)
-        borne = _end_load(leg.name, solution.force[-1], (row.x_top, row.y_top, row.depth_top))
+        lower = _end_load(leg.name, solution.force[-1], (row.x_top, row.y_top, row.depth_top))
         yield replace(
-            borne,
+            lower,
             required_weight=load.required_weight,
             weight=load.weight,
             grounded_length=load.grounded_length,

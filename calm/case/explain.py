@@ -158,8 +158,8 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         shares = _shares(result, figures, "knockdown" in quantities, part.place)
     except NoEquilibrium as failure:
         notes.append(
-            "The shares of the drags cannot be found: with less drag the line has no equilibrium "
-            f"({failure.status}: {failure.message})"
+            "The shares of the drags cannot be computed, because the line has no equilibrium "
+            f"with less drag ({failure.status}: {failure.message})"
         )
     else:
         causes = _causes(result, shares)
@@ -169,8 +169,8 @@ def explain(result: Result, label: str | None = None) -> Explanation:
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
         if miss > attribution.LARGEST_MISS:
             notes.append(
-                f"The shares are approximate: they do not grow steadily with the drag ({miss:.0%} "
-                "were scaled)."
+                "The shares are approximate, because they do not increase steadily with the "
+                f"drag ({miss:.0%} were distributed in proportion)."
             )
     return Explanation(
         label=part.label,
@@ -191,18 +191,18 @@ _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
 def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Iterator[str]:
     if result.several:
         yield (
-            "Excursions are from the origin of the file's places; the anchor is the one that "
-            "needs the most weight."
+            "Excursions are measured from the origin of the coordinates; the anchor is that "
+            "with the largest required weight."
         )
     if surface:
         yield (
-            "A float at the surface is not knocked down: its excursion and the buoyancy it "
-            "uses are explained instead."
+            "A float at the surface has no knockdown; the table explains its excursion and "
+            "the buoyancy in use."
         )
     elif "knockdown" not in quantities:
         yield (
-            "In still water the line has no unique shape, so there is no knockdown: its excursion "
-            "is explained instead."
+            "In still water the line has no unique shape, and so no knockdown; the table "
+            "explains its excursion."
         )
     if not result.design.water.moving:
         yield "There is no current, and so no drag."
@@ -278,7 +278,6 @@ def _variations(mooring: Design) -> Iterator[tuple[str, Design]]:
 
 
 def _with(design: Design, changed: Callable[[Line], Line], water: Water | None = None) -> Design:
-    """Return the design with lines or water that differ from its file."""
     return design.with_lines([changed(leg.line) for leg in design.legs], water)
 
 

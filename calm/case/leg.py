@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
 from calm.case import parts
-from calm.case.memory import Forgetful, Memory
+from calm.case.memory import Memory, NoMemory
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece
 from calm.files.legs import EndKeys, FileLeg
@@ -50,7 +50,7 @@ class Leg:
 
     file: MooringFile
     for_surface: bool | None = None
-    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    memory: Memory = field(default_factory=NoMemory, repr=False, compare=False)
     given_line: Line | None = field(default=None, repr=False, compare=False)
     given_water: Water | None = field(default=None, repr=False, compare=False)
 
@@ -241,14 +241,14 @@ class Leg:
         """
         lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
         height = self.water.depth - self.line.anchor_height
-        hung = float(np.interp(height, length, np.cumsum(lift)))
-        floats_at_rest = length[-1] > height and hung > 0.0
+        net_lift = float(np.interp(height, length, np.cumsum(lift)))
+        floats_at_rest = length[-1] > height and net_lift > 0.0
         if float(lift.sum()) <= 0.0 and not floats_at_rest:
             return too_heavy(lift)
         pulls = "pulls the line's top under water and " if floats_at_rest else ""
         return Status.GROUNDED.because(
-            f"The current {pulls}lays {label} on the seabed: only the chain of a sub-surface "
-            "line may lie there."
+            f"The current {pulls}puts {label} on the seabed, where only chain of a "
+            "sub-surface line may lie."
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:
@@ -278,8 +278,8 @@ class Leg:
             return solve_tow(line, self.water, self.towing, self.settings)
         return solve_mooring(line, self.water, self.settings)
 
-    def still_beside(self, solution: Solution) -> Solution | None:
-        """The line in still water; None for a tow, or without a unique shape."""
+    def still_counterpart(self, solution: Solution) -> Solution | None:
+        """Solution of the line in still water; None for a tow, or without a unique shape."""
         if self.towed:
             return None
         floating = self.line.floating

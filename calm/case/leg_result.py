@@ -52,7 +52,6 @@ class LegResult:
     profilers: tuple[ProfilerTravel, ...] = ()
 
     def __repr__(self) -> str:
-        """Summary with name, type and number of components."""
         return f"LegResult({self.name!r}, {self.type}, {len(self.components)} components)"
 
     @property

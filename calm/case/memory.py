@@ -33,7 +33,6 @@ class Memory:
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
-        """Pickle an empty cache."""
         return Memory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
@@ -61,12 +60,11 @@ class Memory:
         return solved
 
 
-class Forgetful(Memory):
+class NoMemory(Memory):
     """A cache that keeps nothing: every line is solved."""
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
-        """Pickle without contents."""
-        return Forgetful, ()
+        return NoMemory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """Return the result of the solver."""
@@ -93,7 +91,6 @@ class _Describing(pickle.Pickler):
 
 @cache
 def _names(record: type) -> tuple[str, ...]:
-    """Names of the fields of a dataclass."""
     return tuple(each.name for each in fields(record))
 
 

@@ -72,25 +72,25 @@ def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | Non
         lift += max(float(upto.max()), 0.0) if isfinite(each.lower.seabed) else float(upto[-1])
     if lift <= 0.0 and not any(end.held for leg in legs for end in (leg.top, leg.bottom)):
         return Status.NO_EQUILIBRIUM.because(
-            f"It sinks: its legs weigh {say('force', -lift)} more in water than their floats "
-            "lift, without those that may lie on the seabed, and no end is held.",
+            "The net sinks: without the legs that may lie on the seabed, its weight in water "
+            f"exceeds its buoyancy by {say('force', -lift)}, and no end is held.",
             advice="Add buoyancy.",
         )
-    ways: dict[Any, tuple[float, tuple[str, ...]]] = defaultdict(lambda: (inf, ()))
+    shortest: dict[Any, tuple[float, tuple[str, ...]]] = defaultdict(lambda: (inf, ()))
     for each, leg in zip(laid, legs, strict=True):
         ends = [end.node if end.place is None else end.place for end in (each.upper, each.lower)]
         for pair in permutations(ends):
-            ways[pair] = min(ways[pair], (float(each.line.length.sum()), (leg.name,)))
-    points = dict.fromkeys(end for pair in ways for end in pair if end != -1)  # -1: free
+            shortest[pair] = min(shortest[pair], (float(each.line.length.sum()), (leg.name,)))
+    points = dict.fromkeys(end for pair in shortest for end in pair if end != -1)  # -1: free
     for by, first, last in product(points, repeat=3):
-        (one, some), (other, more) = ways[first, by], ways[by, last]
-        ways[first, last] = min(ways[first, last], (one + other, some + more))
+        (one, some), (other, more) = shortest[first, by], shortest[by, last]
+        shortest[first, last] = min(shortest[first, last], (one + other, some + more))
     for first, last in combinations((one for one in points if isinstance(one, tuple)), 2):
-        length, names = ways[first, last]
+        length, names = shortest[first, last]
         if length < dist(first, last):
-            said = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
+            subject = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
             return Status.NO_EQUILIBRIUM.because(
-                f"{said} {say('length', length)} long in all, but its ends are held "
+                f"{subject} {say('length', length)} long in all, but its ends are held "
                 f"{say('length', dist(first, last))} apart.",
                 advice="Lengthen a leg, or bring the ends closer together.",
             )

@@ -108,5 +108,11 @@ def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> Moor
     def stays(clamp: Clamp) -> Clamp:
         return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
 
-    pieces = (piece.with_clamps(stays) if piece.clamps else piece for piece in file.pieces)
+    def moves(clamp: Clamp) -> bool:
+        return clamp.travel is not None or clamp.place == place
+
+    pieces = (
+        piece.with_clamps(stays) if any(map(moves, piece.clamps)) else piece
+        for piece in file.pieces
+    )
     return replace(file, pieces=tuple(pieces))

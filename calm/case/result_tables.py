@@ -118,7 +118,6 @@ class ColumnTable(Columnar, Generic[Row]):
         return cls(**whole)
 
     def __repr__(self) -> str:
-        """Summary with the number of rows and the labels at both ends."""
         shown = self.label if len(self) < 6 else [*self.label[:3], "…", self.label[-1]]
         return f"{type(self).__name__}({len(self)} rows: {', '.join(shown)})"
 
@@ -532,12 +531,12 @@ class Clamps(ColumnTable[ClampRow]):
 
 def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
     """Rows as JSON objects; None stands for unknown values."""
-    own, beside = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
+    own, of_the_file = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
     rows = []
     for row in table:
-        told = {one.name: _known(getattr(row, one.name)) for one in own}
-        more = {one.name: one.value(row, file) for one in beside}
-        rows.append(told | {name: value for name, value in more.items() if value is not None})
+        values = {one.name: _known(getattr(row, one.name)) for one in own}
+        more = {one.name: one.value(row, file) for one in of_the_file}
+        rows.append(values | {name: value for name, value in more.items() if value is not None})
     return rows
 
 
@@ -591,7 +590,6 @@ class Shape:
         return [*every] if output is None else shown_in(every, output)
 
     def __repr__(self) -> str:
-        """Summary with the number of nodes."""
         return f"Shape({len(self.depth)} nodes)"
 
     def to_dict(self) -> dict[str, list[float]]:
@@ -843,6 +841,32 @@ class WithClamps(Protocol):
 def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
     """Rows of a result by the place of the piece or clamp."""
     return {row.place: row for row in (*result.components, *result.clamps)}
+
+
+def item_numbers(*results: WithClamps) -> dict[str, str]:
+    """Number of each piece and clamp by its label, the same in all documents.
+
+    Pieces are numbered from 1 in the order of the results, such as the legs of a net; a clamp has
+    the number of its piece and a letter.
+    """
+    found: dict[str, str] = {}
+    rows = (row for result in results for row in rows_down(result))
+    for piece, (row, clamps) in enumerate(rows, 1):
+        found[row.label] = str(piece)
+        for at, clamp in enumerate(clamps):
+            found[clamp.label] = f"{piece}{chr(ord('a') + at) if at < 26 else f'.{at + 1}'}"
+    return found
+
+
+def run_of(numbers: Sequence[str]) -> str:
+    """Format the numbers of items that share a row, such as `19–26` or `5a–5c, 6`.
+
+    Clamps on the first piece are not named.
+    """
+    pieces = sorted(int(one) for one in numbers if one.isdigit())
+    clamps = [] if numbers[0].isdigit() else [one for one in numbers if not one.isdigit()]
+    runs = (clamps, [*map(str, pieces)])
+    return ", ".join("–".join(dict.fromkeys((run[0], run[-1]))) for run in runs if run)
 
 
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:

@@ -108,20 +108,20 @@ def parse_target(text: str, file: MooringFile) -> Target:
     if relation not in RELATIONS:
         what = f"`{relation}` is not a relation" if relation else "there is no relation"
         raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
-    meant, pieces, leg = None, file.pieces, None
+    chosen, pieces, leg = None, file.pieces, None
     if file.legs and quantity == "required_weight":
         anchored = [each.name for each in file.legs if each.bottom.anchor is not None]
         leg = found["label"] and found["label"].strip()
         if leg not in anchored and (leg is not None or len(anchored) != 1):
-            said = f"no leg `{leg}` has an anchor" if leg else "name the leg of the anchor"
-            raise mistake("part" if leg else "quantity", unknown(said, leg or "", anchored))
+            correction = f"no leg `{leg}` has an anchor" if leg else "name the leg of the anchor"
+            raise mistake("part" if leg else "quantity", unknown(correction, leg or "", anchored))
     elif found["part"] is not None and quantity == "required_weight":
         raise mistake("part", "the required weight belongs to the anchor; leave out the brackets")
     part = TOP if found["part"] is None else found["label"].strip()
     called_top = any(each.label == TOP for each in parts_of(pieces))
     if quantity != "required_weight" and (part != TOP or called_top):
         try:
-            meant = one_part(pieces, part)
+            chosen = one_part(pieces, part)
         except LookupError as error:
             raise mistake("label", str(error.args[0])) from None
     elif file.legs and quantity != "required_weight":
@@ -131,7 +131,7 @@ def parse_target(text: str, file: MooringFile) -> Target:
     except QuantityError as error:
         shown = f"`{found['limit']}` {error}" if found["limit"] else "there is no limit"
         raise mistake("limit", shown) from None
-    label, place = (leg, None) if meant is None else (meant.label, meant.place)
+    label, place = (leg, None) if chosen is None else (chosen.label, chosen.place)
     return Target(text, quantity, label, RELATIONS[relation], limit, place)
 
 

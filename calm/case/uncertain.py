@@ -204,7 +204,7 @@ def _figures(
 
 def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
     solution = leg.equilibrium()
-    still = leg.still_beside(solution)
+    still = leg.still_counterpart(solution)
     rows = LineFigures(solution, still)
     load = anchor_load(leg, solution)
     (x, y, up), tension = rows.top.T, rows.greatest_tension

@@ -96,10 +96,10 @@ def _overloaded(result: _Measured, _: Solution) -> Iterator[str]:
 def _same_serial(result: _Measured, _: Solution) -> Iterator[str]:
     seen: dict[tuple[str, str], str] = {}
     for part in parts_of(result.file.pieces):
-        if part.serial is not None:
-            other = seen.setdefault((part.use, part.serial), part.label)
+        for serial in part.serials:
+            other = seen.setdefault((part.use, serial), part.label)
             if other != part.label:
-                yield f"{other} and {part.label} have the same serial number, {part.serial}."
+                yield f"{other} and {part.label} have the same serial number, {serial}."
 
 
 def _anchor_too_light(result: _Measured, _: Solution) -> Iterator[str]:
@@ -169,7 +169,6 @@ def _published(strains: list[float]) -> str:
 
 
 def _percent(share: float) -> str:
-    """Format a share with two digits."""
     return f"{100 * share:.2g}" if share < 0.995 else f"{100 * share:.0f}"
 
 
@@ -328,8 +327,14 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
 def _wind_ignored(result: _Measured, solution: Solution) -> Iterator[str]:
     wind = result.file.environment.wind
     floating = solution.line.floating
-    felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
-    if wind is not None and solution.surface and not (solution.riding is not None and felt):
+    has_wind_load = floating is not None and (
+        floating.hull is not None or floating.wind_area is not None
+    )
+    if (
+        wind is not None
+        and solution.surface
+        and not (solution.riding is not None and has_wind_load)
+    ):
         yield "Wind on the float is neglected: its area above the water is unknown."
 
 

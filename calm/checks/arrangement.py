@@ -41,10 +41,12 @@ _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
 GRAPPLED = 100.0
-"""Depth of water down to which a line is dived or grappled for if its release fails [m]."""
+"""Water depth up to which a single release is accepted [m]; a default of CALM.
+
+In shallow water, a line whose release fails can be dived or grappled for."""
 
 LEAST_BELOW_RELEASE = 1.0
-"""Recommended minimum height of a release above its anchor [m]."""
+"""Minimum height of a release above its anchor [m]; a default of CALM."""
 
 
 @rule("release-present", once=True)
@@ -54,25 +56,26 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
         if clamp.component.role == "release":
-            message = f"{clamp.label} has `role: release`, but a clamped release frees nothing."
+            message = (
+                f"{clamp.label} has `role: release`, but a clamped release cannot free the line."
+            )
             yield unknown(clamp, message, "Insert it in the line, or change its role.")
     if release is None:
         if not reaches_the_surface(leg):
             yield unknown(
                 None,
-                "No piece has the role of a release: how the line is freed from its anchor is not "
-                "known.",
-                "Give the release `role: release`.",
+                "No piece has `role: release`; the release of the line is unknown.",
+                "Mark the release with `role: release`.",
             )
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
         message = f"{piece.label} has `role: release`, but its name suggests another component."
-        yield unknown(piece, message, "Give `role: release` to the release alone.")
+        yield unknown(piece, message, "Mark only the release with `role: release`.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
-        message = f"Nothing above {piece.label} floats: once released, it stays on the seabed."
+        message = f"No piece above {piece.label} is buoyant: once released, it stays on the seabed."
         yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
         return
     doubts = []
@@ -80,28 +83,29 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     length = sum(one.length or 0.0 for one in below)
     if length < LEAST_BELOW_RELEASE and all(one.fit_top_depth is None for one in below):
         message = (
-            f"{piece.label} stands {say('depth', length)} above the anchor; "
-            f"{LEAST_BELOW_RELEASE:g} m would keep it out of the mud and clear of falling gear."
+            f"{piece.label} is {say('depth', length)} above the anchor; "
+            f"{LEAST_BELOW_RELEASE:g} m keeps a release clear of mud and of falling gear."
         )
         doubts.append((piece, message, "Insert rope or chain between release and anchor."))
     said = _words(piece.use, piece.component.name, piece.label)
     alone = sum(component.role == "release" for component in above) == 1
     if alone and leg.water.depth > GRAPPLED and not _TWICE.search(said):
-        message = f"{piece.label} is the only release: if it fails, nothing else frees the line."
-        doubts.append((piece, message, "Use two in parallel, and call them a `pair`."))
+        message = f"{piece.label} is the only release: if it fails, the line stays moored."
+        remedy = "Use two releases in parallel, with `pair` in their label."
+        doubts.append((piece, message, remedy))
     for index, one in enumerate(pieces[:release]):
         if one.component.role == "release" and not _floats(pieces[: index + 1]):
-            message = f"Nothing above release {one.label} floats: once released, nothing comes up."
+            message = f"No piece above release {one.label} is buoyant: opening it frees no float."
             doubts.append((one, message, "Move it below the buoyancy, or change its role."))
     for one in below:
         floats = net_buoyancy(one.component, leg.water.gravity) > 0.0
         if floats and not isinstance(one.component, Flexible):
-            message = f"{one.label} floats, but below the release: it stays on the anchor."
-            doubts.append((one, message, "Put it above the release, or use one that sinks."))
+            message = f"{one.label} is buoyant, but below the release: it stays with the anchor."
+            doubts.append((one, message, "Move it above the release, or use one that sinks."))
     for part, message, remedy in doubts:
         yield verdict_on(part, State.WARN, message, remedy)
     if not doubts:
-        message = f"{piece.label} frees the line from everything below it."
+        message = f"{piece.label} frees the line from all pieces below it."
         yield verdict_on(piece, State.PASS, message)
 
 
@@ -114,7 +118,7 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line has any shackle, link or swivel at all, with weight and strength."""
     pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
-        message = "The line lists no shackle, link or swivel: its joints are not judged."
+        message = "The line lists no shackle, link or swivel, so its joints are not checked."
         yield verdict_on(None, State.WARN, message, "Add the connecting hardware to the line.")
 
 
@@ -136,12 +140,12 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
             continue
         turning = next((beside for beside, has_swivel in ends if has_swivel), None)
         beside = turning or ends[0][0]
-        told = f"{piece.label} is not torque-balanced and ends at {beside.label}"
+        ending = f"{piece.label} is not torque-balanced and ends at {beside.label}"
         if turning is not None:
-            yield verdict_on(piece, State.PASS, f"{told}, with a swivel between them.")
+            yield verdict_on(piece, State.PASS, f"{ending}, with a swivel between them.")
         else:
-            message = f"{told}, which leans in the current, without a swivel between them."
-            remedy = "Put a swivel there, or take wire that is `torque_balanced`."
+            message = f"{ending}, which tilts in the current, without a swivel between them."
+            remedy = "Insert a swivel there, or use wire that is `torque_balanced`."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -216,13 +220,13 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
-        if base.label not in warned and not (_is_insulated(base) or _is_insulated(noble)):
+        if base.label not in warned:
             warned.add(base.label)
             message = (
-                f"{base.label} ({base.component.material}) touches {noble.label} "
-                f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
+                f"{base.label} ({base.component.material}) corrodes in contact with {noble.label} "
+                f"({noble.component.material}), which is {volts:.2f} V nobler in sea water."
             )
-            remedy = "Insulate them from each other and set `insulated: true`, or fit an anode."
+            remedy = "Insulate one from the other (`insulated: true`), or fit an anode."
             yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
 
 
@@ -232,9 +236,9 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Yield adjoining dissimilar metals: the less noble, the more noble, their potential [V].
+    """Yield dissimilar metals that touch: the less noble, the more noble, their potential [V].
 
-    Pairs with an `insulated` part are included, because the insulation still has to be fitted.
+    A part that is `insulated` touches nothing.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -242,6 +246,8 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
         if not any(word in said for word in _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
+        if _is_insulated(one) or _is_insulated(other):
+            continue
         first, second = (potential_of(part.component.material) for part in (one, other))
         if first is None or second is None or abs(first - second) <= GREATEST_DIFFERENCE:
             continue
@@ -285,9 +291,11 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
         lift = _lift(part, handling.leg, density)
         pulls = []
         if isinstance(launch, Launch):
-            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall", "L"))
+            descent = " during the descent"
+            pulls.append((abs(lift + drag * launch.greatest_speed**2), descent, "L"))
         if isinstance(rise, Recovery) and part.index <= rise.released:
-            pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise", "R"))
+            ascent = " during the ascent"
+            pulls.append((abs(lift - drag * rise.rise_speed**2), ascent, "R"))
         if pulls:
             pull, when, case = max(pulls)
             yield replace(_verdict(part, pull, when), case=case)
@@ -317,13 +325,15 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     component = part.component
     assert isinstance(component, Profiler)
     least = component.minimum_tension
-    bears, needs = say("tension", row.tension), say("tension", least)
-    message = f"{wire.label} bears {bears} at {part.label}, which needs {needs} to travel on it."
+    message = (
+        f"Tension in {wire.label} at {part.label} is {say('load', row.tension)}; "
+        f"the profiler needs {say('load', least)} to travel."
+    )
     yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
     yield from _way_of(part, wire)
     if component.drive_force is None:
-        told = f"The drive force of {part.label} is not known, nor whether it can climb."
-        yield unknown(part, told, "Give its `drive_force` and `speed`.", lacks="drive_force")
+        message = f"The drive force of {part.label} is unknown; it may be too weak to climb."
+        yield unknown(part, message, "Set its `drive_force` and `speed`.", lacks="drive_force")
         return
     flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))
     lean = radians(row.tilt)
@@ -331,10 +341,10 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     drag = axial_drag_of(component) * float(density) / REFERENCE_DENSITY * past**2
     needed = drag + abs(net_buoyancy(component, water.gravity)) * cos(lean)
     message = (
-        f"{part.label} needs {say('tension', needed)} along {wire.label} against drag and "
-        f"its own weight; its drive gives {say('tension', component.drive_force)}."
+        f"{part.label} needs {say('load', needed)} to travel along {wire.label} against drag and "
+        f"its own weight; its drive force is {say('load', component.drive_force)}."
     )
-    remedy = "Straighten the wire with more buoyancy, or let it travel slower."
+    remedy = "Add buoyancy to straighten the wire, or reduce the speed of the profiler."
     yield at_least(part, component.drive_force, needed, message, remedy)
 
 
@@ -348,8 +358,8 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
     for travel in travels:
         if travel.label == part.label and (travel.time or 0.0) > LONGEST_PROFILE:
             took, most = duration(travel.time or 0.0), duration(LONGEST_PROFILE)
-            message = f"A profile of {part.label} takes {took}; its time limit allows {most}."
-            yield verdict_on(part, State.WARN, message, "Shorten the profile, or travel faster.")
+            message = f"A profile of {part.label} takes {took}; the limit is {most}."
+            yield verdict_on(part, State.WARN, message, "Shorten the profile, or increase `speed`.")
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
@@ -357,16 +367,17 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:
-            message = f"{other.label} obstructs {part.label}, {other.at:.0f} m along the wire."
+            message = f"{other.label} blocks {part.label}, {other.at:.0f} m down the wire."
             yield verdict_on(part, State.FAIL, message, "Move it outside the stops.")
     thin, thick = PROFILER_WIRE
     diameter = getattr(wire.component, "diameter", 0.0)
     if not thin <= round(diameter, 5) <= thick:
         message = (
-            f"{wire.label} is {1000.0 * diameter:.1f} mm thick; profilers travel on jacketed wire "
-            f"of {1000.0 * thin:.2f} to {1000.0 * thick:.2f} mm."
+            f"{wire.label} has a diameter of {1000.0 * diameter:.1f} mm; profilers travel on "
+            f"jacketed wire of {1000.0 * thin:.2f} to {1000.0 * thick:.2f} mm."
         )
-        yield verdict_on(part, State.WARN, message, "Ask the manufacturer.", diameter)
+        remedy = "Ask the manufacturer of the profiler."
+        yield verdict_on(part, State.WARN, message, remedy, diameter)
 
 
 def _clamps(leg: Leg) -> list[JudgedPart]:
@@ -383,11 +394,11 @@ def _lift(part: JudgedPart, leg: Leg, density: float) -> float:
 
 def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     grip, breaking = part.component.grip, part.component.breaking_load
-    pulls = f"{part.label} pulls on its clamp with {say('tension', pull)}{when}"
+    load = f"Load on the clamp of {part.label}{when} is {say('load', pull)}"
     if grip is not None:
-        message = f"{pulls}; it grips with {say('tension', grip)}."
+        message = f"{load}; it grips {say('load', grip)}."
         return at_most(part, pull, grip, message, _HOLDS)
     if breaking is not None:
-        message = f"{pulls}; it breaks at {say('tension', breaking)}."
+        message = f"{load}; it breaks at {say('load', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return verdict_on(part, State.NOT_JUDGED, f"{pulls}; its `grip` is not given.", value=pull)
+    return verdict_on(part, State.NOT_JUDGED, f"{load}; its `grip` is unknown.", value=pull)

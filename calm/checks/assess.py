@@ -47,7 +47,7 @@ from calm.checks.assessment import (
 from calm.checks.criterion import limits_used
 from calm.checks.drag_range import drag_coefficient
 from calm.checks.environments import environment
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing, grouped_by
 from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
@@ -111,10 +111,7 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
     for one in listed:
         used = one.utilisation
         known[_of(one)] = max(known.get(_of(one), -1.0), -1.0 if used is None else used)
-    groups: dict[tuple[str, Place | None], list[Finding]] = {}
-    for one in others:
-        groups.setdefault(_of(one), []).append(one)
-    for key, found in groups.items():
+    for key, found in grouped_by(others, _of).items():
         one = governing(found)
         if one.utilisation is not None and one.utilisation > known.get(key, -1.0):
             yield one

@@ -21,6 +21,7 @@ from calm.checks.finding import (
     Verdict,
     conclusion_of,
     governing,
+    grouped_by,
     worst_state,
 )
 from calm.checks.inventory import InventoryItem
@@ -157,10 +158,8 @@ class Assessment:
     def accepted_findings(self) -> list[Finding]:
         """Return the governing accepted finding of each rule and component."""
         every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
-        found: dict[tuple[str, str | None], list[Finding]] = {}
-        for finding in every:
-            if finding.accept is not None:
-                found.setdefault((finding.rule, finding.component), []).append(finding)
+        accepted = (one for one in every if one.accept is not None)
+        found = grouped_by(accepted, lambda one: (one.rule, one.component))
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
@@ -231,16 +230,17 @@ class Acceptance:
     def _estimated(self, finding: Finding) -> Finding:
         """Mark a pass that relies on a lower bound as estimated, and a failure as unknown."""
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
-        own = {} if part is None else part.component.estimates
+        own = {} if part is None or not figures else part.component.estimates
         used = [one for name, one in own.items() if name in figures]
         if part is None or not used or finding.state not in (State.PASS, State.FAIL):
             return finding
         passes = finding.state is State.PASS
-        said = " ".join(f"Its {one}." for one in used)
+        estimates = " ".join(f"Its {one}." for one in used)
         return replace(
             finding,
             state=State.ESTIMATED if passes else State.UNKNOWN,
-            message=f"{finding.message} {said}",
+            message=f"{finding.message} {estimates}",
+            estimates=tuple(used),
             lacks=None if passes else Lack(part.label, used[0].quantity),
         )
 
@@ -249,18 +249,18 @@ class Acceptance:
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:
-            said = "1 of 1 `accept` names" if len(self.accepts) == 1 else ""
-            said = said or f"{len(bare)} of {len(self.accepts)} `accept` name"
-            yield f"{said} nobody (`by`) or no end (`until`): accepted is not passed"
+            count = f"{len(bare)} of {len(self.accepts)} `accept` entries"
+            lack = "lacks" if len(bare) == 1 else "lack"
+            yield f"{count} {lack} a name (`by`) or an end date (`until`)"
         for accept in sorted(self.accepts, key=lambda one: one.line):
             of = f" of {accept.component}" if accept.component is not None else ""
             what = f"line {accept.line}: `accept` for {accept.rule}{of}"
             if accept.date is not None and accept.date > self.day.isoformat():
-                yield f"{what} is dated {accept.date}, in the future: it does not count yet"
+                yield f"{what} is dated {accept.date} and does not apply yet"
             elif not accept.counts_on(self.day):
-                yield f"{what} ended on {accept.until}: it no longer counts"
+                yield f"{what} expired on {accept.until}"
             elif accept not in used:
-                yield f"{what} is not needed: nothing there fails or is unknown"
+                yield f"{what} is not needed, because no such finding fails or is unknown"
 
 
 def _accepted(finding: Finding, accept: Accept) -> Finding:
@@ -274,8 +274,8 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
         return accepted
     if tension > load:
         message = (
-            f"{finding.message} It is accepted up to {say('tension', load)} only, "
-            f"in line {accept.line}."
+            f"{finding.message} The `accept` in line {accept.line} allows at most "
+            f"{say('load', load)}."
         )
         return replace(finding, message=message)
     return accepted if finding.limit is not None else replace(accepted, limit=load, sense="<=")

@@ -10,7 +10,7 @@ from math import inf, pi, sqrt
 
 from calm.assemble import drag_of, mass_in_air
 from calm.checks.assessment import Handling
-from calm.checks.criterion import said
+from calm.checks.criterion import limit_value_text
 from calm.checks.figure_bounds import (
     contradicted_material,
     density_out_of_bounds,
@@ -80,7 +80,7 @@ catalogue floats have at least 0.23 (glass in a wide hard hat).
 DEEPEST_WATER = 11000.0
 """Maximum depth of the ocean, rounded [m]."""
 
-_NO_SOURCE = "does not say where its figures come from (`source`)"
+_NO_SOURCE = "has no `source` for its values"
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def check_catalogue(
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
             if definition.prefer not in known or definition.prefer == identifier:
-                message = f"prefers `{definition.prefer}`, which no catalogue has"
+                message = f"prefers `{definition.prefer}`, which is in no catalogue"
                 findings.append(CatalogueFinding(identifier, message))
             elif other is not None and other.prefer is not None:
                 message = f"prefers `{definition.prefer}`, which itself prefers `{other.prefer}`"
@@ -132,12 +132,12 @@ def _sources(component: Component | Outline) -> Iterator[str]:
     if not component.source:
         yield _NO_SOURCE
     if absent := [name for name in component.sources or () if name not in given]:
-        yield f"names a source of {_listed(absent)}, which it does not give"
+        yield f"has a source of {_listed(absent)} but no value"
     searched = component.searched or ()
     if found := [name for name in searched if name in given]:
-        yield f"lists under `searched` {_listed(found)}, which it gives"
+        yield f"lists {_listed(found)} under `searched`, but has a value"
     if strange := [name for name in searched if name not in known]:
-        yield f"lists under `searched` {_listed(strange)}, which a {component.kind} does not have"
+        yield f"lists {_listed(strange)} under `searched`, which a {component.kind} does not have"
 
 
 def impossible(component: Component) -> Iterator[str]:
@@ -150,47 +150,51 @@ def impossible(component: Component) -> Iterator[str]:
         yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
     net = component.net_buoyancy
     if component.role == "float" and net < 0.0:
-        yield f"is a float (`role: float`) and weighs {-net:.4g} N in water"
+        yield f"has `role: float` but weighs {say('load', -net)} in water"
     if mass is not None and mass * STANDARD_GRAVITY < LIGHTEST_FLOAT * net:
-        yield f"weighs {mass:.4g} kg and lifts {net:.4g} N; no float is so light"
+        yield f"weighs {mass:.4g} kg with a buoyancy of {say('load', net)}; no float is so light"
     if rating is not None and rating > DEEPEST_WATER:
-        yield f"is rated to {rating:.5g} m; no water is deeper than {DEEPEST_WATER:g} m"
+        yield f"has a depth rating of {rating:.5g} m; the deepest sea has {DEEPEST_WATER:g} m"
     if isinstance(component, Cable):
         yield from _of_a_rope(component)
     elif isinstance(component, Chain) and component.density is None:
         steel = (STEEL_DENSITY - CATALOGUE_DENSITY) * STANDARD_GRAVITY
         bars = -component.net_buoyancy / (steel * rope_section(component))
         if not 2.0 <= bars <= 5.0:  # open links weigh three to four bars, long ones two and a half
-            yield f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain 2 to 5"
+            yield (
+                f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain weighs "
+                "as much as 2 to 5"
+            )
     elif (envelope := _envelope(component)) is not None:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
-            yield f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
+            has = f"has a buoyancy of {say('load', net)}"
+            yield f"{has}; water of its size weighs {say('load', lift)}"
         elif isinstance(component, Sphere) and 0.0 < net < LEAST_LIFT * lift:
             yield (
-                f"lifts {say('tension', net)} with a diameter of {component.diameter:g} m; a "
-                f"float of that size lifts {say('tension', LEAST_LIFT * lift)} at least"
+                f"has a buoyancy of {say('load', net)}; a float with its diameter of "
+                f"{component.diameter:g} m has at least {say('load', LEAST_LIFT * lift)}"
             )
         elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
             yield (
-                f"weighs {mass:.4g} kg and has {component.net_buoyancy:.4g} N in water: with that "
-                f"it displaces more than water of its size weighs, {lift:.4g} N"
+                f"has a mass of {mass:.4g} kg and a net buoyancy of {say('load', net)}: together "
+                f"they exceed the weight of water of its size, {say('load', lift)}"
             )
         elif volume is not None and volume > ROUNDING * envelope:
-            yield f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
+            yield f"displaces {volume:.3g} m³, more than its size of {envelope:.3g} m³"
     solid = materials.density_of(component.material)
     if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
         weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
         yield (
-            f"weighs {mass:.4g} kg in air and {-net:.4g} N in water; its material weighs "
-            f"{weight:.4g} N there"
+            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; its material would "
+            f"weigh {say('load', weight)} there"
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
         slowest, fastest = ANCHOR_SPEEDS
         if not slowest <= speed <= fastest:
             way = "slow" if speed < slowest else "fast"
-            yield f"falls at {speed:.2g} m/s by its weight and `kt`; no anchor is so {way}"
+            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {way}"
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 
@@ -224,22 +228,19 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * section
     stiff, net = ROUNDING * STEEL_MODULUS * section, rope.net_buoyancy
     if rope.mass is not None and rope.mass > bar:
-        yield f"has {rope.mass:.4g} kg/m; a solid bar of its diameter has {bar:.4g} kg/m"
+        yield f"weighs {rope.mass:.4g} kg/m; a solid bar of its diameter weighs {bar:.4g} kg/m"
     elif -net > weight:
         yield (
             f"weighs {-net:.4g} N/m in water; a solid bar of its diameter weighs {weight:.4g} N/m"
         )
     if net > lift:
-        yield f"lifts {net:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
-    elif rope.mass is not None and _displaced(rope, rope.mass) > NOMINAL * lift:
+        yield f"has a buoyancy of {net:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
+    elif rope.mass is not None and not (
+        LOOSEST * lift <= _displaced(rope, rope.mass) <= NOMINAL * lift
+    ):
         yield (
-            f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces "
-            f"more than water of its diameter weighs, {lift / ROPE_ROUNDING:.4g} N/m"
-        )
-    elif rope.mass is not None and _displaced(rope, rope.mass) < LOOSEST * lift:
-        yield (
-            f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces a "
-            f"small part of what its diameter does, {lift / ROPE_ROUNDING:.4g} N/m"
+            f"weighs {rope.mass:.4g} kg/m in air and {-net:.4g} N/m in water; the difference "
+            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of water of its diameter"
         )
     else:
         yield from density_out_of_bounds(rope)
@@ -248,11 +249,13 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
         known = [at * rope.breaking_load / strain for at, strain in rope.elongation if strain]
     if known:
         wire = {each.name for each in materials_in(rope.material)} <= {"steel", "stainless steel"}
-        has, least = "has a stiffness of", SOFTEST_WIRE * stiff
+        least, most = SOFTEST_WIRE * stiff, say("stiffness", stiff)
         if max(known) > stiff:
-            yield f"{has} {max(known):.4g} N; a steel bar of its diameter {stiff:.4g} N"
+            has = f"has a stiffness of {say('stiffness', max(known))}"
+            yield f"{has}; a steel bar of its diameter has {most}"
         elif rope.material and wire and known[-1] < least:
-            yield f"{has} {known[-1]:.4g} N; a wire of its diameter {least:.4g} N at least"
+            has = f"has a stiffness of {say('stiffness', known[-1])}"
+            yield f"{has}; a wire of its diameter has at least {say('stiffness', least)}"
 
 
 LEAST_BODY_DRAG = 0.02
@@ -273,8 +276,8 @@ def _drags_out_of_range(component: Component) -> Iterator[str]:
         area = drag_of(component)[0] / (0.5 * REFERENCE_DENSITY)
         if volume > SMALL_BODY and area < (least := LEAST_BODY_DRAG * volume ** (2 / 3)):
             yield (
-                f"has a drag coefficient times area of {area:.2g} m² across it; a streamlined body "
-                f"of its {volume:.2g} m³ has {least:.2g} m²"
+                f"has a normal drag area of {area:.2g} m² (coefficient times area); a streamlined "
+                f"body of its volume of {volume:.2g} m³ has {least:.2g} m²"
             )
     yield from drag_out_of_bounds(component)
 
@@ -282,7 +285,7 @@ def _drags_out_of_range(component: Component) -> Iterator[str]:
 def _late_warning(component: Component | Outline) -> Iterator[str]:
     warned, limit = component.warn_tilt, component.max_tilt
     if warned is not None and limit is not None and warned > limit:
-        yield f"warns at {warned:g}°, beyond its greatest tilt of {limit:g}°"
+        yield f"has a `warn_tilt` of {warned:g}°, above its `max_tilt` of {limit:g}°"
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -294,7 +297,7 @@ def _unknown_parts(assembly: Assembly, known: Collection[str]) -> Iterator[str]:
         yield _NO_SOURCE
     for part in assembly.parts:
         if part.get("use") not in known:
-            yield f"is made of `{part.get('use')}`, which no catalogue has"
+            yield f"has the part `{part.get('use')}`, which is in no catalogue"
 
 
 def _envelope(component: Component) -> float | None:
@@ -315,10 +318,12 @@ def figures(handling: Handling) -> Iterator[Verdict]:
     named: set[tuple[str, str]] = set()
     for key in handling.leg.file.looser:
         if not key.backed:
-            told = f"The line gives {key.name} as {said(key, key.value)}; {key.source} has"
-            message = f"{told} {said(key, key.default)}, and no source is given for the other."
-            yield unknown(None, message, "Give its `source` beside it, or leave it out.")
-    remedy = "Check its figures and their units."
+            message = (
+                f"The line sets {key.name} to {limit_value_text(key, key.value)} without a source; "
+                f"{key.source} has {limit_value_text(key, key.default)}."
+            )
+            yield unknown(None, message, "Add its `source`, or remove the value.")
+    remedy = "Check its values and their units."
     for part in parts_of(handling.leg.file.pieces):
         for state, found in (
             (State.FAIL, impossible),
@@ -339,9 +344,9 @@ def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
     if material and not materials_in(material):
         near = nearest(material, [each.name for each in materials.MATERIALS])
         yield (
-            f"is of `{material}`, a material that is not known: what it may bear, how it stretches "
-            "and what it corrodes cannot be judged by it"
-            + (f"; did you mean `{near}`?" if near else f"; known are {MATERIAL_NAMES}")
+            f"has the unknown material `{material}`, so its strength, stretch and corrosion are "
+            "not checked"
+            + (f"; did you mean `{near}`?" if near else f"; known materials are {MATERIAL_NAMES}")
         )
 
 

@@ -125,12 +125,12 @@ def _figures_of(design: _Solved) -> _Figures:
         greatest = max(row.tension for row in result.components)
         factors = [row.safety_factor for row in result.components]
         least = min((factor for factor in factors if factor == factor), default=None)
-        found["greatest_tension"] = ("greatest tension", "tension", greatest)
-        found["least_safety_factor"] = ("least safety factor", "safety_factor", least)
+        found["greatest_tension"] = ("maximum tension", "tension", greatest)
+        found["least_safety_factor"] = ("minimum safety factor", "safety_factor", least)
     if assessment is not None:
         total = total_of(assessment.inventory)
         found |= {
-            "mass_in_air": ("mass in air, as far as known", "dry_mass", total.dry_mass),
+            "mass_in_air": ("known mass in air", "dry_mass", total.dry_mass),
             "weight_in_water": ("weight in water", "wet_weight", total.wet_weight),
         }
     return found
@@ -143,22 +143,22 @@ def _figures_of_leg(result: LegResult) -> _Figures:
         return {
             "body.depth": ("depth of the body", "depth", body.depth),
             "body.layback": ("layback of the body", "layback", body.layback),
-            "body.tension": ("pull on the body", "tension", body.tension),
-            "tow_point.tension": ("pull on the tow point", "tension", point.tension),
+            "body.tension": ("tension at the body", "tension", body.tension),
+            "tow_point.tension": ("tension at the tow point", "tension", point.tension),
         }
     top, anchor = result.top, result.anchor_load
     found: _Figures = {
         "top.depth": ("depth of the top", "depth", top.depth),
         "top.knockdown": ("knockdown of the top", "knockdown", top.knockdown),
         "top.excursion": ("excursion of the top", "offset", hypot(top.x, top.y)),
-        "top.reserve": ("reserve of buoyancy", "reserve", top.reserve),
-        "anchor.tension": ("pull on the anchor", "tension", anchor.tension),
-        "anchor.vertical": ("pull on the anchor, up", "vertical", anchor.vertical),
-        "anchor.horizontal": ("pull, sideways", "horizontal", anchor.horizontal),
+        "top.reserve": ("reserve buoyancy", "reserve", top.reserve),
+        "anchor.tension": ("anchor load", "tension", anchor.tension),
+        "anchor.vertical": ("anchor load, vertical", "vertical", anchor.vertical),
+        "anchor.horizontal": ("anchor load, horizontal", "horizontal", anchor.horizontal),
         "anchor.required_weight": (
-            "weight that the anchor needs", "required_weight", anchor.required_weight,
+            "anchor weight required", "required_weight", anchor.required_weight,
         ),
-        "anchor.weight": ("weight of the anchor in water", "required_weight", anchor.weight),
+        "anchor.weight": ("anchor weight in water", "required_weight", anchor.weight),
     }  # fmt: skip
     if result.type != "surface":
         del found["top.reserve"]
@@ -176,9 +176,9 @@ def _figures_of_legs(result: Result) -> _Figures:
     for end in (*result.anchors, *result.held):
         what = "anchor" if end in result.anchors else "held end"
         name, of = f"{end.leg}.{what.replace(' ', '_')}", f"of leg {end.leg}"
-        found[f"{name}.tension"] = (f"pull on the {what} {of}", "tension", end.tension)
+        found[f"{name}.tension"] = (f"load on the {what} {of}", "tension", end.tension)
         if end.required_weight is not None:
-            needed = (f"anchor weight needed {of}", "required_weight", end.required_weight)
+            needed = (f"anchor weight required {of}", "required_weight", end.required_weight)
             found[f"{name}.required_weight"] = needed
     return found
 

@@ -16,6 +16,7 @@ from calm.checks.finding import Rule, State, Verdict, at_most, rule, unknown
 from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import Checks, LimitKey, limit_keys
 from calm.files.pieces import clamps_down
+from calm.quantities import say
 from calm.units import DIMENSIONS
 
 AT_SURFACE = 0.1
@@ -200,10 +201,10 @@ def _flattering(file: MooringFile) -> Iterator[LimitKey]:
     """Yield the settings of the solver and of pieces by which a design is judged more kindly."""
     solver, wire = file.solver, file.checks.minimum_tension.wire
     if isinstance(solver.strumming, StrummingFactor) and solver.strumming.factor < FACTOR:
-        factor, source = solver.strumming.factor, "about what is measured on lines that strum"
+        factor, source = solver.strumming.factor, "typical of measurements on strumming lines"
         yield LimitKey("solver.strumming.factor", "number", factor, FACTOR, source)
     if solver.seabed_friction > 0.0:
-        source = "the whole pull of the line is held by the anchor"
+        source = "the anchor alone holds the horizontal load"
         yield LimitKey("solver.seabed_friction", "number", solver.seabed_friction, 0.0, source)
     for piece in file.pieces:
         if piece.component.slack == "allowed":
@@ -222,18 +223,22 @@ def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
 def cited(file: MooringFile, *names: str) -> str:
     """Describe the named limits that differ from their defaults; "" if there are none."""
     return "; ".join(
-        f"The design's own `{key.name}`, {said(key, key.value)} in place of "
-        f"{said(key, key.default)}"
+        f"The design's own `{key.name}`, {limit_value_text(key, key.value)} instead of "
+        f"{limit_value_text(key, key.default)}"
         for key in _keys(file.checks, file.anchor.friction)
         if key.name in names and key.departs
     )
 
 
-def said(key: LimitKey, value: float | None) -> str:
-    """Format a value of a limit with its unit (times in days), or a dash for None."""
+def limit_value_text(key: LimitKey, value: float | None) -> str:
+    """Format a value of a limit with its unit (times in days, shares in percent), or a dash."""
     if value is None:
         return "-"
+    if key.share:
+        return f"{100.0 * value:.10g} %"
     if key.dimension == "time":
         return f"{value / 86_400.0:.10g} d"
+    if key.dimension == "force":
+        return say("load", value)
     unit = DIMENSIONS[key.dimension].unit.replace("deg", "°")
     return f"{value:.10g} {unit}".strip().replace(" °", "°")

@@ -37,8 +37,8 @@ from calm.files.pieces import STAND_IN
 from calm.solve import Status, expect_many
 
 NOT_HANDLED = (
-    "a net of legs: each leg is judged by the rules of a line; launch, recovery and "
-    "waves are not judged"
+    "a net of legs: each leg is checked by the rules for a single line; launch, recovery and "
+    "waves are not checked"
 )
 _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
 

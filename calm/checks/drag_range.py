@@ -37,7 +37,7 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
     others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
     message = (
         f"The Reynolds number of {row.label}{others} is {power_text(row.reynolds)}; the drag "
-        f"coefficient holds up to {power_text(limit)}."
+        f"coefficient is valid up to {power_text(limit)}."
     )
     effect, worse = _effect(result, {one.index for one, _ in rows})
     remedy = "Check its drag coefficient."
@@ -59,13 +59,14 @@ def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
             Design(replace(file, solver=solver, pieces=pieces), result.leg.for_surface).solve().leg
         )
     except NoEquilibrium as failure:
-        return f" With the curve of a smooth shape: {failure.status}.", True
+        return f" With the drag curve of a smooth shape: {failure.status}.", True
     name, before, after = "offset", _offset(result), _offset(smooth)
     down, then = result.top.knockdown, smooth.top.knockdown
     if result.type != "surface" and down is not None and then is not None:
         name, before, after = "knockdown", down, then
-    told = f"{say(name, after)} instead of {say(name, before)}"
-    return f" With the curve of a smooth shape the {name} is {told}.", after > NOTICED * before
+    changed = f"{say(name, after)} instead of {say(name, before)}"
+    effect = f" With the drag curve of a smooth shape, the {name} is {changed}."
+    return effect, after > NOTICED * before
 
 
 def _smooth(piece: Piece) -> Piece:

@@ -73,11 +73,11 @@ def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
             return
     at = int(np.argmin(np.where(weaker, after / np.maximum(before, _LEAST), np.inf)))
     message = (
-        f"The current of {name} is {say('speed', float(after[at]))} at "
-        f"{say('depth', float(levels[at]))}, that of the ordinary environment "
-        f"{say('speed', float(before[at]))}."
+        f"At {say('depth', float(levels[at]))}, the current of {name} is "
+        f"{say('speed', float(after[at]))}, against {say('speed', float(before[at]))} in the "
+        "first environment."
     )
-    remedy = f"Check the levels of {name}: a decimal point, or rows exchanged?"
+    remedy = f"Check the levels of {name} for a misplaced decimal point or exchanged rows."
     yield other, verdict_on(None, State.WARN, message, remedy)
 
 
@@ -93,6 +93,6 @@ def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
     area = getattr(top.component, "wind_area", None)
     calm = all(leg.file.environment.wind is None for leg in legs)
     if area and calm and reaches_the_surface(legs[0]):
-        message = f"No environment has a `wind`: its pull on {top.label} is not judged."
-        remedy = "Give the `wind` of the site, and of its storm."
+        message = f"No environment has a `wind`, so the wind load on {top.label} is not checked."
+        remedy = "Set the `wind` of each environment, such as that of a storm."
         yield legs[0], verdict_on(top, State.WARN, message, remedy)

@@ -25,8 +25,8 @@ GREATEST_STRENGTH = 4e9
 ROPE_EFFICIENCY = 0.6
 """Maximum breaking stress of a rope over its nominal section, as a share of its yarn strength.
 
-About 0.7 of the section is fibre, and a rope keeps 0.85 of the yarn strength (McKenna, Hearle and
-O'Hear 2004, Handbook of Fibre Rope Technology). Ropes in the catalogue have 0.12 to 0.44."""
+A default of CALM: only part of the section is fibre, and a rope has less than the strength of its
+yarns. Ropes in the catalogue have 0.12 to 0.44."""
 
 WEAKEST_ROPE = 0.05
 """Minimum breaking stress of a rope, as a share of its yarn strength."""
@@ -45,7 +45,8 @@ STRONGEST_CHAIN = 1300e6
 GRADE_STRESS = 10e6
 """Nominal breaking stress in the bars of a chain per unit of its grade [Pa].
 
-Grade 30 has 300 MPa, grade 80 has 800 MPa (EN 818, ISO 1834)."""
+The grade is a tenth of the nominal stress at the minimum breaking force [N/mm²]: NACM, Welded Steel
+Chain Specifications (2010), annex A, for grades such as 30; EN 818-1 for grades such as 8."""
 
 GRADE_ROUNDING = 0.85, 1.25
 """Bounds of the breaking stress over the nominal stress of the grade.
@@ -70,7 +71,7 @@ class Bounds:
 _CRISIS = "smooth flow beyond the drag crisis: sphere 0.06 (Katz, Automotive Aerodynamics, figure "
 _CRISIS += "6.19), cylinder 0.2 (Roshko 1961, Journal of Fluid Mechanics 10, 345-356)"
 _STRUMMING = "1.2 of a cylinder, 2.5 times that as it vibrates (Griffin 1985, ASME OMAE)"
-_CHAIN = "2.4 to 2.6 on the diameter (DNV-OS-E301, table 2-1), half and twice that"
+_CHAIN = "2.4 to 2.6 on the diameter (OrcaFlex manual, Chain), about half and twice that"
 
 DRAG_BOUNDS = {
     ("sphere", "cx"): Bounds(0.06, 2.0, _CRISIS),
@@ -92,9 +93,9 @@ def drag_out_of_bounds(component: Component) -> Iterator[str]:
             continue
         if value == 0.0:
             if isinstance(component, Flexible) and key == "cn":
-                yield "has no drag across it (`cn: 0`)"
+                yield "has no normal drag (`cn: 0`)"
         elif not bounds.least <= value <= bounds.most:
-            kinds = f"a {kind} has {bounds.least:g} at least, {bounds.most:g} at most"
+            kinds = f"a {kind} has at least {bounds.least:g} and at most {bounds.most:g}"
             yield f"has `{key}: {value:g}`; {kinds}"
 
 
@@ -111,8 +112,8 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
     net = f"{abs(rope.net_buoyancy):.4g} N/m in water"
     if heavier > 0.0 and excess < LEAST_SHARE * heavier:
         least = LEAST_SHARE * heavier * section * STANDARD_GRAVITY
-        what = f"weighs {net}" if excess > 0.0 else f"floats with {net}"
-        yield f"{what}; a rope of {names} of its diameter weighs {least:.4g} N/m at least"
+        what = f"weighs {net}" if excess > 0.0 else f"is buoyant with {net}"
+        yield f"{what}; a rope of {names} of its diameter weighs at least {least:.4g} N/m"
 
 
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
@@ -160,11 +161,16 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
     load = max(component.breaking_load or 0.0, component.working_load or 0.0)
     breaking = inf if component.breaking_load is None else component.breaking_load
     if load > most:
-        told, bears = say("tension", load), say("tension", most)
-        yield f"bears {told}; no {component.kind} of its {size} bears more than {bears}"
+        key = "breaking" if load == component.breaking_load else "working"
+        yield (
+            f"has a {key} load of {say('load', load)}; a {component.kind} of its {size} has at "
+            f"most {say('load', most)}"
+        )
     elif breaking < least:
-        told, bears = say("tension", breaking), say("tension", least)
-        yield f"breaks at {told}; a {component.kind} of its {size} bears {bears} at least"
+        yield (
+            f"has a breaking load of {say('load', breaking)}; a {component.kind} of its {size} has "
+            f"at least {say('load', least)}"
+        )
 
 
 def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
@@ -178,8 +184,8 @@ def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
     weight = (1.0 - CATALOGUE_DENSITY / solid) * component.mass * STANDARD_GRAVITY
     if -component.net_buoyancy > 1.08 * weight:
         yield (
-            f"weighs {say('tension', -component.net_buoyancy)} in water for {component.mass:.4g} "
-            f"kg; {component.material} of that mass weighs {say('tension', weight)} there"
+            f"weighs {say('load', -component.net_buoyancy)} in water; {component.mass:.4g} kg of "
+            f"{component.material} weigh {say('load', weight)} there"
         )
 
 
@@ -201,8 +207,9 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
     said = "role" in component.model_fields_set  # without one, it may be a float
     doubted = sinks and said and component.mass is None and net > LIFTS
     if doubted and not _BUOYANT.search(words_of(component)):
-        floating = f"floats with {say('tension', net)}, with `role: {role}`"
-        yield f"{floating}; most weigh something in water"
+        yield (
+            f"has `role: {role}` and a buoyancy of {say('load', net)}; most such components sink"
+        )
     area, volume = component.wind_area, component.displaced_volume
     if volume is None:
         volume = net / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
@@ -210,7 +217,7 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
         least, most = (share * volume ** (2 / 3) for share in WIND_AREA)
         if not least <= area <= most:
             yield (
-                f"has a `wind_area` of {area:.3g} m²; one that displaces {volume:.2g} m³ has "
+                f"has a `wind_area` of {area:.3g} m²; a float that displaces {volume:.2g} m³ has "
                 f"{least:.2g} to {most:.2g} m²"
             )
 
@@ -224,7 +231,7 @@ def contradicted_material(component: Component | Outline) -> Iterator[str]:
     one, other = next(iter(named.values())), next(iter(made_of.values()))
     if _alike(one, other):
         return
-    yield f"is called `{component.name}`, but its `material` is {component.material}"
+    yield f"has the name `{component.name}`, but its `material` is {component.material}"
 
 
 def _alike(one: Material, other: Material) -> bool:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import partial
+from functools import cached_property, partial
 from math import ceil, inf, isfinite
-from typing import Any, Literal
+from operator import attrgetter
+from typing import Any, Literal, TypeVar
 
 from calm.files import Accept, LinePart, Place
 from calm.files.definition import EstimatedFigure
 from calm.files.rule_texts import RULES as RULE_TEXTS
+
+_Item = TypeVar("_Item")
+_Key = TypeVar("_Key", bound=Hashable)
 
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
@@ -19,8 +23,16 @@ AS_GIVEN = "as given"
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
 
+DEFAULT_ENVIRONMENT = "default environment"
+"""The same environment in print."""
+
 ON_THE_WAY = "launch, recovery, breaks"
 """Label used instead of an environment for rules that are evaluated once per mooring."""
+
+
+def environment_text(name: str) -> str:
+    """Describe an environment in print, such as `environment storm`."""
+    return DEFAULT_ENVIRONMENT if name == OWN else f"environment {name}"
 
 
 class State(StrEnum):
@@ -108,7 +120,7 @@ class MissingFigure:
 
     Attributes
     ----------
-    component_id : as in `use`
+    component_id, kind : as in `use`; kind of the component
     quantity : key of the component
     needed_by : names of the rules that require the value
     pieces, places : labels and places of the affected pieces and clamps
@@ -116,6 +128,7 @@ class MissingFigure:
     """
 
     component_id: str
+    kind: str
     quantity: str
     needed_by: tuple[str, ...]
     pieces: tuple[str, ...]
@@ -335,7 +348,7 @@ class Finding(Verdict):
     `source` is the source of the rule and its limit. `situation` names the change to the design, or
     is `AS_GIVEN`. `accept` is the entry that accepts the finding, `unaccepted` its state without
     that entry; both are None otherwise. `probability` is the probability of exceeding the limit, if
-    it was computed.
+    it was computed. `estimates` are the estimates that the finding relies on.
     """
 
     mooring: str
@@ -345,8 +358,9 @@ class Finding(Verdict):
     accept: Accept | None = None
     unaccepted: State | None = None
     probability: float | None = None
+    estimates: tuple[EstimatedFigure, ...] = ()
 
-    @property
+    @cached_property
     def utilisation(self) -> float | None:
         """Demand over capacity; None if the rule has no such ratio."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None
@@ -383,12 +397,17 @@ class Finding(Verdict):
         return () if self.place is None else (self.place,)
 
 
+def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:
+    """Group items by a key, in the order in which the keys first occur."""
+    groups: dict[_Key, list[_Item]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups
+
+
 def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
-    """The findings of each rule, in the order in which these come."""
-    found: dict[str, list[Finding]] = {}
-    for finding in findings:
-        found.setdefault(finding.rule, []).append(finding)
-    return found
+    """Group findings by rule, in the order in which the rules first occur."""
+    return grouped_by(findings, attrgetter("rule"))
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
@@ -408,6 +427,21 @@ def governing(findings: Iterable[Finding]) -> Finding:
     if not used:
         return min(found, key=lambda one: one.rank)
     return min(used, key=lambda pair: (-pair[0], pair[1].rank))[1]
+
+
+def told_of_rule(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Findings that represent a rule: the governing one, and the worst if its state is graver.
+
+    Each has its own value, limit and component. The governing finding stands for other estimates
+    and accepted findings unless it passes.
+    """
+    found = [*findings]
+    lead, worst = governing(found), worst_of(found)
+    if lead.utilisation is None:
+        return (worst,)
+    passes, minor = lead.state is State.PASS, worst.state.severity < State.WARN.severity
+    graver = worst.state.severity > lead.state.severity and (passes or not minor)
+    return (lead, worst) if graver else (lead,)
 
 
 def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:

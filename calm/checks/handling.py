@@ -10,11 +10,17 @@ from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
-from calm.checks.strength import lesser_load, passes_load_on, wanted_load
+from calm.checks.strength import (
+    lesser_load,
+    load_text,
+    no_load_known,
+    passes_load_on,
+    wanted_load,
+)
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES, duration, say
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Touchdown speed above which an anchor may bury itself or damage instruments [m/s]."""
@@ -40,18 +46,22 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
-            message = "Without a release the line is hauled in; what is below a break stays there."
+            message = (
+                "A line without a release is hauled in: pieces below a break stay on the seabed."
+            )
             yield verdict_on(None, State.NOT_JUDGED, message)
             return
         yield unknown(
             None,
-            "There is no release in the line: nothing can be brought up after a break.",
-            "Give the release `role: release`.",
+            "The line has no release, so nothing surfaces after a break.",
+            "Mark the release with `role: release`.",
         )
         return
     if not handling.backup:
         yield unknown(
-            None, "The load on the release is not known.", "First give the line an equilibrium."
+            None,
+            "The load on the release is unknown, because the line has no equilibrium.",
+            "Change the line until it has an equilibrium.",
         )
         return
     breaks = [one for one in handling.backup if one.judged]
@@ -59,13 +69,14 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     worst = min(judged, key=lambda one: one.margin - one.required, default=handling.backup[-1])
     if isinstance(worst, Loss):
         part: LinePart = worst
-        after = f"After the loss of {worst.label}"
+        after, where = f"After the loss of {worst.label}", "above the release"
     else:
         part = handling.leg.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
+        where = "between that break and the release"
     if not breaks and len(handling.losses) == 1:
-        message = f"{handling.losses[0].label} alone brings up the line: it has no back-up."
-        remedy = "Divide the buoyancy among several floats if it has to come up without one."
+        message = f"{handling.losses[0].label} provides all the buoyancy, so there is no back-up."
+        remedy = "Use several floats if the line must surface after the loss of one."
         yield verdict_on(handling.losses[0], State.NOT_JUDGED, message, remedy)
         return
     hauled_in = reaches_the_surface(handling.leg) and len(handling.losses) == 1
@@ -73,9 +84,9 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         part,
         worst.margin,
         worst.required,
-        f"{after} the part that holds the release has a buoyancy of "
-        f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
-        f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
+        f"{after}, the section with the release has a net buoyancy of "
+        f"{say('load', worst.margin)}; it needs {say('load', worst.required)} to surface.",
+        f"Add {say('load', worst.required - worst.margin)} of buoyancy {where}.",
         State.WARN if hauled_in else State.FAIL,
         source=cited(handling.leg.file, "backup_margin", "minimum_rise_speed"),
     )
@@ -90,18 +101,17 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """
     launch, file = handling.launch, handling.leg.file
     if isinstance(launch, NoEquilibrium):
-        yield _unsolved("fall", launch)
+        yield from _unsolved(handling, "descent", launch)
         return
     times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
-    most = "" if launch.anchor_drag_known else "at most "
+    most = "" if launch.anchor_drag_known else " at most"
     for piece, tension in zip(file.pieces, launch.greatest_tension.tolist(), strict=False):
         limit = lesser_load(piece.component, times, over)
         working = counted_working_load(piece.component)
-        bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
+        carried = load_text(piece, tension, " during the descent", most)
         if limit is None:
             if passes_load_on(file, piece.index):
-                message = f"{bears}; neither its working nor its breaking load is known."
-                remedy = "Give its `working_load` or `breaking_load`."
+                message, remedy = no_load_known(carried)
                 lacks = wanted_load(piece.component)
                 yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
@@ -111,14 +121,14 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         else:
             load = f"breaking load over {over:g}"
             source = cited(file, "launch_safety_factor")
-        message = f"{bears}; its {load} is {say('tension', limit)}."
+        message = f"{carried}; its {load} is {say('load', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " The drag of the anchor is unknown and was neglected."
-            remedy, anchor = "Give the anchor's `kt`.", file.pieces[-1]
+            remedy, anchor = "Set the anchor's `kt`.", file.pieces[-1]
             yield unknown(piece, message, remedy, tension, lacks="kt", of=anchor)
             continue
         remedy = (
-            "Use a stronger component, or slow the anchor with a parachute or lower it on a wire."
+            "Use a stronger component, slow the anchor with a parachute, or lower it on a wire."
         )
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
@@ -128,71 +138,70 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Judge the speed of the anchor as it meets the seabed."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
-        yield _unsolved("fall", launch)
+        yield from _unsolved(handling, "descent", launch)
         return
     anchor, speed = handling.leg.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
-        f"The anchor lands at {say('speed', speed)} ({slow} to {fast} with the drag of line and "
-        f"anchor doubled and halved); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be exceeded"
+        f"Touchdown speed of the anchor is {say('speed', speed)} ({slow} to {fast} with twice and "
+        f"half the drag); the limit is {GREATEST_TOUCHDOWN_SPEED:g} m/s."
     )
-    remedy = "Lower it, or add drag: a parachute, a wider anchor."
+    remedy = "Lower the anchor, or add drag with a parachute or a wider anchor."
     if launch.anchor_drag_known:
         limit = GREATEST_TOUCHDOWN_SPEED
-        yield at_most(anchor, speed, limit, f"{message}.", remedy, State.WARN)
+        yield at_most(anchor, speed, limit, message, remedy, State.WARN)
         return
     message += (
-        ". Its own drag is not known and is taken as that of a cube of its volume; "
-        f"without drag the speed would be {say('speed', launch.greatest_speed)}."
+        " The drag of the anchor is unknown and assumed to be that of a cube of its volume; "
+        f"without it, the speed is {say('speed', launch.greatest_speed)}."
     )
     if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
     else:
-        yield unknown(anchor, message, "Give the anchor's `kt`.", speed, lacks="kt")
+        yield unknown(anchor, message, "Set the anchor's `kt`.", speed, lacks="kt")
 
 
 @rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor, unless it is hauled in."""
     if is_hauled_in(handling):
-        message = "Without a release the line is hauled in with its anchor: nothing rises."
+        message = "A line without a release is hauled in with its anchor, so it has no ascent."
         yield verdict_on(None, State.NOT_JUDGED, message)
         return
     rise, limit = handling.recovery, handling.leg.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
-        yield _unsolved("rise", rise)
+        yield from _unsolved(handling, "ascent", rise)
         return
     lowest = handling.leg.file.pieces[rise.released]
     if rise.time_to_surface == 0.0:
         yield _hauled_in(lowest, float(rise.arrival[rise.released]), rise)
         return
-    if rise.rise_speed > 0.0:
-        message = f"Released below {lowest.label}, it rises at {say('speed', rise.rise_speed)}"
-    else:
-        message = f"Released below {lowest.label}, it does not rise"
-    message += f"; {say('speed', limit)} is required."
+    speed, rises = rise.rise_speed, "does not rise"
+    if speed > 0.0:
+        rises = f"rises at {say('speed', speed)}"
+    message = f"Released below {lowest.label}, the line {rises}; "
+    still = ""
     if rise.in_still_water:
-        message += " This is the speed in still water; no steady rise was found in the current."
+        still = " This is the speed in still water, as no steady ascent was found in the current."
     remedy = "Add buoyancy above the release, or remove weight."
     source = cited(handling.leg.file, "minimum_rise_speed")
-    verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
-    if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
-        verdict = at_least(
-            lowest, rise.rise_speed, USUAL_RISE_SPEED, message, remedy, State.WARN, source
-        )
-    elif rise.rise_speed > FAST_RISE_SPEED:
-        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats may breach and the line may loop."
+    if limit <= speed < USUAL_RISE_SPEED:
+        message += f"below {say('speed', USUAL_RISE_SPEED)} it surfaces late and drifts far.{still}"
+        yield at_least(lowest, speed, USUAL_RISE_SPEED, message, remedy, State.WARN, source)
+    elif speed > max(limit, FAST_RISE_SPEED):
+        message += f"above {FAST_RISE_SPEED:g} m/s floats may breach and the line may loop.{still}"
         remedy = "Remove buoyancy, or keep the ship clear."
-        verdict = at_most(
-            lowest, rise.rise_speed, FAST_RISE_SPEED, message, remedy, State.WARN, source
-        )
-    yield verdict
+        yield at_most(lowest, speed, FAST_RISE_SPEED, message, remedy, State.WARN, source)
+    else:
+        message += f"{say('speed', limit)} is required.{still}"
+        yield at_least(lowest, speed, limit, message, remedy, source=source)
 
 
 @rule("tangling", once=True)
 def tangling(handling: Handling) -> Iterator[Verdict]:
-    """Return whether the line doubles back on itself as it falls or rises."""
-    fall, rise = "In the fall the parts above overtake", "In the rise the parts below overtake"
+    """Warn if the line doubles back on itself during descent or ascent."""
+    fall = "During the descent, pieces above overtake"
+    rise = "During the ascent, pieces below overtake"
     lower = "Pay the line out under tension, or lower the anchor."
     motions: list[tuple[Launch | Recovery | NoEquilibrium, str, str, str]]
     motions = [(handling.launch, fall, lower, "L")]
@@ -212,13 +221,20 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     """Report whether the lower end of a line with a surface float surfaces without hauling."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
-        message = f"Once free, {lowest.label} hangs from the float, down to {depth}: haul it in."
+        message = (
+            f"After release, the lower end of the line ({lowest.label}) hangs at a depth of "
+            f"{depth} and is hauled in."
+        )
         return verdict_on(lowest, State.PASS, message)
-    minutes = arrival / 60.0
-    message = f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
+    end = f"the lower end of the line ({lowest.label})"
+    message = f"After release, {end} surfaces in {duration(arrival)}."
     return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)
 
 
-def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
-    message = f"The {motion} of the line is not known ({failure.status}): {failure.message}"
-    return unknown(None, message, failure.advice)
+def _unsolved(handling: Handling, motion: str, failure: NoEquilibrium) -> Iterator[Verdict]:
+    """Report a motion without a solution; a line without equilibrium is reported by `equilibrium`
+    alone.
+    """
+    if handling.result is not None:
+        message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"
+        yield unknown(None, message, failure.advice)

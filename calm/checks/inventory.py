@@ -25,6 +25,7 @@ class InventoryItem:
     dry_mass : mass in air [kg]; None if unknown
     wet_weight : weight in water of 1025 kg/m³, with the gravity of the file [N], + down; None if
         the length is unknown
+    items : number of equal items it consists of, such as the releases of a pair
     lift_mass : mass of a piece with its clamps [kg]; None for a clamp, or if a mass is unknown
     """
 
@@ -40,6 +41,7 @@ class InventoryItem:
     wet_weight: float | None
     lift_mass: float | None
     at: float | None = None
+    items: int = 1
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
             wet_weight=_in_all(part.component, -net_buoyancy(part.component, gravity), along),
             lift_mass=None,
             at=getattr(part, "at", None),
+            items=part.component.items or 1,
         )
         for part, along in parts
     ]

@@ -33,7 +33,7 @@ def joints(handling: Handling) -> Iterator[Verdict]:
         named.append(f"{len(bare) - MOST_NAMED} more")
     what = "This joint has" if len(bare) == 1 else f"{len(bare)} joints have"
     message = f"{what} no shackle, link or swivel: {'; '.join(named)}."
-    remedy = "Add the hardware, or give the `termination` of the wire."
+    remedy = "Add the hardware, or set the `termination` of the wire."
     yield verdict_on(bare[0][0], State.WARN, message, remedy)
 
 

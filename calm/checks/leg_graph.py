@@ -182,10 +182,10 @@ class LegGraph:
         ]
         for piece in held:
             message = f"No release lies between {piece.label} and an anchor that holds it."
-            yield unknown(piece, message, "Give the release `role: release`.")
+            yield unknown(piece, message, "Mark the release with `role: release`.")
         if not held and self.opened:
             number, at = min(self.opened)
             one = self.chains[number][at]
             assert isinstance(one, int)
-            told = "The releases free every buoyant part from its anchors."
-            yield verdict_on(self.pieces[one], State.PASS, told)
+            message = "The releases free every buoyant part from its anchors."
+            yield verdict_on(self.pieces[one], State.PASS, message)

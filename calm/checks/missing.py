@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from calm.checks.assessment import MISSING
-from calm.checks.finding import Finding, MissingFigure, State, Verdict, rule
+from calm.checks.finding import Finding, MissingFigure, State, Verdict, grouped_by, rule
 from calm.files import Clamp, Piece
+from calm.files.rule_texts import RULES
 
 MOST_NAMED = 3
 """Maximum number of other pieces in a message; the finding has the full list."""
@@ -39,10 +40,11 @@ def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Ve
         others = [label for label in figure.pieces if label != worst.component]
         if len(others) > MOST_NAMED:
             others = [*others[:MOST_NAMED], f"{len(others) - MOST_NAMED} more"]
-        also = f", also for {_listed(others)}" if others else ""
-        message = f"{worst.message} Needed by {_listed(figure.needed_by)}{also}."
+        also = f" Also affected: {_listed(others)}." if others else ""
+        checks = [RULES[name].title.lower() for name in figure.needed_by]
+        message = f"{worst.message} Needed for {_listed(checks)}.{also}"
         keys = " or ".join(f"`{one}`" for one in alternatives(figure.quantity))
-        remedy = f"Give the {keys} of {figure.component_id}."
+        remedy = f"Set the {keys} of {figure.component_id}."
         yield Verdict(
             worst.component, None, None, None, State.UNKNOWN, message, remedy, worst.place,
             missing=figure,
@@ -64,19 +66,22 @@ def gathered(
     ----------
     parts : pieces and clamps of the line by their labels
     """
-    found: dict[tuple[str, str], list[Finding]] = {}
-    for one in lacking:
-        assert one.lacks is not None
-        found.setdefault((parts[one.lacks.label].use, one.lacks.quantity), []).append(one)
+
+    def value(finding: Finding) -> tuple[str, str]:
+        assert finding.lacks is not None
+        return parts[finding.lacks.label].use, finding.lacks.quantity
+
+    found = grouped_by(lacking, value)
     for (use, quantity), group in found.items():
-        component = parts[group[0].lacks.label].component if group[0].lacks else None
+        component = next(parts[one.lacks.label].component for one in group if one.lacks)
         figure = MissingFigure(
             use,
+            component.kind,
             quantity,
             tuple(dict.fromkeys(one.rule for one in group)),
             tuple(dict.fromkeys(one.component for one in group if one.component)),
             tuple(dict.fromkeys(one.place for one in group if one.place)),
-            None if component is None else component.estimates.get(quantity),
+            component.estimates.get(quantity),
         )
         found[use, quantity] = [replace(one, missing=figure) for one in group]
     return found

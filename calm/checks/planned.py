@@ -51,7 +51,7 @@ def _judge(handling: Handling) -> Iterator[Verdict]:
     parts, found = _judged(handling.result)
     if not parts:
         message = "No piece or clamp has a planned depth."
-        remedy = "Give `planned_depth`, or name the depth in the label, as `meter 200 m`."
+        remedy = "Set a `planned_depth`, or put the depth in the label, such as `meter 200 m`."
         yield verdict_on(None, State.NOT_JUDGED, message, remedy)
     elif _off_alike(handling.result, parts, found):
         yield _all_alike(handling.result, parts, min(found, key=lambda one: one.rank))
@@ -116,10 +116,10 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
     limit = max(allowed, checks.planned_depth_limit * part.planned)
     beyond, most = (State.FAIL, limit) if abs(off) > limit else (State.WARN, allowed)
     where = say("depth", part.planned + off)
-    message = f"{part.row.label} hangs at {where} in still water, planned for "
-    message += say("depth", part.planned)
+    planned = say("depth", part.planned)
+    message = f"{part.row.label} is at {where} in still water; its planned depth is {planned}"
     if abs(off) > allowed:
-        message += f": {_amount(off, off)}"
+        message += f" ({_amount(off, off)})"
     source = cited(file, "planned_depth_warning", "planned_depth_limit")
     return at_most(part.row, abs(off), most, f"{message}.", remedy, beyond, source)
 
@@ -127,11 +127,11 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
 def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
     """Combine the verdicts on all parts into one, with the values of the most severe."""
     amounts = sorted((part.off for part in parts), key=abs)
-    message = f"All {len(parts)} instruments with a planned depth hang "
+    message = f"All {len(parts)} parts with a planned depth are "
     message += f"{_amount(amounts[0], amounts[-1])} in still water."
     remedy = f"Check `depth`, and the lengths below {parts[-1].row.label}."
     if {_hangs_from_above(result, part) for part in parts} == {True}:
-        remedy = f"Check the lengths above {parts[0].row.label}, and `top_depth` if it is given."
+        remedy = f"Check the lengths above {parts[0].row.label}, and `top_depth` if it is set."
     return verdict_on(
         None, worst.state, message, remedy, worst.value, worst.limit, worst.sense, worst.source
     )
@@ -156,7 +156,7 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
         if abs(part.off - parts[number].off) > allowed:
             first, second = (part, last) if above else (last, part)
             clamps = any(isinstance(one.row, ClampRow) for one in (first, second))
-            what = "lengths and clamp places" if clamps else "lengths"
+            what = "lengths and clamp positions" if clamps else "lengths"
             return f"Check the {what} between {first.row.label} and {second.row.label}."
         last = part
     if above:

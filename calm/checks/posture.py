@@ -81,17 +81,17 @@ THE_DESIGNS = "The design's own `maximum_tilt`"
 def _tilt_words(
     part: JudgedPart, limit: float | None, leaning: float, _: LegResult
 ) -> tuple[str, str]:
-    leans = f"{part.label} leans {say('tilt', leaning)}"
+    tilt = f"Tilt of {part.label} is {say('tilt', leaning)}"
     if limit is None:
-        return f"{leans}; its limit is not known.", "Give its `max_tilt`, 90 deg if it has none."
-    return f"{leans}; {say('tilt', limit)} is its limit.", _STRAIGHTER
+        return f"{tilt}; its limit is unknown.", "Set its `max_tilt`, or `90 deg` if it has none."
+    return f"{tilt}; the limit is {say('tilt', limit)}.", _STRAIGHTER
 
 
 def _doubtful_words(
     part: JudgedPart, warned: float, leaning: float, _: LegResult
 ) -> tuple[str, str]:
-    leans = f"{part.label} leans {say('tilt', leaning)}"
-    return f"{leans}; above {say('tilt', warned)} its data are doubtful.", _STRAIGHTER
+    tilt = f"Tilt of {part.label} is {say('tilt', leaning)}"
+    return f"{tilt}; above {say('tilt', warned)} its data are doubtful.", _STRAIGHTER
 
 
 @criteria("depth-rating")
@@ -117,13 +117,13 @@ def depth_rating(leg: Leg) -> Iterator[Criterion]:
 def _rating_words(
     part: JudgedPart, limit: float | None, depth: float, _: LegResult
 ) -> tuple[str, str]:
-    stands, rating = f"{part.label} is {say('depth', depth)} deep", part.component.depth_rating
+    deep, rating = f"Depth of {part.label} is {say('depth', depth)}", part.component.depth_rating
     if limit is None or rating is None:
-        return f"{stands}; its depth rating is not known.", "Give its `depth_rating`."
+        return f"{deep}; its depth rating is unknown.", "Set its `depth_rating`."
     return (
-        f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
-        f"{say('depth_rating', rating - limit)}.",
-        "Use a component with a greater depth rating, or add buoyancy against the knockdown.",
+        f"{deep}; its depth rating of {say('depth_rating', rating)} less a margin of "
+        f"{say('depth_rating', rating - limit)} allows {say('depth_rating', limit)}.",
+        "Use a component with a greater depth rating, or add buoyancy to reduce the knockdown.",
     )
 
 
@@ -152,20 +152,21 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
             )
             yield unknown(
                 piece,
-                f"{piece.label} is {component.material} of unknown stiffness, taken as "
-                f"inextensible: it {could}; depths above it are not known.",
-                "Give its `stiffness`, or its `elongation`.",
+                f"{piece.label} is {component.material} of unknown stiffness and assumed "
+                f"inextensible. It {could}, so depths above it are unknown.",
+                "Set its `stiffness` or `elongation`.",
                 by,
                 lacks="stiffness",
             )
         breaking = component.breaking_load
         bears = component.working_load or (breaking and _MEASURED * breaking)
         if piece.measured_load and bears and piece.measured_load > bears:
+            what = "its working load" if component.working_load else "a fifth of its breaking load"
             message = (
-                f"{piece.label} is cut to its length under {say('force', piece.measured_load)}; "
-                f"in use it bears {say('force', bears)}."
+                f"{piece.label} is cut to length under {say('load', piece.measured_load)}, "
+                f"more than {what} ({say('load', bears)})."
             )
-            remedy = "Check the `load` of its `length_at`: ropes are measured under a small load."
+            remedy = "Check the load of its `length_at`: ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -184,8 +185,8 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
     def words(depth: float, _: LegResult) -> tuple[str, str]:
         return (
-            f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} is "
-            "needed to stay clear of waves, hulls and nets.",
+            f"Depth of {label} is {say('depth', depth)}; at least {say('depth', limit)} is needed "
+            "to stay clear of waves, hulls and nets.",
             "Shorten the line, or add a surface marker.",
         )
 
@@ -194,11 +195,14 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
 
 _SHELF = 200.0
-"""Water depth up to which fish bite is ignored [m]; fish bite occurs in the deep sea."""
+"""Water depth up to which fish bite is ignored [m]; a default of CALM.
+
+Severe fish bite is known from moorings far from the continental shores (Berteaux and others 1987).
+"""
 
 
 _POLAR = 60.0
-"""Latitude above which fish bite is ignored [°]; fish bite occurs in warm seas."""
+"""Latitude from which fish bite is ignored [°]; a default of CALM, without a published limit."""
 
 
 @rule("fish-bite")
@@ -212,10 +216,10 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
         if is_synthetic(piece.component):
             highest = min(row.depth_top, row.depth_bottom)
             message = (
-                f"{piece.label} reaches up to {say('depth', highest)}; fish bite through rope "
-                f"down to {say('depth', limit)}."
+                f"{piece.label} begins at {say('depth', highest)}; rope above "
+                f"{say('depth', limit)} is exposed to fish bite."
             )
-            remedy = "Use jacketed wire there, or set `fishbite_depth`."
+            remedy = "Use jacketed wire above that depth, or set the `fishbite_depth` of the site."
             source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 
@@ -227,12 +231,12 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
     def words(sunk: float, allowed: str) -> tuple[str, str]:
         if isnan(sunk):
             return (
-                "The line is slack in still water, so there is no reference shape for a knockdown.",
-                "Judge a slack line by its excursion: `maximum_excursion`.",
+                "The line is slack in still water, so its knockdown has no reference.",
+                "Limit its excursion instead: `maximum_excursion`.",
             )
         return (
-            f"The top is knocked down by {say('knockdown', sunk)}; {allowed} is allowed.",
-            "Add buoyancy at the top, or reduce drag: `calm run --explain` shows where.",
+            f"Knockdown of the top is {say('knockdown', sunk)}; the limit is {allowed}.",
+            "Add buoyancy at the top, or reduce drag (`calm run --explain` shows its sources).",
         )
 
     yield from _of_the_top(leg, "knockdown", leg.file.checks.maximum_knockdown, words)
@@ -244,7 +248,7 @@ def excursion(leg: Leg) -> Iterator[Criterion]:
 
     def words(offset: float, allowed: str) -> tuple[str, str]:
         return (
-            f"The top is {say('offset', offset)} off the anchor; {allowed} is allowed.",
+            f"Offset of the top is {say('offset', offset)}; the limit is {allowed}.",
             "Add buoyancy, reduce drag, or shorten the line.",
         )
 
@@ -276,12 +280,15 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
 
     def words(left: float, result: LegResult) -> tuple[str, str]:
         if result.type == "surface":
-            message = f"{100 * left:.0f} % of the float's buoyancy is left"
+            message = f"Reserve buoyancy of the float is {100 * left:.0f} %"
         else:
-            message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
+            message = (
+                f"The float is {say('depth', result.top.depth)} under water and has no reserve "
+                "buoyancy"
+            )
         return (
-            f"{message}; {100 * limit:.0f} % should be.",
-            "Use a larger float, a lighter line, or more length.",
+            f"{message}; at least {100 * limit:.0f} % is required.",
+            "Use a larger float, a lighter line, or more length." + _too_long(leg),
         )
 
     source = cited(leg.file, "minimum_reserve")
@@ -291,7 +298,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
 
 @rule("freeboard")
 def freeboard(result: LegResult) -> Iterator[Verdict]:
-    """A float meant for the surface stands out of the water."""
+    """Check that a float intended for the surface has a freeboard."""
     if not reaches_the_surface(result.leg):
         return
     top, height = result.file.pieces[0], result.top.freeboard
@@ -300,19 +307,27 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
     if height is None:
         yield unknown(
             top,
-            "The freeboard of the float is not known.",
-            "Give its `hull`, `mass` and `volume`, and let `buoy_drag` be `immersed`.",
+            "The freeboard of the float is unknown.",
+            "Set its `hull`, `mass` and `volume`, and set `buoy_drag: immersed`.",
         )
         return
     yield at_least(
         top,
         height,
         0.0,
-        f"The float stands {say('freeboard', height)} out of the water."
+        f"Freeboard of the float is {say('freeboard', height)}."
         if height >= 0.0
         else f"The float is {say('depth', -height)} under water.",
-        "Use a larger float.",
+        "Use a larger float." + _too_long(result.leg),
     )
+
+
+def _too_long(leg: Leg) -> str:
+    """Remedy for a float without any key of surface floats: its line may be too long."""
+    top = leg.file.pieces[0].component
+    if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
+        return ""
+    return " A line that should stay below the surface is too long for this water: shorten it."
 
 
 @rule("watch-circle")
@@ -336,7 +351,7 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
     if limit is None:
         yield verdict_on(top, State.NOT_JUDGED, f"{message}.", value=radius)
         return
-    message += f"; {say('offset', limit)} is allowed."
+    message += f"; the limit is {say('offset', limit)}."
     yield at_most(top, radius, limit, message, "Shorten the line.")
 
 

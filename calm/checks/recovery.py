@@ -201,7 +201,7 @@ def _risers(
 
 SHORT_LEAD = 50.0
 """Maximum length of line from the lowest floats to the release that is exempt from break checks
-[m].
+[m]; a default of CALM.
 
 Those floats are the back-up of everything above them. If all floats are so close to the release, as
 on a bottom lander or a short line below one float, they alone recover the mooring.

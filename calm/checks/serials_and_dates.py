@@ -46,8 +46,8 @@ def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
             first = next(iter(found.values()))
             yield _warning(
                 first,
-                f"{len(found)} rows of the line have the label `{label}`: was one copied?",
-                "Give each its own label, or leave the extra row out.",
+                f"{len(found)} rows of the line have the label `{label}`; one may be a copy.",
+                "Rename or remove the extra row.",
             )
 
 
@@ -55,8 +55,8 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
     """Yield serial numbers that are used for more than one item of a component."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
-        if part.serial is not None:
-            items[part.use, part.serial].append(part)
+        for serial in part.serials:
+            items[part.use, serial].append(part)
     for (use, serial), found in items.items():
         # items of a count and parts of an assembly share their serial number
         alone = {(one.place.item, one.place.clamp) for one in found}
@@ -79,7 +79,7 @@ def _releases(file: MooringFile) -> Iterator[Verdict]:
         yield _warning(None, message, "Keep the row with the right codes.")
     codes = [one.code_lines for one in file.releases if one.code_lines]
     if len(set(codes)) < len(codes):
-        message = "Two releases have the same codes: both would answer, and open."
+        message = "Two releases have the same codes, so both would answer and open."
         yield _warning(None, message, "Check the codes of the releases.")
 
 
@@ -89,17 +89,18 @@ def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict
     for part in parts:
         battery, calibrated = part.equipment.battery_until, part.equipment.calibrated
         if battery and deployed and battery <= deployed:
-            message = f"The battery of {part.label} ends on {battery}, and it is deployed on "
+            message = f"The battery of {part.label} ends on {battery}; the deployment is on "
             message += f"{deployed}."
-            yield _warning(part, message, "Check both days, or change the battery.")
+            yield _warning(part, message, "Check both dates, or replace the battery.")
         if battery and calibrated and battery <= calibrated:
             message = f"The battery of {part.label} ends on {battery}, before its calibration on "
             message += f"{calibrated}."
-            yield _warning(part, message, "Check both days.")
+            yield _warning(part, message, "Check both dates.")
         if calibrated and deployed and calibrated > deployed:
             message = f"{part.label} is calibrated on {calibrated}, after its deployment on "
             message += f"{deployed}."
-            yield _warning(part, message, "Check both days: is it the calibration after recovery?")
+            remedy = "Check both dates: this may be the calibration after recovery."
+            yield _warning(part, message, remedy)
 
 
 def _document(document: DocumentKeys) -> Iterator[str]:
@@ -119,7 +120,7 @@ def _document(document: DocumentKeys) -> Iterator[str]:
         return
     if document.revision is not None and document.revision != names[-1]:
         yield (
-            f"The document is revision {document.revision}, and its `history` ends with revision "
+            f"The document is revision {document.revision}, but its `history` ends with revision "
             f"{names[-1]}."
         )
     elif document.date and dated and document.date < (dated[-1].date or ""):

@@ -42,7 +42,7 @@ FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 _SUFFIXES = {
     AS_GIVEN: "", STRUMMING: "s", FOULED: "g", HIGH: "h", LOW: "l", DEPLOYED: "d",
 }  # fmt: skip
-_AT_STOP, _AT_LEAN = "at its lower stop", "where its wire leans most"
+_AT_STOP, _AT_LEAN = "at its lower stop", "at its largest wire angle"
 
 
 def case_of(environment: int, situation: str) -> str:
@@ -243,16 +243,16 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     longer = float(deployed.line.length.sum() - leg.line.length.sum())
     fixed, share = SOUNDING
     limit = hypot(fixed, share * designed)
-    moved, what = depth - designed - longer, "its top, upright,"
+    moved, what = depth - designed - longer, "the top of the upright line"
     if reaches_the_surface(leg):
-        moved, what = depth - designed, "it"
+        moved, what = depth - designed, "the water"
     way = "deeper" if moved > 0.0 else "shallower"
     message = (
-        f"Deployed in {say('depth', depth)} of water, designed for "
-        f"{say('depth', designed)}: {what} is {say('depth', abs(moved))} {way}; "
-        f"{say('depth', limit)} is within the error of a sounding."
+        f"Deployed in {say('depth', depth)} of water instead of {say('depth', designed)}: "
+        f"{what} is {say('depth', abs(moved))} {way} than designed; the error of a sounding is "
+        f"{say('depth', limit)}."
     )
-    remedy = "`calm diff` with this file shows the effect."
+    remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
 
 
@@ -273,8 +273,8 @@ def _far_away(leg: Leg) -> Verdict | None:
     if away <= _ANOTHER_SITE:
         return None
     message = (
-        f"Deployed {away:.0f} km from the planned position: water depth "
-        "and currents of this design may not apply."
+        f"Deployed {away:.0f} km from the planned position: the water depth and currents of the "
+        "design may not apply there."
     )
     remedy = "Check both positions, or use the environment of the site."
     return verdict_on(None, State.UNKNOWN, message, remedy)
@@ -308,9 +308,9 @@ def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
 STILL_ONLY = verdict_on(
     None,
     State.WARN,
-    "No environment has a current of 1 cm/s or more: tilt, knockdown and pull in a "
-    "current are not judged.",
-    "Give the current, or an environment that has one.",
+    "No environment has a current of 1 cm/s or more, so tilt, knockdown and loads in a current "
+    "are not checked.",
+    "Add a current, or an environment that has one.",
 )
 """Verdict of `equilibrium` on a mooring without significant current."""
 
@@ -334,12 +334,12 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     for leg, speed in zip(legs, speeds, strict=True):
         if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
             message = (
-                f"The current is {speed:.2g} m/s at its strongest, {say('speed', max(speeds))} in "
-                "another environment: was m/s read as cm/s, or cm/s as m/s?"
+                f"The strongest current is {speed:.2g} m/s here and {say('speed', max(speeds))} in "
+                "another environment: one of them may be in the wrong unit."
             )
-            yield leg, verdict_on(None, State.WARN, message, "Check its unit.", speed)
+            yield leg, verdict_on(None, State.WARN, message, "Check m/s and cm/s.", speed)
         if speed >= LEAST_CURRENT and (left := _left_out(leg)):
-            remedy = "Give the current at more levels, with one near each end."
+            remedy = "Add levels to the current, with one near the surface and one near the seabed."
             yield leg, verdict_on(None, State.WARN, left, remedy, speed)
     strongest = max(range(len(speeds)), key=speeds.__getitem__)
     speed = speeds[strongest]
@@ -347,14 +347,14 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
         limit = SHARE_OF_ITS_RECORD * recorded
         if speed < limit:
             message = (
-                f"The record that this current is taken from reaches {say('speed', recorded)}; "
-                f"the strongest current judged is {say('speed', speed)}."
+                f"The record behind this current reaches {say('speed', recorded)}; "
+                f"the strongest current checked is {say('speed', speed)}."
             )
-            remedy = "Add an environment with that current, or solve the record with `calm batch`."
+            remedy = "Add an environment with that current, or run `calm batch` on the record."
             yield leg, at_least(None, speed, limit, message, remedy, State.WARN)
     if speed < LEAST_CURRENT:
         return
-    message = f"The strongest current judged is {say('speed', speed)}"
+    message = f"The strongest current checked is {say('speed', speed)}"
     if speed < USUAL_CURRENT:
         message += f"; a wind of 7 m/s alone drives {say('speed', USUAL_CURRENT)} at the surface"
     remedy = "Add an environment with the strongest current of the site."

@@ -108,23 +108,38 @@ def strength(leg: Leg) -> Iterator[Criterion]:
 def _strength_words(
     part: JudgedPart, limit: float | None, factor: float, tension: float, _: LegResult
 ) -> tuple[str, str]:
-    component, bears = part.component, f"{part.label} bears {say('tension', tension)}"
+    component, load = part.component, load_text(part, tension)
     if limit is None:
-        return (
-            f"{bears}; neither its working nor its breaking load is known.",
-            "Give its `working_load` or `breaking_load`.",
-        )
+        return no_load_known(load)
     if limit == counted_working_load(component):
-        allowed = f"its working load is {say('tension', limit)}"
+        allowed = f"its working load is {say('load', limit)}"
     else:
         allowed = (
-            f"its breaking load of {say('tension', component.breaking_load)} "
-            f"over {factor:g} allows {say('tension', limit)}"
+            f"its breaking load of {say('load', component.breaking_load)} "
+            f"over {factor:g} allows {say('load', limit)}"
         )
-    wanted = f"a breaking load of {say('tension', factor * tension)} or more"
+    wanted = f"a breaking load of at least {say('load', factor * tension)}"
     if not is_synthetic(component):
-        wanted = f"a working load of {say('tension', tension)} and {wanted}"
-    return f"{bears}; {allowed}.", f"Use a component with {wanted}."
+        wanted = f"a working load of at least {say('load', tension)} and {wanted}"
+    return f"{load}; {allowed}.", f"Use a component with {wanted}."
+
+
+def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: str = "") -> str:
+    """State the load on a piece [N], such as ``Tension in wire 1 is 5.31 kN``.
+
+    Parameters
+    ----------
+    when : operation, such as " during the descent"
+    bound : " at most" if the load is an upper bound
+    """
+    what = "Tension in" if isinstance(part.component, Flexible) else "Load on"
+    return f"{what} {part.label}{when} is{bound} {say('load', tension)}"
+
+
+def no_load_known(load: str) -> tuple[str, str]:
+    """Message and remedy for a piece that has neither a working load nor a breaking load."""
+    message = f"{load}; its working load and breaking load are unknown."
+    return message, "Set its `working_load` or `breaking_load`."
 
 
 @criteria("release-load")
@@ -140,32 +155,31 @@ def release_load(leg: Leg) -> Iterator[Criterion]:
             lacks = wanted_load(part.component)
             stands = allowable_load(part.component, factors, surface)
             opens = part.component.opening_load
-            words = partial(_release_words, part, "bears", stands)
+            words = partial(_release_words, part, False, stands)
             yield Criterion(part, "tension", stands, words, lacks=lacks)
             limit = stands if opens is None else opens
-            words = partial(_release_words, part, "opens under", limit)
+            words = partial(_release_words, part, True, limit)
             yield Criterion(part, "tension_bottom", limit, words, lacks=lacks)
 
 
 def _release_words(
-    part: JudgedPart, does: str, limit: float | None, tension: float, _: LegResult
+    part: JudgedPart, opens: bool, limit: float | None, tension: float, _: LegResult
 ) -> tuple[str, str]:
-    bears, given = f"{part.label} {does} {say('tension', tension)}", part.component.opening_load
+    load = load_text(part, tension, " at opening" if opens else "")
     if limit is None:
         return (
-            f"{bears}; neither its working load nor its opening load is known.",
-            "Give its `working_load` and its `opening_load`.",
+            f"{load}; its working load and opening load are unknown.",
+            "Set its `working_load` and `opening_load`.",
         )
-    if does == "bears":
-        allowed = f"the allowed load is {say('tension', limit)}"
-    elif given is None:
-        allowed = f"its opening load is not given; the allowed load is {say('tension', limit)}"
+    if not opens:
+        allowed = f"the limit is {say('load', limit)}"
+    elif part.component.opening_load is None:
+        allowed = f"its opening load is unknown, so the limit is {say('load', limit)}"
     else:
-        allowed = f"its opening load is {say('tension', limit)}"
+        allowed = f"its opening load is {say('load', limit)}"
     return (
-        f"{bears}; {allowed}.",
-        f"Use a release rated for {say('tension', tension)}, or share the load between two in "
-        "parallel.",
+        f"{load}; {allowed}.",
+        f"Use a release rated for {say('load', tension)}, or two in parallel that share the load.",
     )
 
 
@@ -196,9 +210,9 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
             piece,
             load,
             WEAK_LINK * cables,
-            f"{piece.label} is rated for {say('tension', load)}, the cables above and below it "
-            f"for {say('tension', cables)} or more.",
-            "Match its strength to the adjoining cables.",
+            f"{piece.label} is rated for {say('load', load)}; the cables above and below it are "
+            f"rated for at least {say('load', cables)}.",
+            "Use a component as strong as these cables.",
             State.WARN,
         )
 
@@ -259,13 +273,14 @@ def _words(
     part: JudgedPart, limit: float, name: str, least: float, _: LegResult
 ) -> tuple[str, str]:
     return (
-        f"Minimum tension in {part.label} is {say('tension', least)}; "
-        f"{say('tension', limit)} keeps a {name} taut.",
-        "Add buoyancy above it, or remove weight; `slack: allowed` exempts a piece.",
+        f"Minimum tension in {part.label} is {say('load', least)}; "
+        f"a {name} needs {say('load', limit)} to stay taut.",
+        "Add buoyancy or remove weight above it, or allow it to be slack (`slack: allowed`).",
     )
 
 
-_WHAT_IS_IT = "Give its `weight` in water, or the `density` of its material."
+_SET_WEIGHT = "Set its `weight` in water, or the `density` of its material."
+_UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 
 
 @criteria("anchor-weight", of_anchor=True)
@@ -274,10 +289,10 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
     weight = _weight(leg)
 
     def words(required: float, result: LegResult) -> tuple[str, str]:
-        needs = f"{say('tension', required)} is required, {_in_air(leg, required)}."
+        needs = f"{say('load', required)} is required ({_in_air(leg, required)})."
         if weight is None:
-            return f"The anchor's weight in water is not known; {needs}", _WHAT_IS_IT
-        weighs = f"The anchor weighs {say('tension', weight)} in water; {needs}"
+            return f"{_UNKNOWN_WEIGHT.capitalize()}; {needs}", _SET_WEIGHT
+        weighs = f"The anchor weighs {say('load', weight)} in water; {needs}"
         return weighs, _heavier(leg, required)
 
     yield Criterion(
@@ -299,11 +314,11 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
     limit = None if weight is None else weight / factor
 
     def words(vertical: float, _: LegResult) -> tuple[str, str]:
-        pulls = f"The vertical pull of the line is {say('tension', vertical)}"
+        load = f"The vertical anchor load is {say('load', vertical)}"
         if limit is None:
-            return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
+            return f"{load}; {_UNKNOWN_WEIGHT}.", _SET_WEIGHT
         return (
-            f"{pulls}; the anchor's weight in water over {factor:g} is {say('tension', limit)}.",
+            f"{load}; the anchor's weight in water over {factor:g} is {say('load', limit)}.",
             _heavier(leg, factor * vertical),
         )
 
@@ -317,21 +332,19 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     friction, seabed = leg.file.anchor_friction, leg.file.environment.seabed
-    down = "" if seabed is None else f" down a slope of {seabed.slope:.4g}°"
+    down = "" if seabed is None else f" on a slope of {seabed.slope:.4g}°"
 
     def held(result: LegResult) -> float:
         assert weight is not None
         return friction * (weight / factor - result.anchor_load.vertical)
 
     def words(_: float, result: LegResult) -> tuple[str, str]:
-        pulls = (
-            f"The horizontal pull of the line is {say('tension', result.anchor_load.horizontal)}"
-        )
+        load = f"The horizontal anchor load is {say('load', result.anchor_load.horizontal)}"
         if weight is None:
-            return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
+            return f"{load}; {_UNKNOWN_WEIGHT}.", _SET_WEIGHT
         return (
-            f"{pulls}; friction of {friction:.4g}{down} holds "
-            f"{say('tension', max(held(result), 0.0))}.",
+            f"{load}; a friction coefficient of {friction:.4g}{down} holds "
+            f"{say('load', max(held(result), 0.0))}.",
             _heavier(leg, result.anchor_load.required_weight),
         )
 
@@ -352,7 +365,8 @@ def _weight(leg: Leg) -> float | None:
 
 
 def _heavier(leg: Leg, weight: float) -> str:
-    return f"Take one of {say('tension', weight)} in water: {_in_air(leg, weight)}."
+    weighs = f"at least {say('load', weight)} in water ({_in_air(leg, weight)})"
+    return f"Use an anchor that weighs {weighs}."
 
 
 def _in_air(leg: Leg, weight: float) -> str:

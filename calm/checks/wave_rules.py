@@ -10,14 +10,20 @@ from calm.case.leg import Leg
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
-from calm.checks.strength import lesser_load, passes_load_on, wanted_load
+from calm.checks.strength import (
+    lesser_load,
+    load_text,
+    no_load_known,
+    passes_load_on,
+    wanted_load,
+)
 from calm.errors import UsageError
 from calm.quantities import say
 from calm.waves.analysis import WaveAnalysis, analyse
 from calm.waves.fatigue import YEAR
 from calm.waves.pieces_in_sea import PieceInWaves
 
-_HOW = "Give `waves:` in the environment: a design sea, and a scatter table for fatigue."
+_SET_WAVES = "Set `waves:` in the environment: a design sea state, and a scatter table for fatigue."
 
 
 @dataclass(frozen=True)
@@ -51,9 +57,11 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         if waves is not None:
-            yield unknown(None, f"Not judged in waves: {waves}.", "Give what is missing.")
+            message = f"The mooring has no solution in waves: {waves}."
+            yield unknown(None, message, "Set the missing values.")
         elif reaches_the_surface(leg):
-            yield unknown(None, "Waves are not judged: no `waves:` are given.", _HOW)
+            message = "The environment has no `waves:`, so loads in waves are not checked."
+            yield unknown(None, message, _SET_WAVES)
         return
     checks = leg.file.checks
     factor, source = checks.waves_safety_factor, cited(leg.file, "waves_safety_factor")
@@ -62,16 +70,15 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         row = state.components[piece.index]
         tension = row.greatest
         limit = lesser_load(piece.component, 1.0, factor)
-        sea = f"Hs {state.sea.significant_height:.1f} m"
-        bears = f"{piece.label} bears {say('tension', tension)} in waves of {sea}"
+        load = load_text(piece, tension, f" in waves of Hs {state.sea.significant_height:.1f} m")
         if limit is None:
             if passes_load_on(leg.file, piece.index):
-                message = f"{bears}; neither its working nor its breaking load is known."
+                message, remedy = no_load_known(load)
                 message += _measured(row, "greatest")
-                remedy, lacks = "Give its `breaking_load`.", wanted_load(piece.component)
+                lacks = wanted_load(piece.component)
                 yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
-        message = f"{bears}; its loads allow {say('tension', limit)}.{_measured(row, 'greatest')}"
+        message = f"{load}; the limit is {say('load', limit)}.{_measured(row, 'greatest')}"
         remedy = "Use a stronger component, or add stretch to the line."
         yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
 
@@ -87,12 +94,12 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
         row = state.components[piece.index]
         if row.tension_std > 0.0 and piece.component.slack != "allowed":
             message = (
-                f"The least tension of {piece.label} is {say('tension', row.least)} in waves of "
-                f"Hs {state.sea.significant_height:.1f} m; below 0 it goes slack and snatches."
-                f"{_measured(row, 'least')}"
+                f"Minimum tension in {piece.label} in waves of Hs "
+                f"{state.sea.significant_height:.1f} m is {say('load', row.least)}; below zero "
+                f"the line goes slack and snap loads follow.{_measured(row, 'least')}"
             )
-            remedy = "Add weight or stretch, or solve it in the time domain: `calm export`"
-            yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
+            remedy = "Add weight or stretch, or simulate it in the time domain (`calm export`)."
+            yield _sure(waves, at_least(piece, row.least, 0.0, message, remedy))
 
 
 @rule("fatigue")
@@ -103,8 +110,8 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         return
     given, checks = leg.file.environment.waves, leg.file.checks
     if given is None or given.scatter is None:
-        message = "One sea is not a wave climate: no fatigue life follows from it."
-        remedy = "Give `waves: {scatter: FILE}`, seas with their shares of the time."
+        message = "A fatigue life needs a wave climate, not a single sea state."
+        remedy = "Set `scatter` under `waves`: sea states with their shares of time."
         yield verdict_on(None, State.NOT_JUDGED, message, remedy)
         return
     limit = checks.fatigue_factor * checks.service_time
@@ -112,12 +119,12 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     for one in waves.fatigue:
         piece = leg.file.pieces[one.index]
         if one.unknown is not None:
-            message = f"The fatigue life of {one.label} is not known: {one.unknown}."
-            yield unknown(piece, message, "Give its `fatigue: {curve: NAME}` and its loads.")
+            message = f"The fatigue life of {one.label} is unknown: {one.unknown}."
+            yield unknown(piece, message, "Set the `curve` of its `fatigue`, and its loads.")
         elif one.life is not None and one.life_low is not None and one.life_high is not None:
             message = (
                 f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "
-                f"to {_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} is required."
+                f"to {_years(one.life_high)}) by {one.curve}; {_years(limit / YEAR)} is required."
             )
             remedy = "Use a thicker component, add stretch to the line, or renew it sooner."
             life = one.life * YEAR
@@ -125,12 +132,12 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 
 def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
-    """Return the tension by the band of those measured at sea, as a sentence."""
+    """Return the range of tensions from measurements at sea, as a sentence."""
     if row.measured_low is None or row.measured_high is None:
         return ""
     tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
-    low, high = (say("tension", each) for each in tensions)
-    return f" The band measured at sea (SOFS) gives {low} to {high}."
+    low, high = (say("load", each) for each in tensions)
+    return f" Measurements at sea (SOFS) imply {low} to {high}."
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
@@ -139,7 +146,7 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
         return verdict
     message = f"{verdict.message} {' '.join(waves.warnings)}"
     return replace(
-        verdict, state=State.UNKNOWN, message=message, remedy="Give the rope's `stiffness`.",
+        verdict, state=State.UNKNOWN, message=message, remedy="Set the rope's `stiffness`.",
         limit=None, sense=None,
     )  # fmt: skip
 

@@ -46,8 +46,8 @@ def batch(
     equilibrium is NaN, with its status. Statistics are printed, and written as
     RESULT.summary.json and .html.
 
-    The result is written whole or not at all: an interrupted run starts again
-    from the beginning.
+    The result is written completely or not at all; an interrupted run starts again from the
+    beginning.
 
     Parameters
     ----------
@@ -130,9 +130,10 @@ def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> 
 
 
 def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
-    """Report the profiles without a result, with reasons, and return the exit code."""
+    """Report the file written and the profiles without a result, and return the exit code."""
     from calm.batch.statuses import Ending, endings
 
+    narrate(f"{output} written")
     done = sum(counts.values())
     solved = endings(counts)[Ending.SOLVED]
     if solved < done:

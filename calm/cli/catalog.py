@@ -32,7 +32,9 @@ catalog = App(
 Kind = Literal["sphere", "cylinder", "body", "profiler", "cable", "chain", "anchor", "assembly"]
 
 
-@catalog.command(name=["list", "search"], usage="Usage: calm catalog list [OPTIONS] [WORD...]")
+@catalog.command(
+    name="list", synonym=("search", "find"), usage="Usage: calm catalog list [OPTIONS] [WORD...]"
+)
 def list_components(
     words: list[str] | None = None, /, *, kind: Kind | None = None, json: bool = False
 ) -> ExitCode:
@@ -40,7 +42,7 @@ def list_components(
 
     Of components found by words, favourites and those last used in the line
     builder come first, then those that the shipped lines use. Misspelt words
-    are corrected.
+    are corrected. If no component has every word, those with most words are listed.
 
     Parameters
     ----------
@@ -61,7 +63,7 @@ def list_components(
 
 
 def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defined]:
-    """The components that have every word of a text, or, with a note, all words but one."""
+    """The components that have every word of a text, or, with a note, most of the words."""
     from calm.assemble.catalogue_search import Index
     from calm.files.editing.user_state import Remembered
 
@@ -70,15 +72,15 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
     spelt = index.spelt(text)
     if spelt != text:
         narrate(f"no component matches `{text}`; searched for `{spelt}`")
-    first, asked = [*remembered.favourites, *remembered.recent], spelt.split()
-    fewer = (" ".join(asked[:i] + asked[i + 1 :]) for i in reversed(range(len(asked))))
+    first = [*remembered.favourites, *remembered.recent]
     found = index.search(spelt, kinds, first=first)
     if not found:
-        narrate(f"no component matches `{spelt}`; define one with `calm catalog add`")
-        some = next((text for text in fewer if text and index.search(text, kinds)), "")
-        if some:
-            narrate(f"with `{some}` alone:")
-            found = index.search(some, kinds, first=first)
+        found, unknown = index.nearly(spelt, kinds, first=first)
+        if not found:
+            narrate(f"no component matches `{spelt}`; define one with `calm catalog add`")
+            return {}
+        without = f", none has {' or '.join(f'`{word}`' for word in unknown)}" if unknown else ""
+        narrate(f"no component has all words of `{spelt}`{without}; these have most of them:")
     return {each.id: catalogue.get(each.id) for each in found}
 
 
@@ -87,8 +89,8 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show all values of components with their sources, and derived values.
 
     Derived values are the net force in water, and Kn and Kt, the drag at 1 m/s.
-    Entries for the same item from different sources are shown side by side, the
-    one to use first.
+    Entries for the same item from different sources are shown side by side, the recommended one
+    first.
 
     Parameters
     ----------

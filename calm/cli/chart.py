@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import App, Group, Parameter
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, Outputs, narrate
+from calm.cli.outputs import ExitCode, Outputs, narrate, save
 from calm.errors import UsageError
 
 _BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\
@@ -70,11 +70,11 @@ def solve(
     Parameters
     ----------
     weight
-        Weight in water of a metre; negative for a cable that floats.
+        Weight of a metre in water; negative for a cable that floats.
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     diameter
-        Diameter of the cable, instead of K, together with the next three.
+        Diameter of the cable; with the next three options, instead of K.
     cd
         Drag coefficient of the cable.
     speed
@@ -82,7 +82,7 @@ def solve(
     density
         Density of the water; 1025 kg/m^3 by default.
     phi_a
-        Angle to the current at A; negative when the cable first goes down.
+        Angle to the current at A; negative if the cable first goes down.
     phi_b
         Angle to the current at B.
     tension_a
@@ -143,13 +143,12 @@ def draw(
     from calm.drawing.picture import check_format, image
     from calm.drawing.plot import figure_svg
     from calm.report.chart_page import draw_chart
-    from calm.report.folder import check_destination, write_file
+    from calm.report.folder import check_destination
 
     check_format(output)
     check_destination(output)
     (drag_over_weight,) = options.quantities(k=(k, "number")).values()
-    write_file(output, image(figure_svg(draw_chart(drag_over_weight, lower_end)), output.suffix))
-    narrate(f"{output} written")
+    save(output, image(figure_svg(draw_chart(drag_over_weight, lower_end)), output.suffix))
     return ExitCode.DONE
 
 

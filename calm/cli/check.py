@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.judging import Drawing, DrawnSection, drawn_section, judge, load_ahead
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, show
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, save, show
 from calm.cli.reading import DesignFile, names_of_files, read_designs
 from calm.errors import InputError, Problem, UsageError
 
@@ -59,7 +59,7 @@ def check(
         all that do not pass, and those with a utilisation of at least one half.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
-        six pages or more for one mooring, a matrix and a page each for several.
+        five pages or more for one mooring, a matrix and a page each for several.
     page
         Page size of the report.
     full
@@ -133,7 +133,7 @@ def check(
         compared = comparison_of(names, earlier, designs[0].moorings[0])
         drawings = [drawn_section(assessments[0], 1, drawing, compared)]
     if missing:
-        _write_missing(assessments, output)
+        _write_missing(assessments, [design.path for design in designs], output)
     else:
         _answer(assessments, drawings, outputs, report, page, own, every=all_findings)
     return gravest(_code(each, allow_unknown) for each in assessments)
@@ -198,7 +198,9 @@ def _check_missing(
     if output is not None and not missing:
         raise UsageError("-o is the file of --missing; for the findings, use --json or --report")
     if missing and any(other):
-        raise UsageError("--missing is printed in place of the findings: leave out the others")
+        raise UsageError(
+            "--missing replaces the findings and cannot be combined with other outputs"
+        )
     if output is not None:
         from calm.report.folder import check_destination
 
@@ -207,19 +209,19 @@ def _check_missing(
             raise UsageError(f"{output} would overwrite the file that is read")
 
 
-def _write_missing(assessments: Sequence[Assessment], output: Path | None) -> None:
-    from calm.report.folder import write_file
-    from calm.report.missing_block import missing_block
+def _write_missing(
+    assessments: Sequence[Assessment], paths: Sequence[Path], output: Path | None
+) -> None:
+    from calm.report.missing_block import definition_places, missing_block
 
     found = [one for each in assessments for one in each.all_findings()]
     for message in dict.fromkeys(one.message for one in found if one.rule == "equilibrium"):
         narrate(message)
-    block = missing_block(found)
+    block = missing_block(found, definition_places(paths))
     if output is None:
         show(block)
     else:
-        write_file(output, block.encode())
-        narrate(f"{output} written")
+        save(output, block.encode())
 
 
 def _answer(
@@ -253,8 +255,8 @@ def _answer(
     from calm.report.html import page
 
     report = check_report([each.section for each in drawings])
-    with ThreadPoolExecutor(1) as beside:
-        pdf = beside.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
+    with ThreadPoolExecutor(1) as pool:
+        pdf = pool.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),

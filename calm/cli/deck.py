@@ -104,7 +104,7 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
     from calm.report.open_items import assessment_verdict
 
     narrate(f"{path}: {assessment_verdict(deck.assessment).text}: calm check {path}")
-    notes = _signs_that_are_lacking(deck)
+    notes = _missing_characters(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
     write_report(folder, _contents(deck, paper, notes))
@@ -142,18 +142,19 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 
 
 def _plan(deck: Deck) -> dict[str, Any]:
-    """The plan of the anchor drop, or why there is none."""
-
     if deck.result.several:
         return {"status": "net", "message": "The drop of a net of legs is not solved."}
     if deck.plan is None:
-        return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
+        return {
+            "status": str(deck.order),
+            "message": "There is no anchor drop if the anchor is deployed first.",
+        }
     if isinstance(deck.plan, NoEquilibrium):
         return {"name": deck.file.name, **deck.plan.to_dict()}
     return deck.plan.to_dict()
 
 
-def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
+def _missing_characters(deck: Deck) -> tuple[str, ...]:
     """Describe characters of the file that the font of the sheets lacks, with their places."""
     from calm.drawing.typesetting import lacking
 
@@ -162,7 +163,7 @@ def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
         return ()
     where = dict.fromkeys(place for text, place in _texts(deck) if lacking([text]))
     named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs)
-    return (f"The font of the sheets lacks {named}, which shows as �: in {', '.join(where)}",)
+    return (f"The font of the sheets has no {named}, printed as �: in {', '.join(where)}",)
 
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:

@@ -36,12 +36,11 @@ def diff(
     Parameters
     ----------
     before
-        A mooring, tow or net file.
+        A mooring file; it may contain a tow or a net.
     after
         Another; without it, the `deployed:` of the first is compared with its design.
     environment
-        The environment to use instead: a name from both files, or an
-        environment file.
+        Use this environment: a name from both files, or an environment file.
     json
         Write the differences as JSON, - to print it.
 
@@ -78,7 +77,7 @@ def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
 
     first, last = lines[0], lines[-1]
     if first.towed != last.towed:
-        raise UsageError(f"{files[0]} and {files[1]}: a mooring is not compared with a tow")
+        raise UsageError(f"{files[0]} and {files[1]}: a mooring cannot be compared with a tow")
     if len(lines) == 2:
         return comparison_of((str(files[0]), str(files[1])), first, last)
     if first.towed:

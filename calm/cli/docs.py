@@ -1,6 +1,9 @@
 """``calm docs``: the pages of the manual on this machine."""
 
+import re
+from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
+from textwrap import shorten
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -12,20 +15,25 @@ SITE = "_site"
 """The folder of the built site inside the manual's."""
 
 
-def docs(
-    page: str = "index", /, *, open_: Annotated[bool, Parameter(name="--open")] = False
-) -> ExitCode:
-    """Print where a page of the manual is on this machine, open it, or list pages by a word.
+MOST_PAGES = 12
+"""Maximum number of pages in a list."""
+_WIDTH = 100
+_LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|[`*]|<!--.*?-->")
 
-    The path printed is that of the page's text; `--open` shows the page of the
-    built site in a browser, without a network. A word that is not the name of a
-    page lists the pages that contain it, the most relevant first.
+
+def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) -> ExitCode:
+    """Print where a page of the manual is on this machine, open it, or list pages by words.
+
+    CALM prints the path of the page's text; `--open` shows the page of the
+    built site in a browser, without a network. Words that are not the name of a
+    page list the pages that contain them, the most relevant first, each with a
+    line of its text.
 
     Parameters
     ----------
-    page
-        Its name, with or without its book (batch, reference/batch, how-to), or
-        words to look for.
+    words
+        Name of the page, with or without its part of the manual (batch, reference/batch, how-to),
+        or words to search for.
     open_
         Open the page in a browser.
 
@@ -33,7 +41,7 @@ def docs(
     --------
       calm docs
       calm docs batch
-      calm docs swivel
+      calm docs instrument depth
       calm docs --open
       calm docs reference/mooring-file --open
     """
@@ -44,7 +52,8 @@ def docs(
     except FileNotFoundError as error:
         raise UsageError(str(error)) from None
     texts, built = _pages(manual, ".md"), _pages(manual / SITE, ".html")
-    name = _named(page, texts | built)
+    page = " ".join(words) if words else "index"
+    name = _named(page, texts | built) or _named(page.replace(" ", "-"), texts | built)
     if name is None:
         _list(page, texts, built)
     elif open_:
@@ -55,34 +64,57 @@ def docs(
 
 
 def _list(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
-    """Print path and title of each page that contains all words.
+    """Print name, title and a line of each page that contains the words, or most of them.
 
     Pages with more of them in their headings come first, then those that have them more often.
-    UsageError: no page contains them.
+    UsageError: no page contains any.
     """
     from calm.errors import unknown
     from calm.whole_file import read_text
 
-    wanted = [word for word in words.casefold().split() if word]
-    found: list[tuple[int, int, str]] = []
-    for path in texts.values():
+    wanted = [re.compile(rf"(?<!\w){re.escape(word)}", re.IGNORECASE) for word in words.split()]
+    found: list[tuple[int, int, int, str]] = []
+    for name, path in texts.items():
         text = read_text(path)
-        counts = [text.casefold().count(word) for word in wanted]
-        if wanted and all(counts):
-            headings = [line for line in text.casefold().splitlines() if line.startswith("#")]
-            inside = sum(word in line for line in headings for word in wanted)
-            title = next((line[1:].strip() for line in text.splitlines() if line[:2] == "# "), "")
-            found.append((-inside, -sum(counts), f"{path}  {title}\n"))
+        counts = [len(word.findall(text)) for word in wanted]
+        if any(counts):
+            headings = [line for line in text.splitlines() if line.startswith("#")]
+            inside = sum(bool(word.search(line)) for line in headings for word in wanted)
+            has = sum(map(bool, counts))
+            found.append((-has, -inside, -sum(counts), f"{name}: {_context(text, wanted)}"))
     if not found:
         pages = [*texts, *built]
         names = [*pages, *(PurePosixPath(name).name for name in pages)]
         raise UsageError(unknown(f"the manual has no page `{words}`", words, names))
-    narrate(f"no page is called `{words}`; these contain it:")
-    show("".join(line for *_, line in sorted(found)))
+    found.sort()
+    most = -found[0][0]
+    lines = [line for has, *_, line in found if has == -most]
+    contain = "contain it" if most == len(wanted) else f"contain {most} of its {len(wanted)} words"
+    narrate(f"no page is called `{words}`; these {contain} (`calm docs NAME` prints the path):")
+    show("\n".join(lines[:MOST_PAGES]) + "\n")
+    if len(lines) > MOST_PAGES:
+        narrate(f"and {len(lines) - MOST_PAGES} more pages")
+
+
+def _context(text: str, wanted: Sequence[re.Pattern[str]]) -> str:
+    """Return the title of a page, and below it the line with most of the words, shortened around
+    the first of them. Sentences precede tables and code.
+    """
+
+    def fit(line: str) -> tuple[int, bool]:
+        return sum(bool(word.search(line)) for word in wanted), line[:1].isalpha()
+
+    lines = text.splitlines()
+    title = _LINK.sub(r"\1", next((line[2:] for line in lines if line.startswith("# ")), ""))
+    best = _LINK.sub(r"\1", max(lines, key=fit)).strip(" #|>-")
+    starts = [found.start() for word in wanted if (found := word.search(best))]
+    first = max(0, min(starts) - _WIDTH // 3) if len(best) > _WIDTH and starts else 0
+    first = best.find(" ", first) + 1 if first else 0
+    shown = shorten(best[first:], _WIDTH - 8, placeholder=" …")
+    return f"{title}\n    {'… ' * bool(first)}{shown}"
 
 
 def _pages(folder: Path, suffix: str) -> dict[str, Path]:
-    """The pages of a folder, by book and name."""
     return {
         path.relative_to(folder).with_suffix("").as_posix(): path
         for path in sorted(folder.rglob(f"*{suffix}"))

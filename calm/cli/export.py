@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, narrate
+from calm.cli.outputs import ExitCode, narrate, save
 from calm.errors import UsageError
 
 
@@ -39,7 +39,7 @@ def export(
       calm export mooring.yaml --to csv -o mooring.csv
     """
     from calm.exchange.exporting import export_file
-    from calm.report.folder import check_destination, write_file
+    from calm.report.folder import check_destination
 
     check_destination(output)
     if os.path.realpath(output) == os.path.realpath(file):
@@ -48,11 +48,9 @@ def export(
     beside = {output.with_name(name): content for name, content in exported.beside.items()}
     for path in beside:
         check_destination(path)
-    write_file(output, exported.content)
     for path, content in beside.items():
-        write_file(path, content)
-        narrate(f"{path} written")
+        save(path, content)
     for each in exported.lost:
         narrate(f"{output}: lost: {each}")
-    narrate(f"{output} written")
+    save(output, exported.content)
     return ExitCode.DONE

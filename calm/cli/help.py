@@ -15,7 +15,7 @@ _VALUES = {
     "FILE|-": "json",
     "FILE": "plot catalog currents pressures sea-level onto against update scatter elements",
     "DIR": "report",
-    "NAME": "environment",
+    "NAME": "environment sheet",
     "LABEL,...": "hold-out",
     "LAT,LON": "at near",
     "LENGTH": "diameter streamed length distance",
@@ -49,6 +49,11 @@ _VALUES = {
 """Names of values in `--help`, with their options. Options that are not listed show their type."""
 
 _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
+
+
+def metavar(option: str) -> str | None:
+    """Return the name of the value of an option; None if the option shows its type."""
+    return _VALUE_OF.get(option)
 
 
 class HelpAtWidth:

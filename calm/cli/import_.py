@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from calm.cli import options
-from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, narrate_card, show
+from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, narrate_card, save, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ def import_(
     environment: Path | None = None,
     onto: Path | None = None,
     columns: str | None = None,
+    sheet: str | None = None,
     elements: Path | None = None,
     match_catalogue: bool = False,
     allow_include: bool = False,
@@ -59,6 +60,8 @@ def import_(
         is a copy whose `deployed:` has the serial numbers.
     columns
         The columns of a table by their headings: name=Item,length=Len.
+    sheet
+        The sheet of a workbook; needed if several have headings.
     elements
         A library of elements, for values that a list or oceanarray lacks: the mdcodes.mat of
         Mooring Design & Dynamics, the table of moords, or a workbook.
@@ -89,7 +92,9 @@ def import_(
             raise UsageError("--onto takes one list of instruments")
         return _assign(files[0], onto, output, json)
     headings = _pairs("--columns", columns.split(",") if columns else [])
-    given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
+    given = ImportOptions(
+        _pairs("--define", define or []), headings, elements, allow_include, sheet
+    )
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         folder.check_destination(json)
@@ -117,19 +122,21 @@ def import_(
     for imported, target in done:
         record = _record_of(target) if imported.record is not None else None
         if record is not None and imported.record is not None:
-            folder.write_file(record, record_file(imported.record, imported.file.name))
-        folder.write_file(target, imported.text.encode("utf-8", "replace"))
-        _tell(imported, target, record)
+            then = f"; solve it with: calm batch {target} --currents {record} -o …"
+            save(record, record_file(imported.record, imported.file.name), then)
+        _tell(imported, record)
+        content = imported.text.encode("utf-8", "replace")
+        save(target, content, f"; solve it with: calm run {target}")
     if json is not None:
         text = result_files.to_json([_document(imported, target) for imported, target in done])
-        show(text) if json == STDOUT else folder.write_file(json, text.encode())
+        show(text) if json == STDOUT else save(json, text.encode())
     return ExitCode.DONE
 
 
 def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode:
     """Assign a list of instruments to the line of a mooring file, and write the copy."""
     from calm.motion.assigned_instruments import assign_instruments
-    from calm.report import folder, result_files
+    from calm.report import result_files
 
     (target,) = _targets((file,), output)
     if os.path.realpath(target) == os.path.realpath(onto):
@@ -137,18 +144,17 @@ def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode
     found = assign_instruments(onto, file)
     for sentence in (*found.assigned, *found.doubts):
         narrate(sentence)
-    folder.write_file(target, found.text.encode())
-    narrate(f"{target} written: {len(found.assigned)} instruments of {file} are assigned")
+    count = len(found.assigned)
+    save(target, found.text.encode(), f": {count} instruments of {file} are assigned")
     if json is not None:
         document = {"file": str(file), "output": str(target), "assigned": list(found.assigned),
                     "doubts": list(found.doubts)}  # fmt: skip
         text = result_files.to_json([document])
-        show(text) if json == STDOUT else folder.write_file(json, text.encode())
+        show(text) if json == STDOUT else save(json, text.encode())
     return ExitCode.DONE
 
 
 def _pairs(option: str, texts: list[str]) -> dict[str, str]:
-    """NAME=VALUE pairs."""
     pairs = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -188,7 +194,7 @@ def _record_of(target: Path) -> Path:
     return target.with_name(f"{target.stem}-currents.nc")
 
 
-def _tell(imported: Imported, target: Path, record: Path | None) -> None:
+def _tell(imported: Imported, record: Path | None) -> None:
     if imported.understood:
         narrate(f"{imported.file}: read: {imported.understood}")
     for remark in imported.guessed:
@@ -204,8 +210,6 @@ def _tell(imported: Imported, target: Path, record: Path | None) -> None:
         with open_record(record, Terms()) as read:
             for card in read.cards:
                 narrate_card(card)
-        narrate(f"{record} written; solve it with: calm batch {target} --currents {record} -o …")
-    narrate(f"{target} written; solve it with: calm run {target}")
 
 
 def _document(imported: Imported, target: Path) -> dict[str, Any]:

@@ -95,21 +95,21 @@ def judge(
     from calm.report.provenance import moment
 
     day = (moment() or datetime.now()).date()
-    stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
-    load_ahead(len(stands), drawn is not None)
+    tasks = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
+    load_ahead(len(tasks), drawn is not None)
     if len(designs) > progress.FEW:
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
-    solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))
+    solved = iter(progress.mapped(_solved_cases, tasks, workers, "environments solved"))
     shared = partial(progress.mapped, workers=workers, what="blocks of samples solved")
-    found = ([stand for _ in design.moorings for stand in next(solved)] for design in designs)
+    found = ([case for _ in design.moorings for case in next(solved)] for design in designs)
     return [
-        _concluded(number, design.name, stands, day, drawn, draws, shared)
-        for number, (design, stands) in enumerate(zip(designs, found, strict=True), 1)
+        _concluded(number, design.name, tasks, day, drawn, draws, shared)
+        for number, (design, tasks) in enumerate(zip(designs, found, strict=True), 1)
     ]
 
 
-def load_ahead(stands: int, drawn: bool) -> None:
+def load_ahead(environments: int, drawn: bool) -> None:
     """Import the modules that judging so many moorings needs, before processes are forked.
 
     The compiled solver is loaded if it is in the cache.
@@ -119,7 +119,7 @@ def load_ahead(stands: int, drawn: bool) -> None:
     from calm.checks.situations import SOLVES
     from calm.solve import expect_many
 
-    expect_many(SOLVES * stands)
+    expect_many(SOLVES * environments)
     if drawn:
         import calm.report.check_report
         import calm.report.html  # noqa: F401
@@ -132,14 +132,14 @@ def _solve_and_conclude(
     task: tuple[int, DesignFile, date, Drawing | None, tuple[int, int] | None],
 ) -> CheckedMooring:
     number, design, day, drawn, draws = task
-    stands = [each for one in design.moorings for each in _stands((design.name, one, day))]
-    return _concluded(number, design.name, stands, day, drawn, draws, map)
+    cases = [each for one in design.moorings for each in _solved_cases((design.name, one, day))]
+    return _concluded(number, design.name, cases, day, drawn, draws, map)
 
 
 def _concluded(
     number: int,
     name: str,
-    stands: Sequence[MooringInEnvironment],
+    cases: Sequence[MooringInEnvironment],
     day: date,
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
@@ -151,7 +151,7 @@ def _concluded(
     """
     from calm.checks import assess, design_check
 
-    assessment = design_check.assessment_of(name, stands, day)
+    assessment = design_check.assessment_of(name, cases, day)
     if draws is not None:
         assessment = assess.with_probabilities(assessment, *draws, shared)
     return CheckedMooring(
@@ -159,7 +159,7 @@ def _concluded(
     )
 
 
-def _stands(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
+def _solved_cases(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
     """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
     the others.
     """

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate, save
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def locate(
     from calm.ranging import range_fit, read_ranges
     from calm.records.record import parse_place
     from calm.report.anchor_sheets import located_figure, located_part
-    from calm.report.folder import check_destination, write_file
+    from calm.report.folder import check_destination
 
     outputs = Outputs((file,), json)
     if plot is not None:
@@ -134,7 +134,7 @@ def locate(
         lambda: {**located.to_dict(), "depth": water_depth}, located_part(located, water_depth)
     )
     if plot is not None:
-        write_file(plot, image(located_figure(located), plot.suffix))
+        save(plot, image(located_figure(located), plot.suffix))
     if edited is None:
         return ExitCode.FINDING if located.undecided and not accept else ExitCode.DONE
     if doubts and not accept:
@@ -147,7 +147,6 @@ def locate(
 
 
 def _sound(text: str) -> Sound:
-    """One speed, or the profile of a file."""
     from calm.ranging import Sound, ranges
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):

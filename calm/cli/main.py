@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
+from cyclopts import App, CycloptsError, Group, Parameter
 
 from calm.cli.batch import batch
 from calm.cli.build import build
@@ -26,6 +26,7 @@ from calm.cli.grid import grid
 from calm.cli.help import HelpAtWidth, examples
 from calm.cli.import_ import import_
 from calm.cli.locate import locate
+from calm.cli.mistakes import complaint
 from calm.cli.motion import motion
 from calm.cli.new import new
 from calm.cli.outputs import ExitCode, narrate, prepare, show
@@ -46,7 +47,7 @@ _EPILOGUE = """Examples:
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 3 no equilibrium, 70 internal error, 130 interrupted."""
 
-_SELDOM = 100_000
+_GC_THRESHOLD = 100_000
 """Number of new objects between collections of reference cycles. Python's default of 700 costs a
 command a tenth of its time, because all imported objects are scanned repeatedly.
 """
@@ -120,7 +121,7 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "More": (
         (chart, ""),
         (verify, "[OPTIONS] [WORD...]"),
-        (docs, "[OPTIONS] [PAGE]"),
+        (docs, "[OPTIONS] [PAGE|WORD...]"),
         (completion, "SHELL"),
     ),
 }
@@ -160,7 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins takes time
     if arguments is None:
-        gc.set_threshold(_SELDOM)
+        gc.set_threshold(_GC_THRESHOLD)
         atexit.register(gc.freeze)  # remaining objects need no final collection
         if not sys.warnoptions:
             warnings.simplefilter("ignore")  # warnings of libraries for programmers
@@ -173,10 +174,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NoEquilibrium as error:
         narrate(f"calm: {error}")
         return ExitCode.NO_EQUILIBRIUM
-    except UnusedCliTokensError as error:
-        narrate(f"calm: unexpected argument: {' '.join(error.unused_tokens or ())}")
+    except CycloptsError as error:
+        narrate(f"calm: {complaint(error)}")
         return ExitCode.BAD_INPUT
-    except (CycloptsError, CalmError) as error:
+    except CalmError as error:
         narrate(f"calm: {error}")
         return ExitCode.BAD_INPUT
     except KeyboardInterrupt:

@@ -192,7 +192,7 @@ def write_copies(
     from calm.dataset.discovery import hashed
     from calm.motion.instrument_file import write_depths
 
-    told = [*(hashed(path) for path in inputs), *filter(None, [source.get("corrected")])]
+    sources = [*(hashed(path) for path in inputs), *filter(None, [source.get("corrected")])]
     folder = output.suffix != ".nc" or output.is_dir()
     if folder:
         output.mkdir(parents=True, exist_ok=True)
@@ -202,7 +202,7 @@ def write_copies(
             continue
         name = one.path.name if one.path.suffix == ".nc" else f"{one.path.name}.nc"
         target = output / name if folder else output
-        for label in write_depths(one, result, gap, target, told):
+        for label in write_depths(one, result, gap, target, sources):
             narrate(f"{one.path}: `{label}` is not a part of the line; its depth is NaN")
 
 

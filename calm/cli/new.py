@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.outputs import ExitCode, narrate, show
+from calm.cli.outputs import ExitCode, save, show
 from calm.errors import UsageError
 from calm.shipped import Template, template
 
@@ -44,8 +44,7 @@ def new(
     if output is None:
         show(text)
         return ExitCode.DONE
-    _write(output, text.encode(), force)
-    narrate(f"{output} written; solve it with: calm run {output}")
+    _write(output, text.encode(), force, f"; solve it with: calm run {output}")
     return ExitCode.DONE
 
 
@@ -54,16 +53,16 @@ def _new_record(output: Path | None, force: bool) -> ExitCode:
 
     if output is None:
         raise UsageError("a record is binary and cannot be printed; specify --output record.nc")
-    _write(output, made_record(), force)
     result = output.with_name(f"{output.stem}-result.nc")
-    narrate(f"{output} written; solve it with: calm batch FILE --currents {output} -o {result}")
+    then = f"; solve it with: calm batch FILE --currents {output} -o {result}"
+    _write(output, made_record(), force, then)
     return ExitCode.DONE
 
 
-def _write(output: Path, content: bytes, force: bool) -> None:
-    from calm.report.folder import check_destination, write_file
+def _write(output: Path, content: bytes, force: bool, then: str) -> None:
+    from calm.report.folder import check_destination
 
     if output.exists() and not force:
         raise UsageError(f"{output} exists already; --force overwrites it")
     check_destination(output)
-    write_file(output, content)
+    save(output, content, then)

@@ -36,7 +36,7 @@ Declination = Annotated[
     str | None,
     Parameter(
         help="Magnetic declination, such as 12.5 deg, positive to the east; applied to "
-        "currents that the record says are relative to magnetic north.",
+        "currents that the record marks as relative to magnetic north.",
         allow_leading_hyphen=True,
     ),
 ]
@@ -67,23 +67,23 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
     UsageError: the text contains an unknown dimension or unit.
     """
     from calm.errors import nearest
-    from calm.files.logbook import unit_meant
+    from calm.files.logbook import nearest_unit
     from calm.quantities import SHOWN_UNITS, show_in
 
     if given is None:
-        asked = [file.units for file in files]
-        alike = all(one == asked[0] for one in asked)
+        systems = [file.units for file in files]
+        alike = all(one == systems[0] for one in systems)
         if not alike:
             narrate("the files set different units; results are in SI (use --units to choose)")
-        show_in(asked[0] if asked and alike else {})
+        show_in(systems[0] if systems and alike else {})
         return
     chosen: dict[str, str] = {}
     for part in given.split(","):
         name, _, unit = (text.strip() for text in part.partition("="))
         if unit not in (known := SHOWN_UNITS.get(name, {})):
             near = nearest(unit, known)
-            if meant := (name, near) if near else unit_meant(unit or name):
-                name, unit = meant
+            if suggestion := (name, near) if near else nearest_unit(unit or name):
+                name, unit = suggestion
                 raise UsageError(f"--units: for `{part.strip()}` write `{name}={unit}`")
             forms = (f"{each}={'|'.join(units)}" for each, units in SHOWN_UNITS.items())
             raise UsageError(f"--units: `{part.strip()}` is none of {', '.join(forms)}")
@@ -117,8 +117,8 @@ def from_one(**given: int | None) -> None:
     """Refuse the counts that were given and are not 1 or more, all at once."""
     few = {name: count for name, count in given.items() if count is not None and count < 1}
     if few:
-        said = (f"{option(name)}: {count} is not 1 or more" for name, count in few.items())
-        raise UsageError("; ".join(said))
+        complaints = (f"{option(name)}: {count} is not 1 or more" for name, count in few.items())
+        raise UsageError("; ".join(complaints))
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:

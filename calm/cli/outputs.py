@@ -28,19 +28,19 @@ if TYPE_CHECKING:
     TerminalPart = ReportPart | TerminalSchematic
 
 _NARROWEST = 40  # columns: below this width the terminal wraps the numbers
-_WRITTEN_OUT = "calm-written-out"  # error handler for characters that a stream cannot encode
+_ERROR_HANDLER = "calm-written-out"  # error handler for characters that a stream cannot encode
 _SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
 
 
 def prepare() -> None:
     """Escape characters that the terminal cannot show, or replace them by ?."""
-    codecs.register_error(_WRITTEN_OUT, _written_out)
+    codecs.register_error(_ERROR_HANDLER, _transliterated)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors=_WRITTEN_OUT)
+            stream.reconfigure(errors=_ERROR_HANDLER)
 
 
-def _written_out(error: UnicodeError) -> tuple[str, int]:
+def _transliterated(error: UnicodeError) -> tuple[str, int]:
     from calm.drawing.picture import in_ascii
 
     assert isinstance(error, UnicodeEncodeError)
@@ -104,6 +104,17 @@ def narrate_card(card: ReadCard) -> None:
     narrate(f"{card.file}: read as")
     for name, value in rows:
         narrate(f"  {name:{width}}  {' '.join(value.split())}")
+
+
+def save(path: Path, content: bytes, then: str = "") -> None:
+    """Write a file, and report its path on standard error, followed by `then`.
+
+    UsageError: the system rejects the file.
+    """
+    from calm.report.folder import write_file
+
+    write_file(path, content)
+    narrate(f"{path} written{then}")
 
 
 def _abandon_output() -> None:
@@ -205,10 +216,10 @@ class Outputs:
         from calm.report.folder import check_destination
         from calm.report.provenance import moment
 
-        asked = [] if self.json is None else [self.json]
+        paths = [] if self.json is None else [self.json]
         for path in self.written:
-            asked += self.apiece(path) if path.suffix.lower() in APIECE else [path]
-        for path in asked:
+            paths += self.apiece(path) if path.suffix.lower() in APIECE else [path]
+        for path in paths:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(
                     f"{path} was given where a path is needed; write ./{path} for a file"
@@ -221,14 +232,14 @@ class Outputs:
         if any(path.suffix.lower() in APIECE for path in self.written):
             moment()
         mooring_files = set(map(os.path.realpath, self.files))
-        for real, count in Counter(map(os.path.realpath, asked)).items():
+        for real, count in Counter(map(os.path.realpath, paths)).items():
             if count > 1:
                 raise UsageError(f"two outputs would go to {os.path.relpath(real)}")
             if real in mooring_files:
                 raise UsageError(
                     f"{os.path.relpath(real)} is a mooring file and was not overwritten"
                 )
-        for path in asked:
+        for path in paths:
             if path != STDOUT:
                 check_destination(path)
 
@@ -239,7 +250,6 @@ class Outputs:
         `document` is called only if JSON is requested; the version of CALM and the units are added
         if missing. Raises UsageError if the system rejects the file.
         """
-        from calm.report.folder import write_file
         from calm.report.result_files import to_json
 
         def text() -> str:
@@ -251,7 +261,7 @@ class Outputs:
         if part is not None:
             show_parts(part)
         if self.json is not None:
-            write_file(self.json, text().encode())
+            save(self.json, text().encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: JSON if requested there, or the tables.
@@ -259,7 +269,6 @@ class Outputs:
         There is something to show of each of `files`, in order; the CSV table of all of them is
         made only where it was asked for. UsageError: the system refuses to write.
         """
-        from calm.report.folder import write_file
         from calm.report.result_files import to_json
 
         def document() -> str:
@@ -269,12 +278,12 @@ class Outputs:
         for path in self.written:
             suffix = path.suffix.lower()
             if suffix in together:
-                write_file(path, together[suffix]().encode("utf-8", "replace"))
+                save(path, together[suffix]().encode("utf-8", "replace"))
                 continue
             for one, each in zip(self.apiece(path), shown, strict=True):
                 content = each.rendered(suffix)
                 if content is not None:
-                    write_file(one, content)
+                    save(one, content)
         if self.json == STDOUT:
             show(document())
         else:

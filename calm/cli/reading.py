@@ -57,7 +57,7 @@ def read_designs(
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
 ) -> tuple[list[DesignFile], list[Path]]:
-    """Every mooring in every environment, and which of the files are tows, which a command leaves.
+    """Read every mooring in every environment; also return the files that are tows.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def read_designs(
     if twice:
         raise UsageError(f"given twice: {', '.join(twice)}")
     problems: dict[Problem, None] = {}
-    stands: dict[Path, list[Design]] = {}
+    by_path: dict[Path, list[Design]] = {}
     tows: list[Path] = []
     tasks = [(file, environments, catalogs) for file in files]
     loaded = mapped(_load, tasks, workers, "files read", meanwhile)
@@ -87,15 +87,15 @@ def read_designs(
         elif any(one.towed for one in read):
             tows.append(file)
         else:
-            stands[file] = read
+            by_path[file] = read
     if problems:
         raise InputError(list(problems))
-    if not stands:
+    if not by_path:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
-    for its in stands.values():
+    for its in by_path.values():
         _refuse_one_name(its)
-    called = _told_apart({path: its[0].file.name for path, its in stands.items()})
-    designs = [DesignFile(path, called[path], _cut_alike(its)) for path, its in stands.items()]
+    called = _told_apart({path: its[0].file.name for path, its in by_path.items()})
+    designs = [DesignFile(path, called[path], _cut_alike(its)) for path, its in by_path.items()]
     return designs, tows
 
 
@@ -147,7 +147,6 @@ def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
 def _load(
     task: tuple[Path, Sequence[str] | None, Sequence[Path]],
 ) -> list[Design] | tuple[Problem, ...]:
-    """Read a file and return its designs or its problems."""
     from calm.case.design import load_in
 
     try:

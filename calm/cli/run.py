@@ -55,12 +55,12 @@ def run(
     files
         Mooring files; one with `tow:` is a tow, one with `legs:` a net.
     output
-        Write the result, as the suffix says. Repeatable. One file for all moorings: .json;
+        Write the result in the format of the suffix. Repeatable. One file for all moorings: .json;
         .csv of the components, or with --speeds of the speeds. One for each mooring (of
         several, p.svg becomes p-FILE.svg): .svg or .png, the line drawn; .html or .pdf, a
         report of its table, drawings and inputs; .nc, NetCDF with the names of `calm batch`.
     json
-        Print the result as JSON in place of the table; of several files an array.
+        Print the result as JSON in place of the table; for several files an array.
     speeds
         Solve tows at the speeds A:B:STEP, both ends included, and print a row for each;
         -o draws depth, layback and tension against speed. A speed without
@@ -99,8 +99,8 @@ def run(
         "--explain": explain, "--schematic": schematic, "--uncertainty": uncertainty,
         "--verbose": verbose,
     }  # fmt: skip
-    if chosen is not None and (asked := [option for option, value in single.items() if value]):
-        raise UsageError(f"{', '.join(asked)} cannot be combined with --speeds")
+    if chosen is not None and (excluded := [option for option, value in single.items() if value]):
+        raise UsageError(f"{', '.join(excluded)} cannot be combined with --speeds")
     from calm.case import load
     from calm.files.legs import NET_SURE
 
@@ -127,7 +127,8 @@ def run(
 
 
 def _refuse(options: Mapping[str, object], what: str, designs: Sequence[Design]) -> None:
-    """Reject the first of the options if there are designs that it does not apply to."""
-    asked = [option for option, value in options.items() if value]
-    if asked and designs:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(one.file.path for one in designs)}")
+    chosen = [option for option, value in options.items() if value]
+    if chosen and designs:
+        raise UsageError(
+            f"{chosen[0]} is for {what}: {', '.join(one.file.path for one in designs)}"
+        )

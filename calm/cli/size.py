@@ -32,16 +32,15 @@ def size(
     Parameters
     ----------
     file
-        A mooring file, or that of a net of legs.
+        A mooring file, or the file of a net of legs.
     target
         A quantity of a part of the line, <=, >= or =, and a limit with its unit.
     change
         What to change: the label of a part, and its buoyancy, length or count.
         A label without its number means all pieces of that label.
     between
-        The least and the greatest value, with units; by default a buoyancy may
-        change from 0 to 100 times itself, a length up to twice the water depth,
-        a count up to 1000.
+        The smallest and the largest value, with units; by default a buoyancy may become 0 to 100
+        times its present value, a length up to twice the water depth, a count up to 1000.
 
     Examples
     --------

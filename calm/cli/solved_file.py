@@ -128,7 +128,6 @@ def solve_files(
 
 
 def _solved(file: Path, line: Design) -> tuple[Result | None, NoEquilibrium | None]:
-    """Return the result, or why there is none."""
     try:
         return line.solve(), None
     except NoEquilibrium as failure:

@@ -73,8 +73,8 @@ def _chosen(words: Sequence[str]) -> list[Source]:
     return chosen
 
 
-HIDDEN = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
-MEAN, EACH, BANDS = 0.55, 0.75, (0.88, 0.99)
+WITHHELD = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
+MEAN_RATIO, MAX_RATIO, IN_BAND = 0.55, 0.75, (0.88, 0.99)
 """Limits of rms over rms of interpolation (mean, each), and of the share in 95 % bands."""
 
 
@@ -92,22 +92,22 @@ def verify_field(outputs: Outputs) -> ExitCode:
     mooring = calm.load(folder / "mooring.yaml")
     files = [str(folder / f"{name}.nc") for name in ("pressures", "currents")]
     measured = motion_estimate.RecoveredMooring(mooring, files[:1], files[1:]).measured
-    task = study.prepare(mooring, measured, motion_estimate.fitted(), HIDDEN)
-    points = [int(measured.point[measured.label.index(label)]) for label in HIDDEN]
+    task = study.prepare(mooring, measured, motion_estimate.fitted(), WITHHELD)
+    points = [int(measured.point[measured.label.index(label)]) for label in WITHHELD]
     depth, spread = correction.estimate_in_memory(task, points)
     still = line_response.Forward(mooring, {}).still
     held = tuple(
         study.judge_hidden(measured, task.measured, label, depth[:, j], spread[:, j], still)
-        for j, label in enumerate(HIDDEN)
+        for j, label in enumerate(WITHHELD)
     )
     ratio = float(np.mean([one.rms for one in held]) / np.mean([one.linear_rms for one in held]))
     worst = max(one.rms / one.linear_rms for one in held)
     inside = float(np.mean([one.coverage for one in held]))
-    good = ratio <= MEAN and worst <= EACH and BANDS[0] <= inside <= BANDS[1]
+    good = ratio <= MEAN_RATIO and worst <= MAX_RATIO and IN_BAND[0] <= inside <= IN_BAND[1]
     verdict = (
-        f"rms relative to interpolation: {ratio:.2f} on average (at most {MEAN}), "
-        f"{worst:.2f} at worst (at most {EACH}); within the 95 % bands: "
-        f"{100.0 * inside:.0f} % ({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
+        f"rms relative to interpolation: {ratio:.2f} on average (at most {MEAN_RATIO}), "
+        f"{worst:.2f} at worst (at most {MAX_RATIO}); within the 95 % bands: "
+        f"{100.0 * inside:.0f} % ({100.0 * IN_BAND[0]:.0f} to {100.0 * IN_BAND[1]:.0f} %)"
     )
     factors = study.intervals(task)
     document: dict[str, Any] = {

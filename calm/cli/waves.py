@@ -56,15 +56,15 @@ def waves(
     gamma
         Peak enhancement factor of jonswap.
     swell
-        Significant height of a swell under the sea of --hs, running the same way.
+        Significant height of a swell under the sea of --hs, travelling in the same direction.
     swell_tp
         Peak period of the swell.
     toward
-        Direction the waves run, clockwise from north; 90 deg by default.
+        Direction in which the waves travel, clockwise from north; 90 deg by default.
     scatter
         A CSV file of seas: significant_wave_height[m],peak_period[s],share.
     duration
-        Time over which the greatest and the least tension are sought; 3 h by default.
+        Duration for the most probable maximum and minimum tension; 3 h by default.
     report
         A folder for waves.html and waves.pdf, with pictures of the tension.
 
@@ -84,21 +84,21 @@ def waves(
 
     if report is not None:
         folder.check_folder(report)
-    asked, way, length = _asked(
+    of_options, direction, length = _sea_states(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
     mooring = load(file, environment, catalog or [])
     leg = mooring.moored
-    given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
+    given, seas = mooring.file.environment.waves, of_options or mooring.file.environment.seas
     if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
         raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
-    if way is None:
-        way = 90.0 if given is None else given.toward
+    if direction is None:
+        direction = 90.0 if given is None else given.toward
     options.show_units(units, [mooring.file])
     try:
-        analysis = analyse(leg, seas, way, length, lambda each: progress(each, "seas"))
+        analysis = analyse(leg, seas, direction, length, lambda each: progress(each, "seas"))
     except NoEquilibrium as failure:
         answer = {"name": mooring.file.name, **failure.to_dict()}
         outputs.write_answer(lambda: answer, None)
@@ -117,7 +117,7 @@ def waves(
     return ExitCode.NO_EQUILIBRIUM
 
 
-def _asked(
+def _sea_states(
     waves: dict[str, str | None],
     spectrum: str,
     gamma: float,
@@ -146,26 +146,25 @@ def _asked(
         if name in given and not given[name] > 0.0
     ]
     if 0.0 < given["duration"] < 60.0:
-        complaints.append("--duration: a minute at least, for some waves to pass")
+        complaints.append("--duration must be at least one minute")
     if not 1.0 <= gamma <= 10.0:
         complaints.append("--gamma must be from 1, a fully developed sea, to 10")
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
     if not named and not path.is_file():
         near = nearest(spectrum, sea_states.SPECTRA)
-        meant = f"; did you mean `{near}`?" if near else ""
-        complaints.append(
-            f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
-        )
+        suggestion = f"; did you mean `{near}`?" if near else ""
+        names = ", ".join(sea_states.SPECTRA)
+        complaints.append(f"--spectrum: `{spectrum}` is neither {names} nor a file{suggestion}")
     chosen = [options.option(name) for name, each in waves.items() if each is not None]
     swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
     if len(swells) == 1:
-        complaints.append("--swell, --swell-tp: a swell has both a height and a period")
+        complaints.append("--swell and --swell-tp must be used together")
     if scatter is not None and (chosen or not named):
         complaints.append(
-            f"--scatter: gives heights and periods; leave {', '.join(chosen) or 'the file'} out"
+            f"--scatter contains heights and periods; leave out {', '.join(chosen) or 'the file'}"
         )
     elif scatter is None and path.is_file() and not named and chosen:
-        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own")
+        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own height and period")
     elif scatter is None and named and (chosen or spectrum != "bretschneider"):
         needs = ["--hs", *(["--tp"] if spectrum not in sea_states.OF_HEIGHT else [])]
         if missing := [name for name in needs if name not in chosen]:

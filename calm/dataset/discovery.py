@@ -70,7 +70,7 @@ def coverage(
     place : latitude and longitude [degrees]; empty if unknown
     """
     first, last = (np.datetime_as_string(one, "s") + "Z" for one in (time[0], time[-1]))
-    said: Attributes = {
+    attributes: Attributes = {
         "Conventions": CONVENTIONS,
         "naming_authority": "OceanSITES",
         "data_type": "OceanSITES time-series data",
@@ -84,9 +84,9 @@ def coverage(
         "time_coverage_duration": _duration(time[-1] - time[0]),
     }
     if len(time) > 1:
-        said["time_coverage_resolution"] = _duration(np.median(np.diff(time)))
+        attributes["time_coverage_resolution"] = _duration(np.median(np.diff(time)))
     if len(depth):
-        said |= {
+        attributes |= {
             "geospatial_vertical_min": float(min(depth)),
             "geospatial_vertical_max": float(max(depth)),
             "geospatial_vertical_positive": "down",
@@ -95,17 +95,17 @@ def coverage(
     for axis, unit, value in zip(
         ("lat", "lon"), ("degrees_north", "degrees_east"), place, strict=False
     ):
-        said |= {
+        attributes |= {
             f"geospatial_{axis}_min": float(value),
             f"geospatial_{axis}_max": float(value),
             f"geospatial_{axis}_units": unit,
         }
     if len(place) == 2:
         latitude, longitude = place
-        said |= {"geospatial_bounds": f"POINT ({latitude:.6f} {longitude:.6f})",
+        attributes |= {"geospatial_bounds": f"POINT ({latitude:.6f} {longitude:.6f})",
                  "geospatial_bounds_crs": "EPSG:4326",
                  "geospatial_bounds_vertical_crs": "EPSG:5831"}  # fmt: skip
-    return said
+    return attributes
 
 
 def _duration(span: np.timedelta64) -> str:

@@ -216,10 +216,13 @@ def of_net(
     meaning = "name of the leg, a line from its upper to its lower end"
     found.append(labels("leg_label", "leg", names, meaning))
     for part, legs in (("component", components), ("clamp", clamps), ("node", nodes)):
-        said = {"units": "1", "long_name": f"index of the leg that the {part} is in, from 0"}
+        index_attributes = {
+            "units": "1",
+            "long_name": f"index of the leg that the {part} is in, from 0",
+        }
         values = np.array([*legs], np.int32)
         if len(values):
-            found.append(Variable(f"{part}_leg", (part,), "<i4", said, values))
+            found.append(Variable(f"{part}_leg", (part,), "<i4", index_attributes, values))
     return found
 
 
@@ -336,13 +339,13 @@ def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Varia
         no discrete sampling geometry in the sense of CF
     of_what : the object at that position, for the long names
     """
-    said = np.array(name, dtype=np.str_)
+    label = np.array(name, dtype=np.str_)
     attributes: Attributes = {"long_name": "name of the mooring"}
     if len(place) < len(_PLACE):
-        return [Variable("station", (), said.dtype.str, attributes, said)], " station"
+        return [Variable("station", (), label.dtype.str, attributes, label)], " station"
     attributes["cf_role"] = "timeseries_id"
     return [
-        Variable("station", (), said.dtype.str, attributes, said),
+        Variable("station", (), label.dtype.str, attributes, label),
         *(
             Variable(
                 axis, (), "<f8",

@@ -5,11 +5,13 @@ This model is the common source of the printed sheets and their files.
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import groupby
 from math import inf, isnan
 from typing import TypeVar
 
 from calm.case import Design, Result
+from calm.case.result_tables import item_numbers
 from calm.checks.assessment import Assessment
 from calm.checks.design_check import check
 from calm.checks.finding import OWN
@@ -17,7 +19,14 @@ from calm.checks.inventory import InventoryItem
 from calm.checks.leg_graph import LegGraph
 from calm.checks.recovery import Recovery, recovery_of
 from calm.deck import deck_items
-from calm.deck.deck_items import DeckInstrument, DeckItem, Order, deck_items_of, instruments_of
+from calm.deck.deck_items import (
+    DeckInstrument,
+    DeckItem,
+    Order,
+    deck_items_of,
+    instruments_of,
+    standing_out,
+)
 from calm.deck.hardware import Cut, ShippedComponent, Stock, cuts_of, hardware_of, shipped_of
 from calm.drop import DropPlan, drop_plan
 from calm.drop.launch import SHIP_SPEED
@@ -81,7 +90,8 @@ class Lifts:
     ----------
     deployment : lifts in the order over the side
     recovery : lifts from the top of the line down to the release
-    unknown : labels of the pieces of unknown mass in air, any of which may be the heaviest lift
+    unknown : labels of all pieces and clamps of unknown mass in air, any of which may belong to the
+        heaviest lift
     """
 
     deployment: tuple[Lift, ...]
@@ -136,6 +146,11 @@ class Deck:
         """Return the file as read, in the environment of the sheets."""
         return self.result.file
 
+    @cached_property
+    def numbers(self) -> Mapping[str, str]:
+        """Number of each piece and clamp by label, as in the design check."""
+        return item_numbers(self.result)
+
     def leg(self, index: int) -> str:
         """Name of the leg that contains a piece; "" for a single line."""
         number = leg_numbers(self.file)[index]
@@ -183,8 +198,8 @@ def deck_of(
             notes.append(f"The mooring has no equilibrium in {_name(other)}: {failure}")
             continue
         results.append((_name(other), there))
-    parts = deck_items_of(result)
     assessment = check(*moorings)
+    parts = deck_items_of(result, standing_out(assessment.every_finding()))
     inventory, legs = assessment.inventory, leg_numbers(first.file)
     rise: Recovery | None = None
     plan: DropPlan | NoEquilibrium | None = None
@@ -252,7 +267,7 @@ def _standing(mooring: Design, notes: list[str]) -> Result:
         except NoEquilibrium:
             raise failure from None
         notes.append(
-            "The line is longer than the water is deep and slack in still water: the sheets "
+            "The line is longer than the water depth and slack in still water, so the sheets "
             f"show it in a current of {FAINT:g} m/s to the east; the anchor drop is computed "
             "in still water"
         )
@@ -316,7 +331,7 @@ def lifts_of(
         down += _stages(leg[::step], weights)
     for leg in by_leg:
         up += [*_stages([one for one in leg if one.index in rising][::-1], weights)][::-1]
-    unknown = tuple(one.label for one in pieces if _is_lifted(one) and one.lift_mass is None)
+    unknown = tuple(one.label for one in inventory if one.dry_mass is None)
     return Lifts(tuple(down), tuple(up), unknown)
 
 

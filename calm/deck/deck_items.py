@@ -2,13 +2,14 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
 
 from calm.case.design import AnyResult, Result
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
+from calm.checks.finding import Finding, State, governing_of_each_rule
 from calm.files import Clamp, Flexible, Piece
 from calm.files.logbook import DeployedItem
 from calm.files.mooring_file import leg_numbers
@@ -32,8 +33,10 @@ class DeckItem:
     depth, height : depth and height above the seabed of a clamp, or of the upper end of a piece [m]
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial number as designed
+    serial : serial number as designed, or those of its items
     deployed_serial, remark : as deployed; the serial number defaults to that of the design
+    apart : whether connecting hardware is drawn in a row of its own, because it governs a check or
+        has an open finding
     """
 
     part: Piece | Clamp
@@ -50,6 +53,7 @@ class DeckItem:
     serial: str | None
     deployed_serial: str | None
     remark: str | None
+    apart: bool = False
 
     @property
     def label(self) -> str:
@@ -60,6 +64,11 @@ class DeckItem:
     def name(self) -> str:
         """Name of the component, or its id if it has no name."""
         return self.part.component.name or self.part.use
+
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """Serial numbers as designed."""
+        return self.part.serials
 
     @property
     def planned_depth(self) -> float | None:
@@ -85,8 +94,17 @@ class DeckItem:
     @property
     def is_joint(self) -> bool:
         """Whether the item is hardware that only connects pieces, without data of its own."""
-        joins = self.role == "connector" and self.on is None and self.is_rigid
-        return joins and not self._is_told_of
+        return self.is_connector and not self._is_told_of
+
+    @property
+    def is_connector(self) -> bool:
+        """Whether the item is connecting hardware of the line: no cable, chain or clamp."""
+        return self.role == "connector" and self.on is None and self.is_rigid
+
+    @property
+    def is_swivel(self) -> bool:
+        """Whether the item is a swivel, which drawings always show."""
+        return "swivel" in f"{self.part.use} {self.name} {self.label}".lower()
 
     @property
     def _is_told_of(self) -> bool:
@@ -118,12 +136,23 @@ class DeckRow:
     ----------
     items : consecutive equal pieces, or equal clamps
     floats : equal floats on the cable or chain
-    joints : hardware between the items, and after them
+    between, after : hardware between the items, and after the last of them
     """
 
     items: tuple[DeckItem, ...]
     floats: tuple[DeckItem, ...] = ()
-    joints: tuple[DeckItem, ...] = ()
+    between: tuple[DeckItem, ...] = ()
+    after: tuple[DeckItem, ...] = ()
+
+    @property
+    def joints(self) -> tuple[DeckItem, ...]:
+        """Return all hardware of the row."""
+        return (*self.between, *self.after)
+
+    @property
+    def ends(self) -> bool:
+        """Whether a swivel follows, so that no further items join the row."""
+        return any(one.is_swivel for one in self.after)
 
     @property
     def first(self) -> DeckItem:
@@ -156,25 +185,32 @@ class DeckRow:
         many = f"{len(self.items)} × " if len(self.items) > 1 else ""
         return many + QUANTITIES["length"].format(self.first.cut_length)
 
-    @property
-    def joined(self) -> str:
-        """Describe the connecting hardware, such as `2 × 13 shackle`; "" if there is none."""
-        counts = Counter(one.hardware for one in self.joints)
-        return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
+
+def hardware_text(joints: Iterable[DeckItem]) -> str:
+    """Describe connecting hardware, such as `2 × 13 shackle`; "" if there is none."""
+    counts = Counter(one.hardware for one in joints)
+    return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
-def rows_on_paper(items: Sequence[DeckItem]) -> tuple[DeckRow, ...]:
-    """The rows in which items that follow one another are listed, in their order."""
+def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
+    """The rows in which items that follow one another are listed or drawn, in their order.
+
+    In a drawing, hardware that stands apart has a row of its own.
+    """
+
+    def is_joint(one: DeckItem) -> bool:
+        return one.is_joint and not (drawn and one.apart)
+
     rows: list[DeckRow] = []
-    for _, group in groupby(items, key=lambda one: one.is_joint or one.kind):
+    for _, group in groupby(items, key=lambda one: is_joint(one) or one.kind):
         run = tuple(group)
         last = rows[-1] if rows else None
         if last is None:
             rows.append(DeckRow(run))
-        elif run[0].is_joint:
-            rows[-1] = replace(last, joints=(*last.joints, *run))
-        elif last.first.kind == run[0].kind:
-            rows[-1] = replace(last, items=(*last.items, *run))
+        elif is_joint(run[0]):
+            rows[-1] = replace(last, after=(*last.after, *run))
+        elif last.first.kind == run[0].kind and not last.ends:
+            rows[-1] = DeckRow((*last.items, *run), last.floats, last.joints)
         elif _lies_on(run, last, items):
             rows[-1] = replace(last, floats=run)
         else:
@@ -184,13 +220,17 @@ def rows_on_paper(items: Sequence[DeckItem]) -> tuple[DeckRow, ...]:
 
 def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
     """The rows, like clusters of floats that one `count` has made joined."""
-    for _, alike in groupby(rows, key=lambda row: row.cluster or id(row)):
-        one, *others = alike
-        yield DeckRow(
-            sum((row.items for row in others), one.items),
-            sum((row.floats for row in others), one.floats),
-            sum((row.joints for row in others), one.joints),
-        )
+    joined: list[DeckRow] = []
+    key: tuple[object, ...] = ()
+    for row in rows:
+        if row.cluster and row.cluster == key and not joined[-1].ends:
+            last = joined.pop()
+            items, floats = (*last.items, *row.items), (*last.floats, *row.floats)
+            row = DeckRow(items, floats, (*last.joints, *row.between), row.after)
+        else:
+            key = row.cluster
+        joined.append(row)
+    yield from joined
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
@@ -215,24 +255,49 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
     return ", ".join(f"{count} × {name}" for name, count in counts.items())
 
 
-def deck_items_of(result: AnyResult) -> tuple[DeckItem, ...]:
-    """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece."""
+def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
+    """Labels of the pieces that govern a check with more than `SHOWN_USE`, or have an open
+    finding.
+    """
+    every = [*findings]
+    found = {one.component for one in governing_of_each_rule(every)
+             if (one.utilisation or 0.0) > SHOWN_USE}  # fmt: skip
+    for one in every:
+        if one.state not in (State.PASS, State.NOT_JUDGED):
+            found.update([one.component] if one.missing is None else one.missing.pieces)
+    return frozenset(label for label in found if label is not None)
+
+
+SHOWN_USE = 0.4999
+"""Utilisation above which the governing finding of a rule is shown in a row of its own."""
+
+
+def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
+    """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece.
+
+    Connecting hardware with a label in `apart` is drawn in a row of its own.
+    """
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
+    serials = deployed.serials if deployed else {}
     seabeds = [leg.water.depth for leg in result.legs]
     own = leg_numbers(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]
-        found.append(_deck_item(row, row, items, bottom))
-        found += (_deck_item(row, clamp, items, bottom) for clamp in clamps)
-    return tuple(found)
+        rows: list[ComponentRow | ClampRow] = [row, *clamps]
+        found += (_deck_item(row, one, items, serials, bottom) for one in rows)
+    return tuple(
+        replace(one, apart=True) if one.is_connector and one.label in apart else one
+        for one in found
+    )
 
 
 def _deck_item(
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
     items: Mapping[str, DeployedItem],
+    serials: Mapping[str, Sequence[str]],
     bottom: float,
 ) -> DeckItem:
     part = row.part
@@ -241,7 +306,7 @@ def _deck_item(
     depth, _, _ = row.upper
     return DeckItem(
         part=part, index=piece.index, serial=part.serial, remark=item.remark if item else None,
-        deployed_serial=(item.serial if item else None) or part.serial,
+        deployed_serial=", ".join(serials.get(part.label, ())) or part.serial,
         on=None if clamp is None else piece.label,
         at=None if clamp is None else clamp.at,
         of_length=None if clamp is None else piece.cut_length,

@@ -8,6 +8,7 @@ from math import ceil, pi
 
 from calm.case import Result
 from calm.checks.arrangement import unlike_metals
+from calm.checks.finding import grouped_by
 from calm.checks.inventory import InventoryItem
 from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
@@ -307,9 +308,7 @@ def shipped_of(
         for piece in file.pieces
         for part in parts_of([piece])
     }
-    groups: dict[str, list[InventoryItem]] = {}
-    for item in inventory:
-        groups.setdefault(item.use, []).append(item)
+    groups = grouped_by(inventory, lambda item: item.use)
     return tuple(_shipped_component(use, group, components) for use, group in groups.items())
 
 
@@ -337,6 +336,11 @@ def volume_of(component: Component, length: float | None) -> float | None:
     return component.displaced_volume
 
 
+def _missing(group: Sequence[InventoryItem], values: Sequence[float | None]) -> int:
+    """Count the items without a value."""
+    return sum(one.items for one, value in zip(group, values, strict=True) if value is None)
+
+
 def _shipped_component(
     use: str, group: Sequence[InventoryItem], components: dict[tuple[int, str], Component]
 ) -> ShippedComponent:
@@ -346,10 +350,10 @@ def _shipped_component(
     return ShippedComponent(
         use=use,
         name=group[0].name or use,
-        count=len(group),
+        count=sum(one.items for one in group),
         length=sum(one for one in lengths if one is not None) if lengths else None,
         mass=sum(one for one in masses if one is not None),
         volume=sum(one for one in volumes if one is not None),
-        missing_masses=masses.count(None),
-        missing_volumes=volumes.count(None),
+        missing_masses=_missing(group, masses),
+        missing_volumes=_missing(group, volumes),
     )

@@ -50,7 +50,7 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label beside the line: a part, its text, and its depth as text.
+    """A label next to the line: a part, its text, and its depth as text.
 
     `at` is its depth and its positions east and north [m]; None for a cable. `tag` is the mark and
     the number of its open finding.
@@ -106,9 +106,11 @@ def elevation(
     span = float(np.ptp(reach))
     listed = [*labels[: int((height - _ABOVE) / _NEAREST)]]
     flow = _LEFT + _FLOW
-    room = width - flow - _SYMBOLS - _longest(listed)
-    scale = max((depth + rise) / tall, span / max(room, 1.0))
-    if depth / scale < _LEAST * tall:  # too wide to have the labels beside it
+    upright = (depth + rise) / tall
+    beside = width - flow - _SYMBOLS
+    room = beside - min(_longest(listed), max(beside - span / upright, _LEAST_LABELS))
+    scale = max(upright, span / max(room, 1.0))
+    if depth / scale < _LEAST * tall:  # too wide for labels next to it
         listed, flow, room = [], _LEFT, width - _LEFT - 8.0
         scale = max((depth + rise) / tall, span / room)
     sea = _ABOVE + rise / scale
@@ -163,7 +165,9 @@ _STROKES: dict[str, dict[str, float | str]] = {
 }
 """Strokes of the lines, by the last letter of a code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
-_WIDEST_LABEL, _FIGURES = 106.0, 26.0
+_FIGURES, _GAP = 26.0, 6.0
+_LEAST_LABELS = 138.0
+"""Width up to which labels have room, however wide the mooring is."""
 _REAL = 0.78
 """Ratio of the actual width of a text to the upper bound given by `text_width`."""
 _MOST_LEVELS = 7
@@ -172,7 +176,7 @@ _MOST_LEVELS = 7
 def _longest(labels: Sequence[Label]) -> float:
     """Return the width of the labels with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
-    return min(_REAL * max(widths, default=0.0), _WIDEST_LABEL) + _FIGURES
+    return _REAL * max(widths, default=0.0) + _FIGURES + _GAP
 
 
 def _level(place: int, count: int, height: float) -> float:
@@ -214,7 +218,7 @@ def _draw_labels(
     pen.line(at, levels[0], at, levels[-1])
     left = at + 20.0
     for one, y in zip(labels, levels, strict=True):
-        sign = one.part.floats or one.part.sign
+        sign = one.part.sign
         if sign.symbol not in LINES:
             figure = figure_of(sign)
             scale = min(CLAMP_SCALE, (pitch - 1.0) / figure.height)
@@ -222,9 +226,9 @@ def _draw_labels(
         room = width - left - _FIGURES
         bold = one.at is not None
         tag = f" {one.tag}" if one.tag else ""
-        told = shortened(one.text, room / _REAL - text_width(tag, FONT, bold=bold), FONT, bold=bold)
+        text = shortened(one.text, room / _REAL - text_width(tag, FONT, bold=bold), FONT, bold=bold)
         style = {} if bold else {"font_style": "italic"}
-        page.draw("g", **style).letters(left, y, told + tag, size=FONT, bold=bold)
+        page.draw("g", **style).letters(left, y, text + tag, size=FONT, bold=bold)
         page.letters(width, y, one.depth, size=FONT, anchor="end")
 
 
@@ -266,13 +270,13 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
         page.letters(left - 4.0, y(level), number(level), size=FONT, colour=INK, anchor="end")
     named = -1e9
     for place, one in enumerate(loads):
-        capacity, falls, stands = one.capacity, one.launch, one.tension
+        capacity, falls, tension = one.capacity, one.launch, one.tension
         most = None if one.launch_capacity == capacity else one.launch_capacity
         x = left + 3.0 + place * step
         middle = x + 0.37 * step
         if falls:
             page.box(middle, (y(falls) + bottom) / 2, 0.74 * step, bottom - y(falls), fill=PALE)
-        page.box(middle, (y(stands) + bottom) / 2, 0.4 * step, bottom - y(stands), fill=INK)
+        page.box(middle, (y(tension) + bottom) / 2, 0.4 * step, bottom - y(tension), fill=INK)
         for load, dashes in ((capacity, "none"), (most, "1.2 1.2")):
             if load is not None and load <= highest:
                 page.line(x - 0.06 * step, y(load), x + 0.82 * step, y(load), stroke=INK,
@@ -327,7 +331,7 @@ def seabed_row(height: float) -> str:
 
 def row_height(part: ShownPart) -> float:
     """Return the smallest height of a row that contains the symbol of a part."""
-    if part.sign.symbol in LINES and part.floats is None:
+    if part.sign.symbol in LINES:
         return 19.0
-    scale = CLAMP_SCALE if part.clamped or part.floats else SYMBOL_SCALE
-    return max(13.0, scale * figure_of(part.floats or part.sign).height + 2.0)
+    scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE
+    return max(13.0, scale * figure_of(part.sign).height + 2.0)

@@ -427,8 +427,8 @@ class Axes:
             pen.letters(self.left + self.width / 2, at, below, size=size, anchor="middle")
         widest = max((text_width(each.text, size) for each in up), default=0.0)
         room = _TICK + 2.0 + (widest if numbered[1] else 0.0)
-        said = beside.split("\n") if beside else []
-        for number, text in enumerate(reversed(said)):
+        lines_beside = beside.split("\n") if beside else []
+        for number, text in enumerate(reversed(lines_beside)):
             x = self.left - room - (0.8 + 1.2 * number) * size
             turned = f"translate({x:.2f} {self.top + self.height / 2:.2f}) rotate(-90)"
             pen.draw("g", transform=turned).letters(0.0, 0.0, text, size=size, anchor="middle")
@@ -446,7 +446,6 @@ class Axes:
 
 
 def _path(x: Floats, y: Floats) -> str:
-    """Path of straight lines through points, interrupted at NaN."""
     parts: list[str] = []
     last: tuple[float, float] | None = None
     for here in zip(x.tolist(), y.tolist(), strict=True):

@@ -110,7 +110,6 @@ def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
 
 
 def _legend(side: LinePicture) -> list[LegendEntry]:
-    """Legend entries for each kind of line with a label, and for each role with marks."""
     lines = [
         LegendEntry(line.label, line=Stroke("#ced8df", 7.0))
         if line.kind is LineKind.BAND

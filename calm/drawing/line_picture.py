@@ -99,13 +99,13 @@ class LinePicture:
 
 
 def elevation_of(
-    result: AnyResult, beside: Sequence[Shape] = (), uncertain: Uncertain | None = None
+    result: AnyResult, overlays: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
     """Return the side view of a line, in the vertical plane of its excursion or its tow.
 
     Parameters
     ----------
-    beside : shapes of the mooring in other environments, or of other designs
+    overlays : shapes of the mooring in other environments, or of other designs
     uncertain : uncertainty of a mooring, for the band between 5 and 95 %
     """
     plane, depth = plane_of(result), QUANTITIES["depth"].label
@@ -123,7 +123,7 @@ def elevation_of(
             (line,), marks, across, depth, ship, *edges, height, water, environment.depth
         )
     lines = [*_beds(result), *([] if uncertain is None else [_band(uncertain)])]
-    lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
+    lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in overlays]
     legs = result.legs
     still = [leg.still_shape for leg in legs if leg.still_shape is not None]
     for kind, shapes, label in (
@@ -137,11 +137,11 @@ def elevation_of(
     return LinePicture(tuple(lines), marks, across, depth, None, *edges, seabed, True, seabed)
 
 
-def plan_of(result: AnyResult, beside: Sequence[Shape] = ()) -> LinePicture:
+def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
     """Return the view from above, with the anchor or the ship at zero, and optionally other
     shapes.
     """
-    shapes = [(LineKind.BESIDE, shape) for shape in beside]
+    shapes = [(LineKind.BESIDE, shape) for shape in overlays]
     shapes += [(LineKind.LINE, leg.shape) for leg in result.legs]
     return LinePicture(
         lines=tuple(Polyline(kind, shape.x, shape.y) for kind, shape in shapes),
@@ -178,8 +178,8 @@ def _beds(result: AnyResult) -> Iterator[Polyline]:
         slope = along(water.deeper_east, water.deeper_north, plane)
         if slope or water.depth < deepest:
             at = along(rows.x_top[-1], rows.y_top[-1], plane)
-            beside = at + np.array([-0.5, 0.5]) * np.ptp(drawn) / len(stand)
-            place = np.clip(beside, drawn.min(), drawn.max())
+            ends = at + np.array([-0.5, 0.5]) * np.ptp(drawn) / len(stand)
+            place = np.clip(ends, drawn.min(), drawn.max())
             yield Polyline(LineKind.SEABED, place, water.depth + slope * (place - at))
 
 
@@ -209,10 +209,10 @@ def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
-        width, ways = np.linalg.eigh(np.cov(x, y))
-        wide = ways[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
-        way = np.array(wide)
-        return way if (way[0] + 1e-9 * way[1]) >= 0.0 else -way
+        width, axes = np.linalg.eigh(np.cov(x, y))
+        wide = axes[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
+        axis = np.array(wide)
+        return axis if (axis[0] + 1e-9 * axis[1]) >= 0.0 else -axis
     if (tow := legs[0].file.tow) is not None:
         heading = np.radians(tow.toward)
         return -np.array([np.sin(heading), np.cos(heading)])

@@ -17,11 +17,11 @@ from calm.physics.line import Booleans, Floats, Integers, Line
 from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 
-LEAST = 0.12
+MIN_BAR_SHARE = 0.12
 """Smallest share of all bars in a cable or chain that is not short, since it may be the one that
 lies down on the seabed.
 """
-NOT_SHORT = 0.02
+SHORT_SHARE = 0.02
 """Share of all cables and chains above which one is not short."""
 
 
@@ -182,7 +182,7 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
     pieces, head = len(line.length), head_count(line)
     cable = float(line.length[line.flexible].sum())
     share = line.length / max(cable, 1e-300)
-    least = np.where(share > NOT_SHORT, count * LEAST, 1.0)
+    least = np.where(share > SHORT_SHARE, count * MIN_BAR_SHARE, 1.0)
     cuts = np.where(line.flexible, np.ceil(np.maximum(share * count, least)), 1.0)
     cuts[line.length == 0.0] = 0.0
     bars, span = np.zeros((pieces, 2), dtype=np.intp), np.zeros((pieces, 2))

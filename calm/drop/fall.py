@@ -19,7 +19,7 @@ SKIN, THICKEST_SKIN = 5e-4, 0.3
 """
 AT_REST = 1e-7
 """Motion in a step, as a share of the depth, below which the line has settled."""
-LONG = 1e6
+MAX_STEP = 1e6
 """Length of the longest step [s], after which a line has settled."""
 SLOWEST_FLOW = 0.01
 """Slowest flow past a line that is streamed less far than at the ship's speed [m/s]."""
@@ -120,18 +120,18 @@ def fall(
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
-    way = water.depth / fineness.steps
-    states, step = [start], 0.005 * way
+    sinking = water.depth / fineness.steps
+    states, step = [start], 0.005 * sinking
     while states[-1].node[-1, 2] > bottom:
-        if len(states) > _MOST * fineness.steps or step >= LONG:
+        if len(states) > _MOST * fineness.steps or step >= MAX_STEP:
             raise Status.ANCHOR_LIFTS.because(
                 f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line to "
                 "the seabed."
             )
         # released at once, without inertia, the anchor would pass the line next to it
-        borne = RELEASED_SHARE ** (len(states) - 1)
-        lighter = replace(anchor, weight=(1.0 - borne) * anchor.weight)
-        falling = mover if borne < 1e-3 else replace(mover, anchor=lighter)
+        carried = RELEASED_SHARE ** (len(states) - 1)
+        lighter = replace(anchor, weight=(1.0 - carried) * anchor.weight)
+        falling = mover if carried < 1e-3 else replace(mover, anchor=lighter)
         state = _stepped(falling, states[-1], step, water.depth)
         step = state.time - states[-1].time
         if state.node[-1, 2] <= bottom:
@@ -139,7 +139,7 @@ def fall(
             # the anchor
             state = _stepped(replace(mover, bedded=False), states[-1], step, water.depth)
         speed = float(np.linalg.norm(state.velocity[-1]))
-        step = min(_GROWTH * (state.time - states[-1].time), way / max(speed, 1e-300), LONG)
+        step = min(_GROWTH * (state.time - states[-1].time), sinking / max(speed, 1e-300), MAX_STEP)
         states.append(state)
     return Motion(mover, (*states[:-1], _passing(states[-2], states[-1], bottom)))
 
@@ -184,9 +184,9 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
     """Make a step, or a shorter one if necessary; NoEquilibrium: ``not-converged``."""
     shortest = _SHORTEST * depth
-    ways = (False, True) if state.velocity.any() else (True,)
+    extrapolations = (False, True) if state.velocity.any() else (True,)
     while step > shortest:
-        for gently in ways:
+        for gently in extrapolations:
             with suppress(NoStep):
                 return mover.stepped(state, step, gently)
         step *= 0.4
@@ -205,7 +205,7 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
     states = [state]
     for _ in range(_FALLS + 1):
         length = step
-        while length < LONG:
+        while length < MAX_STEP:
             after = _stepped(mover, states[-1], length, depth)
             length = _REST_GROWTH * (after.time - states[-1].time)
             states.append(after)
@@ -238,7 +238,6 @@ def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
 
 
 def _streamed(state: ChainState) -> float:
-    """Horizontal distance from the lower end to the free end [m]."""
     return float(np.linalg.norm(state.node[0, :2] - state.node[-1, :2]))
 
 
@@ -264,7 +263,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     while excess(share := max(0.5 * share, least)) > 0.0:
         if share == least:
             raise UsageError(
-                f"behind a ship that hardly moves the line still streams {_streamed(state):.1f} m: "
+                f"even behind a very slow ship the line streams {_streamed(state):.1f} m, so "
                 f"it cannot be streamed to {streamed:g} m"
             )
     excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))

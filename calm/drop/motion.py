@@ -24,11 +24,11 @@ LINEAR_DRAG_SPEED = 10.0
 """Speed below which drag is linear in the speed, in the first iteration of a step from rest
 [m/s].
 """
-CLOSE = 1e-5
+CHANGE = 1e-5
 """Tolerance of the last change of a position, as a share of the line, and of a tension, as a share
 of all weights; the remaining error is of the order of its square.
 """
-SINKING = 1e-4
+BEARING_DEPTH = 1e-4
 """Penetration of the seabed at which it carries a node, as a share of the water depth."""
 
 _UNIT = np.eye(3)
@@ -124,8 +124,8 @@ class Mover:
             share = min(1.0, 0.2 * reach / max(farthest, 1e-300))
             node -= share * moved[:, :3]
             tension -= share * moved[:-1, 3]
-            close = farthest < CLOSE * reach
-            if close and np.abs(moved[:-1, 3]).max() < CLOSE * self.scale and slowest == SLOWEST:
+            close = farthest < CHANGE * reach
+            if close and np.abs(moved[:-1, 3]).max() < CHANGE * self.scale and slowest == SLOWEST:
                 if _overturned(state.node, node):
                     break
                 return ChainState(state.time + step, node, tension, (node - state.node) / step)
@@ -262,7 +262,7 @@ class Mover:
 
     @cached_property
     def _sinking(self) -> float:
-        return SINKING * self.sea.water.depth
+        return BEARING_DEPTH * self.sea.water.depth
 
     @cached_property
     def _bearing(self) -> Floats:

@@ -123,31 +123,31 @@ class DropPlan:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings about assumptions and doubtful results of the plan."""
-        said = []
+        texts = []
         if not self.drag_known:
-            said.append("The anchor has no `kt`; the drag of a cube of equal volume is assumed.")
+            texts.append("The anchor has no `kt`; the drag of a cube of equal volume is assumed.")
         if self.rest_difference is None:
-            said.append(
+            texts.append(
                 "In still water the line is slack and its shape is not unique, so the line at rest "
                 "is not compared with an equilibrium."
             )
         elif self.rest_difference > REST_TOLERANCE * self.mooring.water.depth:
-            said.append(
+            texts.append(
                 f"The line settles {self.rest_difference:.2f} m from its equilibrium, more than a "
                 "thousandth of the depth. The depths of instruments are not shown, and the results "
                 "of the fall are uncertain."
             )
         if self.fall_time < SHORT_FALL:
-            said.append(
+            texts.append(
                 f"The fall takes only {self.fall_time:.0f} s. Inertia is neglected; it may add "
                 "half a second and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
-            said.append("Strumming is neglected; the drag of cables is that at rest.")
+            texts.append("Strumming is neglected; the drag of cables is that at rest.")
         names = ", ".join(each.label for each in self.depths if each.beyond)
         if names:
-            said.append(f"Depth rating exceeded during the drop: {names}.")
-        return tuple(said)
+            texts.append(f"Depth rating exceeded during the drop: {names}.")
+        return tuple(texts)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the plan as a JSON object, in SI units."""

@@ -1,10 +1,10 @@
 """Ids of the mooring file from the names of parts in other programs."""
 
 import re
-import unicodedata
 from collections.abc import Iterable
 
 from calm.exchange.model import ImportedComponent
+from calm.files.catalogue import tidy_id
 
 _LONGEST = 40
 _NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
@@ -14,9 +14,7 @@ _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&
 def _kebab(name: str) -> str:
     """Convert a name to an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
-    text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
-    text = re.sub(r"(?<=\d)\.(?=\d)", "p", text)
-    return re.sub(r"[^a-z0-9]+", "-", text)[:_LONGEST].strip("-")
+    return tidy_id(re.sub(r"(?<=\d)\.(?=\d)", "p", text))[:_LONGEST].strip("-")
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:

@@ -82,6 +82,8 @@ def import_file(
     chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and not chosen.takes_elements:
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
+    if options.sheet is not None and chosen.name != "table":
+        raise refused(path, f"is of {chosen.program}; --sheet is for workbooks")
     assert chosen.read is not None
     design = chosen.read(path, options)
     levels = 0 if design.water is None else len(design.water.current)

@@ -30,12 +30,14 @@ class ImportOptions:
     columns : the headings of a table, by the name of the column in CALM
     elements : a library with the figures missing in a table
     allow_include : whether a file may include one from outside its folder
+    sheet : name of the sheet with the list in a workbook; None if only one can be meant
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     elements: Path | None = None
     allow_include: bool = False
+    sheet: str | None = None
 
 
 @dataclass(frozen=True)

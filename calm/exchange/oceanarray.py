@@ -61,9 +61,11 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     if depth is None and not problems:
         reading.refuse((), "needs `waterdepth`")
     if not line:
-        said = f"lists {len(beside)} instruments and no line: its floats, releases and anchor, with"
-        said += " `hab` or `length` and a name in `label`, belong under `inline`"
-        reading.refuse((), said)
+        message = (
+            f"lists {len(beside)} instruments and no line: its floats, releases and anchor, with"
+        )
+        message += " `hab` or `length` and a name in `label`, belong under `inline`"
+        reading.refuse((), message)
     if len(line) + len(beside) > model.MOST_PIECES:
         reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
     if problems:
@@ -154,9 +156,9 @@ class _Reading:
     problems: list[Problem]
     depth: float | None = None
 
-    def refuse(self, place: _Location, said: str) -> None:
+    def refuse(self, place: _Location, message: str) -> None:
         """Add a problem at a place of the file."""
-        self.problems.append(self.document.problem(place, said))
+        self.problems.append(self.document.problem(place, message))
 
     def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
         """Return a length or height of an item [m]; None if it is missing or wrong."""
@@ -220,21 +222,21 @@ class _Parts:
         """Return the component of an item, and what about it is guessed; None if nothing is
         known.
         """
-        said = f"neither the library nor the catalogue has `{entry.names[0]}`"
-        return self._named(entry.names, entry.instrument, entry.place, said)
+        message = f"neither the library nor the catalogue has `{entry.names[0]}`"
+        return self._named(entry.names, entry.instrument, entry.place, message)
 
     def rope(self, entry: _Entry, between: str) -> _Found | None:
         """Return the rope that is inserted below an item."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
-        self, names: tuple[str, ...], instrument: str, place: _Location, said: str
+        self, names: tuple[str, ...], instrument: str, place: _Location, message: str
     ) -> _Found | None:
         if names not in self._known:
             self._known[names] = self._found(names, instrument)
             if self._known[names] is None:
-                said += f'; add it to --elements FILE, or give its id: --define "{names[0]}=ID"'
-                self.reading.refuse(place, said)
+                message += f'; add it to --elements FILE, or give its id: --define "{names[0]}=ID"'
+                self.reading.refuse(place, message)
         return self._known[names]
 
     def _found(self, names: tuple[str, ...], instrument: str) -> _Found | None:
@@ -255,7 +257,7 @@ class _Parts:
             if self.catalogue.entry(name) is not None:
                 return self._entry(name, name), ""
         if found := instrument and Index(self.catalogue).search(instrument):
-            guess = f"the first that `calm catalog search {instrument}` finds"
+            guess = f"the first that `calm catalog list {instrument}` finds"
             return self._entry(instrument, found[0].id), guess
         return None
 
@@ -314,8 +316,8 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
         flexible = component.kind in FLEXIBLE_KINDS
         extent = entry.length if flexible else component.number("length")
         if extent is None:
-            said = f"`{entry.label}` is a line and needs a `length`"
-            parts.reading.refuse(entry.place, said)
+            message = f"`{entry.label}` is a line and needs a `length`"
+            parts.reading.refuse(entry.place, message)
             continue
         at = nominal[-1]
         lower = None if flexible else entry.lower_end(extent * entry.count)
@@ -329,13 +331,13 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
                     )
                     add(piece, nominal[-1], gap)
             elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
-                said = (
+                message = (
                     f"its lines below are {roped:.6g} m long, its height says {roped + gap:.6g} m"
                 )
-                design.guessed.append(model.Remark(entry.label, said))
+                design.guessed.append(model.Remark(entry.label, message))
             elif gap < -_CLOSE:
-                said = f"overlaps the piece below by {-gap:.3g} m; it is placed on top"
-                design.guessed.append(model.Remark(entry.label, said))
+                message = f"overlaps the piece below by {-gap:.3g} m; it is placed on top"
+                design.guessed.append(model.Remark(entry.label, message))
                 lower = nominal[-1]
             at, below, roped = lower, f"`{entry.label}`", 0.0
         elif flexible:
@@ -363,8 +365,8 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
     for entry in beside:
         found, wanted = parts.of(entry), entry.height
         if wanted is None:
-            said = f"`{entry.label}` needs `hab`, its height above the bottom"
-            parts.reading.refuse(entry.place, said)
+            message = f"`{entry.label}` needs `hab`, its height above the bottom"
+            parts.reading.refuse(entry.place, message)
         if found is None or wanted is None or not lines:
             continue
         top = float(np.interp(wanted, nominal, height)) + max(wanted - float(nominal[-1]), 0.0)
@@ -396,8 +398,8 @@ def _heading(reading: _Reading) -> dict[str, str]:
             latitude, longitude = place
             lines["position"] = f"{{latitude: {latitude} deg, longitude: {longitude} deg}}"
         break
-    said = {"ship": "deployment_ship", "cruise": "deployment_cruise"}
-    known = {key: data.get(key) or data.get(other) for key, other in said.items()}
+    renamed = {"ship": "deployment_ship", "cruise": "deployment_cruise"}
+    known = {key: data.get(key) or data.get(other) for key, other in renamed.items()}
     if any(known.values()):
         from calm.exchange.design_writer import quoted
 

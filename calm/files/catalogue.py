@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, zip_longest
@@ -42,7 +43,7 @@ _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.
 class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
-    kind: Literal["assembly"] = Field(description="which kind of component it is")
+    kind: Literal["assembly"] = Field(description="kind of the component")
     parts: tuple[dict[str, Any], ...] = described(
         "pieces as in `line`, from the top",
         [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
@@ -90,18 +91,19 @@ class Catalogue:
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Return an entry; one without `kind` completes the definition of the same id in this
-        catalogue.
+        """Return an entry without the keys that have no value; one without `kind` completes the
+        definition of the same id in this catalogue.
 
-        Keys without a value are left out. Assemblies have no figures to complete.
+        Assemblies have no figures to complete.
         """
-        section, below = entry.section, self.entry(entry.id)
+        below = self.entry(entry.id)
+        given = {key: value for key, value in entry.section.data.items() if value is not None}
+        section = entry.section.holding(given)
         kind = None if below is None else below.section.data.get("kind")
-        if below is None or "kind" in section.data or kind not in KINDS:
-            return entry
-        given = {key: value for key, value in section.data.items() if value is not None}
+        if below is None or "kind" in given or kind not in KINDS:
+            return CatalogueEntry(entry.id, entry.family, section)
         void = contradicted(str(kind), below.section.data.keys(), given.keys())
-        whole = section.holding(given).over(below.section, dropping=void)
+        whole = section.over(below.section, dropping=void)
         return CatalogueEntry(entry.id, below.family, whole)
 
     def ids(self) -> list[str]:
@@ -119,7 +121,6 @@ class Catalogue:
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
-        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
     def _all(self) -> dict[str, CatalogueEntry]:
@@ -375,6 +376,17 @@ def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple
     return (definition if isinstance(definition, Component) else None), tuple(problems)
 
 
+_LETTERS = str.maketrans(
+    {"ø": "o", "æ": "ae", "œ": "oe", "đ": "d", "ð": "d", "þ": "th", "ł": "l", "ı": "i", "⁄": "-"}
+)
+"""Letters, and the sign of fractions, that have no decomposition into ASCII."""
+
+
 def tidy_id(text: str) -> str:
-    """Return a text as an id: lower-case letters, digits and hyphens."""
-    return re.sub(r"[^a-z0-9]+", "-", text.casefold()).strip("-")
+    """Return a text as an id: lower-case letters, digits and hyphens; letters lose their accents.
+
+    ``Bøye 1½"`` becomes ``boye-1-1-2``.
+    """
+    decomposed = unicodedata.normalize("NFKD", re.sub(r"(?<=\d)(?=[¼-¾⅐-⅞])", " ", text).casefold())
+    plain = re.sub(r"[\u0300-\u036f]", "", decomposed).translate(_LETTERS)
+    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")

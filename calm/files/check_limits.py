@@ -58,7 +58,7 @@ class SafetyFactors(definition.Model):
     """Minimum ratios of breaking load to tension, by material."""
 
     steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
-        "of steel and everything that is not rope", 3, default=3.0
+        "of steel, and of all materials except synthetic rope", 3, default=3.0
     )
     synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
         "of synthetic rope", 5, default=5.0
@@ -105,13 +105,13 @@ class Checks(definition.Model):
         "buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
     )
     minimum_rise_speed: Annotated[float, _SPEED, Limit()] = definition.described(
-        "speed of the rise once the release has opened", "0.3 m/s", default=0.3
+        "speed of the ascent after release", "0.3 m/s", default=0.3
     )
     launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = definition.described(
-        "breaking load over tension, as the line falls behind its anchor", 2, default=2.0
+        "breaking load over tension during the anchor drop", 2, default=2.0
     )
     launch_working_factor: Annotated[float, _FACTOR, Limit()] = definition.described(
-        "working load over tension there", 1, default=1.0
+        "working load over tension during the anchor drop", 1, default=1.0
     )
     waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = definition.described(
         "breaking load over maximum tension in waves", 1.67, default=1.67
@@ -120,7 +120,9 @@ class Checks(definition.Model):
         "life in waves over `service_time`", 3, default=3.0
     )
     service_time: Annotated[float, definition.QuantityField("time", above=0), Limit()] = (
-        definition.described("between two renewals of the line", "730 d", default=365.0 * 86_400.0)
+        definition.described(
+            "time between two renewals of the line", "730 d", default=365.0 * 86_400.0
+        )
     )
     minimum_reserve: Annotated[float, _SHARE, Limit()] = definition.described(
         "share of a surface float's buoyancy that must remain", 0.3, default=0.3
@@ -190,6 +192,7 @@ class LimitKey:
     default : default [SI, degrees]; None if there is none
     source : source of the default
     backed : whether the design gives the source of its own value
+    share : whether the value is a share, which is shown in percent
     """
 
     name: str
@@ -198,6 +201,7 @@ class LimitKey:
     default: float | None
     source: str
     backed: bool = True
+    share: bool = False
 
     @property
     def departs(self) -> bool:
@@ -218,7 +222,10 @@ def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]
         elif limit is not None and quantity is not None:
             default = limit.default if field.default is None else field.default
             used = default if value is None else value
-            yield LimitKey(prefix + name, quantity.dimension, used, default, limit.source)
+            share = quantity == _SHARE
+            yield LimitKey(
+                prefix + name, quantity.dimension, used, default, limit.source, share=share
+            )
 
 
 def _day(text: str) -> str:
@@ -227,10 +234,10 @@ def _day(text: str) -> str:
             return text
     except ValueError:
         pass
-    raise ValueError(f"`{shown(text)}` is not a day of the calendar; write it as 2027-06-30")
+    raise ValueError(f"`{shown(text)}` is not a date; write it as 2027-06-30")
 
 
-def _said(text: str) -> str:
+def _reason(text: str) -> str:
     if not text.strip():
         raise ValueError("`reason` is blank")
     if not any(sign.isalnum() for sign in text):
@@ -245,7 +252,7 @@ Day = Annotated[
 ]
 """A date such as 2027-06-30. Dates sort correctly as texts."""
 
-Reason = Annotated[definition.Text, AfterValidator(_said)]
+Reason = Annotated[definition.Text, AfterValidator(_reason)]
 
 
 class AcceptKeys(definition.Model):
@@ -258,11 +265,11 @@ class AcceptKeys(definition.Model):
         "reason for accepting the finding", "no load is published; hung on chain"
     )
     component: definition.Text | None = definition.optional(
-        "label of the line, or a pattern of labels; all when absent", "glass *"
+        "label of the line, or a pattern of labels; by default all", "glass *"
     )
     by: definition.Text | None = definition.optional("who accepts it", "A. Martin")
     date: Day | None = definition.optional("day, e.g. 2026-11-20", "2026-11-22")
-    until: Day | None = definition.optional("last day on which it counts", "2027-12-31")
+    until: Day | None = definition.optional("last day of validity", "2027-12-31")
     load: Annotated[float | None, definition.QuantityField("force", above=0)] = definition.optional(
         "maximum tension accepted, such as a proof load", "25 kN"
     )
@@ -318,13 +325,13 @@ def _accept(
         message = unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE)
         top.refuse((*here, "rule"), message)
     if keys.load is not None and keys.rule not in LOADED:
-        message = f"`load` is a tension, and `{keys.rule}` judges none"
+        message = f"`load` is a tension, but the rule `{keys.rule}` does not use tensions"
         top.refuse((*here, "load"), message)
     covered = None
     if keys.component is not None and labels is not None:
         covered = tuple(matching(keys.component, labels))
         if not covered:
-            top.refuse((*here, "component"), _nothing_called(keys.component, labels))
+            top.refuse((*here, "component"), _no_such_label(keys.component, labels))
     line = top.problem(here, "").line
     return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
@@ -341,7 +348,7 @@ def matching(component: str, labels: Iterable[str]) -> list[str]:
     return [label for label in labels if fnmatchcase(label, component)]
 
 
-def _nothing_called(component: str, labels: Sequence[str]) -> str:
+def _no_such_label(component: str, labels: Sequence[str]) -> str:
     text = shown(component)
     message = f"no piece or clamp is called `{text}`"
     if any(label.startswith(f"{component} ") for label in labels):

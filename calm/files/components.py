@@ -89,7 +89,7 @@ class Flexible(definition.Definition):
 class Cable(Flexible):
     """A rope, wire or electrical cable."""
 
-    kind: Literal["cable"] = Field(description="which kind of component it is")
+    kind: Literal["cable"] = Field(description="kind of the component")
     buoyancy: Annotated[float | None, QuantityField("force per length")] = optional(
         "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)", "0.1 N/m"
     )
@@ -137,7 +137,10 @@ class Cable(Flexible):
     @model_validator(mode="after")
     def _weight_is_given_once(self, info: ValidationInfo) -> Cable:
         if self.weight is not None and self.buoyancy is not None:
-            raise ValueError("gives both `weight` and `buoyancy`; one is the other negated")
+            raise ValueError(
+                "has both `weight` and `buoyancy`; give only one, since each is the negative "
+                "of the other"
+            )
         if self._gives_no_force:
             if not definition.is_in_air(info) and (self.mass is None or self.density is None):
                 raise ValueError("needs `weight` or `buoyancy` in water, or `mass` with `density`")
@@ -152,7 +155,7 @@ class Cable(Flexible):
             if self.permanent_elongation is not None:
                 raise ValueError("`permanent_elongation` needs `elongation`")
         elif self.stiffness is not None:
-            raise ValueError("gives both `stiffness` and `elongation`; one says how it stretches")
+            raise ValueError("has both `stiffness` and `elongation`; give only one")
         elif self.breaking_load is None:
             raise ValueError("`elongation` needs `breaking_load`: its loads are shares of that")
         return self
@@ -169,7 +172,7 @@ class Cable(Flexible):
 class Chain(Flexible):
     """A chain; `diameter` is that of the bar."""
 
-    kind: Literal["chain"] = Field(description="which kind of component it is")
+    kind: Literal["chain"] = Field(description="kind of the component")
     weight: WeightPerMetre = Field(default=None, examples=["27 N/m"])
     mass: MassPerMetre = Field(default=None, examples=["3.2 kg/m"])
 
@@ -198,7 +201,7 @@ class Anchor(definition.Definition):
     """The anchor at the lower end, which has no drag in equilibrium."""
 
     role: definition.Role = "anchor"
-    kind: Literal["anchor"] = Field(description="which kind of component it is")
+    kind: Literal["anchor"] = Field(description="kind of the component")
     mass: definition.Mass = None
     weight: Annotated[float | None, QuantityField("force", at_least=0)] = optional(
         "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
@@ -208,7 +211,7 @@ class Anchor(definition.Definition):
     friction: Annotated[float | None, QuantityField("number", above=0, at_most=10)] = optional(
         "coefficient on the seabed", 0.6
     )
-    kt: definition.TangentialDrag = None
+    kt: definition.TangentialDrag = Field(default=None, examples=["200 N/(m/s)^2"])
 
     @property
     def net_buoyancy(self) -> float:
@@ -309,16 +312,23 @@ class Outline(definition.Definition):
         given = self.model_dump(exclude_none=True)
         also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
         keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
-        said = f"no source gives {keys} of `{id}`: measure or ask the maker, and give it here"
-        said += f", with {judged} for the design check" if judged else ""
-        return f"{said} (the rest is from: {self.source})" if self.source else said
+        message = (
+            f"no source gives {keys} of `{id}`: measure it or ask the manufacturer, and "
+            "specify it here"
+        )
+        message += f", with {judged} for the design check" if judged else ""
+        return f"{message} (the rest is from: {self.source})" if self.source else message
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
     """Return the keys listed under `searched` that are necessary and missing."""
-    sought = fields.get("searched")
-    known = sought if isinstance(sought, list | tuple) else ()
-    return [key for key, ways in _ESSENTIAL.items() if key in known and not fields.keys() & ways]
+    searched = fields.get("searched")
+    known = searched if isinstance(searched, list | tuple) else ()
+    return [
+        key
+        for key, alternatives in _ESSENTIAL.items()
+        if key in known and not fields.keys() & alternatives
+    ]
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
@@ -384,8 +394,8 @@ def odd_overrides(
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (
-            f"`mass` of {use} is overridden, its net force in water is not; override that too if "
-            "it changes"
+            f"`mass` of {use} is overridden, but not its net force in water; override it, "
+            "too, if it changes"
         )
     if isinstance(defined, Anchor) and isinstance(component, Anchor) and "weight" in given:
         share = 1.0 - CATALOGUE_DENSITY / (defined.material_density or STEEL_DENSITY)
@@ -395,6 +405,6 @@ def odd_overrides(
     fibre = fibre_of(defined.material)
     if fibre is not None and fibre_of(component.material) is None:
         yield (
-            f"`material: {component.material}` of {use}, which is {fibre.name}: it is no longer "
-            "judged as a rope of fibre"
+            f"`material: {component.material}` of {use}, which is {fibre.name}: it is no "
+            "longer checked as a fibre rope"
         )

@@ -6,7 +6,7 @@ is not given. Net forces are those in sea water of `CATALOGUE_DENSITY` under sta
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -27,13 +27,13 @@ from pydantic_core import CoreSchema, core_schema
 from calm.errors import UsageError, about_quantity
 from calm.physics.materials import MATERIAL_NAMES
 from calm.positions import HEMISPHERES
+from calm.quantities import say
 from calm.units import (
     DIMENSIONS,
     KILOGRAM_FORCE,
     QuantityError,
     QuantityRange,
     parse_quantity,
-    with_unit,
 )
 
 
@@ -226,22 +226,23 @@ class EstimatedFigure(Model):
         """Return the lower bound for a line in waves, or for a line at rest."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
-    def in_words(self, said: Callable[[float], str]) -> str:
-        """Return the bounds, the best estimate, the source and its quality as text, each figure
-        formatted by `said`.
-        """
-        waves = self.low_in_waves
-        figures = (
-            f"{said(self.low)} at least",
-            f"{said(waves)} in waves" if waves is not None else "",
-            f"{said(self.value)} likely" if self.value is not None else "",
-        )
+    @property
+    def bounds_text(self) -> str:
+        """The bounds and the best estimate, such as ``at least 7.36 kN, probably 33.18 kN``."""
+        name = self.quantity if self.quantity in ("max_tilt", "depth_rating") else "load"
+        text, best = f"at least {say(name, self.low)}", self.value
+        if self.low_in_waves is not None:
+            text += f" ({say(name, self.low_in_waves)} in waves)"
+        return text if best in (None, self.low) else f"{text}, probably {say(name, best)}"
+
+    @property
+    def in_words(self) -> str:
+        """The bounds, the best estimate, the source and its quality."""
         quality = f", quality {self.quality}" if self.quality is not None else ""
-        return f"{', '.join(filter(None, figures))} ({self.source}{quality})"
+        return f"{self.bounds_text} ({self.source}{quality})"
 
     def __str__(self) -> str:
-        unit = DIMENSIONS[_estimated(self.quantity).dimension].unit
-        return f"`{self.quantity}` is estimated: {self.in_words(lambda one: with_unit(one, unit))}"
+        return f"`{self.quantity}` is estimated: {self.in_words}"
 
     @model_validator(mode="after")
     def _low_is_least(self) -> EstimatedFigure:
@@ -291,16 +292,19 @@ class Definition(Model):
     note: Text | None = optional("any remark", "galvanised; inspect after each cruise")
     source: Text | None = optional("source of the figures", "data sheet of the manufacturer, 2026")
     sources: dict[str, Text] | None = optional(
-        "source of each figure that is not from `source`, by field",
+        "sources of the values that are not from `source`, by key",
         {"breaking_load": "test of 2025"},
     )
     searched: tuple[str, ...] | None = optional(
-        "fields that were searched for and that no source gives", ["breaking_load"]
+        "keys for which no source was found", ["breaking_load"]
     )
-    prefer: Text | None = optional(
-        "id of the definition of the same product to use instead of this one", "sbe37"
-    )
+    prefer: Text | None = optional("id of the better documented entry of the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
+    items: Annotated[int | None, Field(ge=1)] = optional(
+        "number of equal items it consists of, each with its own serial number, such as two "
+        "releases in parallel",
+        2,
+    )
     depth_rating: PositiveLength = optional("maximum depth of use", "2000 m")
     working_load: PositiveForce = optional("load it may carry in use, e.g. 20 kN", "20 kN")
     breaking_load: PositiveForce = optional("load at which it breaks, e.g. 40 kN", "40 kN")
@@ -321,7 +325,7 @@ class Definition(Model):
     warn_tilt: Annotated[float | None, TILT] = optional("tilt that causes a warning", "15 deg")
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
-        description="estimates of figures that are not given, for the rules that need them",
+        description="estimates of unpublished values, for the design check",
         json_schema_extra=_alone_or_listed,
         examples=[
             {
@@ -343,7 +347,9 @@ class Definition(Model):
     @property
     def estimates(self) -> dict[str, EstimatedFigure]:
         """Return the estimates of figures that are not given, by figure."""
-        every = {one.quantity: one for one in self.estimate or ()}
+        if self.estimate is None:
+            return {}
+        every = {one.quantity: one for one in self.estimate}
         return {name: one for name, one in every.items() if getattr(self, name) is None}
 
     @model_validator(mode="after")

@@ -236,17 +236,17 @@ class EnvironmentKeys(TowEnvironmentKeys):
     )
     depth: Annotated[float, _WATER_DEPTH] = described("water depth, e.g. 1100 m", "1100 m")
     maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "a faster current is an error", "3 m/s", default=_MAXIMUM_SPEED
+        "speed above which a current is an error", "3 m/s", default=_MAXIMUM_SPEED
     )
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = optional(
         "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"]
     )
     fouling: Fouling | None = optional(
-        "growth on everything from the surface down, for the design check",
+        "biofouling from the surface downwards, for the design check",
         {"depth": "50 m", "thickness": "20 mm"},
     )
     seabed: SeabedGiven | None = optional(
-        "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
+        "slope of the seabed below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
     waves: WaveKeys | None = optional(
         "one sea state, or a table of sea states, for the design check",
@@ -331,7 +331,7 @@ def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
     water_depth = math.inf if depth is None else depth
     found = (*current.doubts, *profile_doubts(levels, u, v, water_depth))
-    return [f"{said[0].upper()}{said[1:]}" + "." * (said[-1] != "?") for said in found]
+    return [f"{doubt[0].upper()}{doubt[1:]}" + "." * (doubt[-1] != "?") for doubt in found]
 
 
 def _wind_doubts(wind: water.Wind | None) -> list[str]:
@@ -346,8 +346,8 @@ def _tide_doubts(levels: tuple[float, float]) -> list[str]:
     if (between := levels[1] - levels[0]) <= GREATEST_TIDE:
         return []
     return [
-        f"`depth_range` spans {between:g} m, and the largest tides 17 m: was it cm, or are these "
-        "not low and high water?"
+        f"`depth_range` spans {between:g} m, but the largest tides are 17 m: are these the depths "
+        "at low and at high water, and is the unit right?"
     ]
 
 

@@ -98,11 +98,11 @@ _DIMENSIONS = {
 def differences(before: MooringFile, after: MooringFile) -> Differences:
     """Compare two files of the same kind."""
     lines = before.pieces, after.pieces
-    hung = [[(piece.index, clamp) for piece in line for clamp in piece.clamps] for line in lines]
+    clamped = [[(piece.index, clamp) for piece in line for clamp in piece.clamps] for line in lines]
     pieces = align(*map(_known_pieces, lines))
     partner = dict(pieces.pairs)
-    clamps = align(_known_clamps(hung[0], partner), _known_clamps(hung[1], None))
-    parts = [[clamp for _, clamp in each] for each in hung]
+    clamps = align(_known_clamps(clamped[0], partner), _known_clamps(clamped[1], None))
+    parts = [[clamp for _, clamp in each] for each in clamped]
     kinds: list[tuple[Alignment, Sequence[Piece | Clamp], Sequence[Piece | Clamp]]] = [
         (pieces, *lines),
         (clamps, parts[0], parts[1]),
@@ -112,7 +112,9 @@ def differences(before: MooringFile, after: MooringFile) -> Differences:
         names, others = (own_labels([part.label for part in each]) for each in (first, second))
         for i, j in found.pairs:
             changed += _of_part(first[i], second[j], names[i], others[j])
-            if found is clamps and partner.get(above := hung[0][i][0]) != (below := hung[1][j][0]):
+            if found is clamps and partner.get(above := clamped[0][i][0]) != (
+                below := clamped[1][j][0]
+            ):
                 on = _text(lines[0][above].label), _text(lines[1][below].label)
                 changed.append(Change(f"{first[i].label}.on", *on))
     return Differences(
@@ -196,7 +198,9 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
         found |= {f"{name}.{key}": one for key, one in given.items()}
     for name, overlay in file.variants.items():
         given = overlay if isinstance(overlay, dict) else {"": overlay}
-        found |= {f"environments.{name}.{key}": _text(_said(one)) for key, one in given.items()}
+        found |= {
+            f"environments.{name}.{key}": _text(_value_text(one)) for key, one in given.items()
+        }
     found["releases"] = _figure("releases", file.releases or None)
     return found
 
@@ -218,7 +222,6 @@ def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, Com
 
 
 def _fields(part: Any) -> dict[str, Any]:
-    """Return the fields of a model or a dataclass by name."""
     if isinstance(part, BaseModel):
         return dict(part)
     return {field.name: getattr(part, field.name) for field in fields(part)}
@@ -237,7 +240,7 @@ def _figure(name: str, value: Any, dimension: str | None = None) -> ComparedValu
         dimension = dimension or _DIMENSIONS.get(name)
         unit = "" if dimension is None else DIMENSIONS[dimension].unit
         return ComparedValue(number if math.isfinite(number) else None, with_unit(number, unit))
-    return _text(_said(value))
+    return _text(_value_text(value))
 
 
 def _of_current(table: CurrentTable) -> ComparedValue:
@@ -251,15 +254,15 @@ def _of_current(table: CurrentTable) -> ComparedValue:
     return ComparedValue(text, text, table)
 
 
-def _said(value: Any) -> str:
+def _value_text(value: Any) -> str:
     """Return a value that is neither a number nor None as text."""
     if isinstance(value, BaseModel) or is_dataclass(value):
         given = {name: one for name, one in _fields(value).items() if one is not None}
         value = {name: one for name, one in given.items() if not isinstance(one, tuple) or one}
     if isinstance(value, list | tuple):
-        return "; ".join(map(_said, value))
+        return "; ".join(map(_value_text, value))
     if isinstance(value, dict):
-        return ", ".join(f"{key}: {_said(one)}" for key, one in value.items())
+        return ", ".join(f"{key}: {_value_text(one)}" for key, one in value.items())
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
@@ -347,7 +350,6 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
 
 
 def _places(parts: Sequence[Known]) -> dict[str, int]:
-    """Return the index of each unique label."""
     places: dict[str, list[int]] = defaultdict(list)
     for place, part in enumerate(parts):
         places[part.label].append(place)

@@ -17,12 +17,13 @@ from calm.files.yaml_document import SourceMapping, validate
 class Equipment(definition.Model):
     """Keys about the individual equipment at a place of the line.
 
-    `serial` is a text, or a list with one text for each of the item's `count`; each piece gets its
-    own. After reading, `planned_depth` also holds a depth given in the label.
+    `serial` is a text, or a list with one text for each of the item's `count`, and for each item of
+    a component with `items`; each piece gets its own. After reading, `planned_depth` also holds a
+    depth given in the label.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
-        "serial number; a list of as many as `count`", 12345
+        "serial number; a list of as many as `count`, or as the releases of a pair", 12345
     )
     calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")
     sampling: Text | None = optional("sampling scheme as text, e.g. every 10 min", "every 10 min")
@@ -30,7 +31,7 @@ class Equipment(definition.Model):
         "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31"
     )
     termination: Text | None = optional(
-        "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets"
+        "end fittings of a cable, e.g. swaged sockets", "swaged sockets"
     )
     planned_depth: Annotated[float | None, definition.LENGTH] = optional(
         "planned depth in still water; by default the depth in its label",
@@ -41,11 +42,18 @@ class Equipment(definition.Model):
         """Return the equipment with another planned depth [m]."""
         return self.model_copy(update={"planned_depth": depth})
 
-    def of(self, repeat: int) -> Equipment:
-        """Return the equipment of one of the pieces of a count, from 0."""
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """Return the serial numbers of a piece."""
+        return (self.serial,) if isinstance(self.serial, str) else self.serial or ()
+
+    def of(self, repeat: int, items: int) -> Equipment:
+        """Return the equipment of one of the pieces of a count, from 0, each of so many items."""
         if not isinstance(self.serial, tuple):
             return self
-        return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
+        first = min(repeat * items, len(self.serial) - items)
+        own = self.serial[first : first + items]
+        return self.model_copy(update={"serial": own if items > 1 else own[0]})
 
 
 LOAD = definition.QuantityField("force", usual_unit="kN", at_least=0)
@@ -68,9 +76,7 @@ MOST_PIECES = 10_000
 """Most pieces of a line, after assemblies and counts are expanded."""
 
 
-Label = Annotated[
-    Text, described("name of the piece in results; the id when there is none", "top float")
-]
+Label = Annotated[Text, described("name of the piece in results; by default its id", "top float")]
 
 
 class ClampKeys(Equipment):
@@ -119,21 +125,27 @@ def read_equipment(item: SourceMapping) -> Equipment:
     return validate(Equipment, item.holding(given)) or NO_EQUIPMENT
 
 
-def check_counted(item: SourceMapping, count: int) -> None:
+def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
     """Check that a list of serial numbers has as many as the item's count, that they differ, and
     that a planned depth is given for one piece only.
+
+    Parameters
+    ----------
+    items : number of items of each piece, with a serial number each; None if unknown
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
     for place, data in [((), item.data), *below]:
         serials = data.get("serial") if isinstance(data, dict) else None
-        if _is_list(serials) and len(serials) != count:
-            message = f"`serial` has {len(serials)} numbers for a count of {count}"
+        each = 1 if place else items
+        if _is_list(serials) and each is not None and len(serials) != each * count:
+            of = f" of {each} items each" if each > 1 else ""
+            message = f"`serial` has {len(serials)} numbers for a count of {count}{of}"
             item.refuse((*place, "serial"), message)
         elif _is_list(serials) and (twice := _numbers_twice(serials)):
             item.refuse((*place, "serial"), f"`serial` lists {shown(twice)} twice")
         if isinstance(data, dict) and "planned_depth" in data and count > 1:
-            message = f"`planned_depth` is of one piece; this item counts {count}: list them"
+            message = f"`planned_depth` is for single pieces; this item has a `count` of {count}"
             item.refuse((*place, "planned_depth"), message, key=True)
 
 

@@ -40,7 +40,6 @@ _ON_A_CHART = re.compile(r"deg|[°º]|\d['′\s]*[NSEW]\s*$", re.IGNORECASE)
 
 
 def _at_given(value: object, info: ValidationInfo) -> object:
-    """Convert a latitude and longitude to metres from the mooring's position."""
     given = value if isinstance(value, list) and len(value) == 2 else ()
     if not any(_ON_A_CHART.search(str(each)) for each in given):
         return value
@@ -233,7 +232,10 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
     anchors = [piece for piece in pieces if isinstance(piece.component, Anchor)]
     anchored = bool(anchors) and anchors[-1] is pieces[-1]
     if upper.anchor is not None:
-        refuse(("top",), "the upper end of a leg is not anchored; list it the other way round")
+        refuse(
+            ("top",),
+            "the upper end of a leg cannot be an anchor; list the leg in the opposite order",
+        )
     for anchor in anchors[: len(anchors) - anchored]:
         message = f"anchor `{anchor.use}` is not the last item of its leg"
         own.refuse_at(anchor.line, anchor.column, message)
@@ -256,7 +258,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         if piece.length is None:
             own.refuse_at(*here, "a piece of a net cannot be cut to fit; give its length")
         if any(isinstance(clamp.component, Profiler) for clamp in piece.clamps):
-            own.refuse_at(*here, "a profiler in a net is not solved")
+            own.refuse_at(*here, "a net cannot contain a profiler")
     return upper, lower
 
 
@@ -324,8 +326,8 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
         if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"its anchor is at the place of that of leg `{before}`; give its own place: "
-                "`bottom: {anchor: {at: [30 m, 0 m]}}`"
+                f"its anchor is at the position of the anchor of leg `{before}`; set its "
+                "position: `bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             section.refuse((leg.name,), message, key=True)
         if leg.name not in held:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import accumulate
 from typing import Any, TypeVar
 
 from calm.errors import about_quantity, shown, unknown
@@ -12,7 +13,7 @@ from calm.files.check_limits import LENIENT_IF_GREATER, LENIENT_IF_LESS, LimitKe
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.item_keys import ASSEMBLY_FIGURES, MOST_PIECES
-from calm.files.pieces import Clamp, Piece, Place, placed, unplanned
+from calm.files.pieces import Clamp, Piece, Place, parts_of, placed, unplanned
 from calm.files.planned_depth import named_depth
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
@@ -20,7 +21,9 @@ from calm.units import QuantityError
 
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
-_ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
+_ASSEMBLY_KEYS = frozenset({"use", "label", "count", "serial"})
+_NUMBERED = (("instrument", "release"), ("float",))
+"""Roles of the parts of an assembly that its serial numbers are for, the first that it has."""
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -90,15 +93,17 @@ class LineReader:
 
     def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
-        item_keys.check_counted(item, count)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
+        items = (definition.items or 1) if isinstance(definition, Component) else None
+        item_keys.check_counted(item, count, items)
         if entry is None or definition is None:
             self._unknown_kind(item, judged=entry is not None)
             self._clamps(item, None)
             return ()
         if isinstance(definition, Assembly):
             once = self._filled(self._assembly(entry, item), definition, entry, item)
+            once = self._with_serials(once, item, count)
         else:
             once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
@@ -139,7 +144,7 @@ class LineReader:
         length: float | None
         load = 0.0
         if isinstance(component, Profiler):
-            message = "a profiler rides on a wire: give it among the `clamps` of that"
+            message = "a profiler must be among the `clamps` of its wire"
             item.refuse(("use",), message)
         if not isinstance(component, Flexible):
             length = component.length
@@ -151,7 +156,10 @@ class LineReader:
             need = "a cable or chain needs it"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
-            message = "`length_at` is for cables and chains; this is as long as its definition says"
+            message = (
+                "`length_at` is for cables and chains; the length of this piece is that of "
+                "its definition"
+            )
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
             message = "gives both `length` and `length_at`, which exclude each other"
@@ -229,7 +237,7 @@ class LineReader:
             if entry is None or entry.section.data.get("kind") != "profiler":
                 at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
             elif "at" in clamp.data:
-                message = "a profiler has no place of its own: it travels `between` two stops"
+                message = "a profiler has no `at`: it travels `between` two stops"
                 clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
                 message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
@@ -276,6 +284,48 @@ class LineReader:
             for piece in self._assemblies[entry.id]
         )
 
+    def _with_serials(
+        self, pieces: tuple[Piece, ...], item: SourceMapping, count: int
+    ) -> tuple[Piece, ...]:
+        """Return the pieces of an assembly with the serial numbers of its item.
+
+        They are those of its instruments and releases, or else of its floats, in order: one for
+        each item of a component, assembly by assembly.
+        """
+        numbers = item_keys.read_equipment(item).serials
+        if not numbers:
+            return pieces
+        parts = parts_of(pieces)
+        found = ([one for one in parts if one.component.role in roles] for roles in _NUMBERED)
+        own = next(filter(None, found), [])
+        firsts = [0, *accumulate(one.component.items or 1 for one in own)]
+        total = firsts.pop()
+        if len(numbers) != total * count:
+            named = ", ".join(dict.fromkeys(one.use for one in own)) or "no part"
+            message = f"`serial` has {len(numbers)} of the {total * count} numbers of {named}"
+            if not own:
+                message = "`serial`: no part is an instrument, a release or a float"
+            item.refuse(("serial",), message)
+            return pieces
+        mine = {
+            id(one): tuple(
+                numbers[repeat * total + first + at]
+                for repeat in range(count)
+                for at in range(one.component.items or 1)
+            )
+            for first, one in zip(firsts, own, strict=True)
+        }
+
+        def numbered(part: _Part) -> _Part:
+            if id(part) not in mine:
+                return part
+            equipment = part.equipment.model_copy(update={"serial": mine[id(part)]})
+            return replace(part, equipment=equipment)
+
+        return tuple(
+            replace(numbered(piece), clamps=tuple(map(numbered, piece.clamps))) for piece in pieces
+        )
+
     def _filled(
         self,
         pieces: tuple[Piece, ...],
@@ -310,9 +360,7 @@ class LineReader:
             near = self._catalogue.nearest(use)
             offer = f"; did you mean {near}?" if near else " (`calm catalog list` shows all)"
             if some := self._catalogue.of_a_sort(use):
-                offer = (
-                    f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog search {use}`)"
-                )
+                offer = f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog list {use}`)"
             item.refuse(("use",), f"`use: {shown(use)}`: no such component{offer}")
             return None
         hidden = self._catalogue.hidden(use)

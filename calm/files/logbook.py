@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, WithJsonSchema, model_validator
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from calm.errors import shown, unknown
 from calm.files import definition
@@ -51,7 +51,7 @@ class OutputUnits(definition.Model):
     def _by_dimension(cls, data: object) -> object:
         texts = data.replace(",", " ").split() if isinstance(data, str) else data
         listed = [*texts] if isinstance(texts, list | tuple | dict) else []
-        meant = [unit_meant(str(text)) for text in listed if text not in cls.model_fields]
+        meant = [nearest_unit(str(text)) for text in listed if text not in cls.model_fields]
         if found := [f"{each[0]}: {each[1]}" for each in meant if each]:
             raise ValueError(f"write `units: {{{', '.join(found)}}}`")
         return data
@@ -62,7 +62,7 @@ class OutputUnits(definition.Model):
         return self.model_dump(exclude_none=True)
 
 
-def unit_meant(text: str) -> tuple[str, str] | None:
+def nearest_unit(text: str) -> tuple[str, str] | None:
     """Return the dimension and the unit of display that a text such as `knots` means, or None."""
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):
@@ -92,14 +92,14 @@ class DocumentKeys(definition.Model):
     approved: Text | None = optional("who approved it", "C. Okafor")
     project: Text | None = optional("name of the project", "Slope currents")
     ship: Text | None = optional("the ship that deploys the mooring", "RV Example")
-    cruise: Text | None = optional("its name or number", "EX-142")
+    cruise: Text | None = optional("name or number of the cruise", "EX-142")
     institution: Text | None = optional("owner of the mooring", "Institute of Examples")
-    investigator: Text | None = optional("who is responsible for the data", "D. Ruiz")
+    investigator: Text | None = optional("person responsible for the data", "D. Ruiz")
     email: Text | None = optional("email address of the author", "a.martin@example.org")
     url: Text | None = optional("web page of the author or the institution", "https://example.org")
     license: Text | None = optional("licence of the data", "CC-BY-4.0")
     acknowledgement: Text | None = optional("source of funding", "Funded by the Examples Fund")
-    site: Text | None = optional("its code at OceanSITES", "EXAMPLE")
+    site: Text | None = optional("code of the site at OceanSITES", "EXAMPLE")
     platform: Text | None = optional("code of the mooring", "EXAMPLE-1")
     deck_time: (
         dict[definition.Role, Annotated[float, definition.QuantityField("time", at_least=0)]] | None
@@ -148,11 +148,13 @@ class DeployedItem(definition.Model):
     """A piece or a clamp as deployed; a cable was cut to `length` [m]."""
 
     label: Text = described("label of the piece or clamp in results", "wire-jacketed-8")
-    serial: Text | None = optional("serial number; a list of as many as `count`", 12345)
-    length: definition.PositiveLength = optional("length to which a cable was cut", "480 m")
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
+        "serial number, or one for each release of a pair", 12345
+    )
+    length: definition.PositiveLength = optional("cut length of a cable", "480 m")
     clock: ClockCheck | None = optional(
-        "delay of an instrument's clock when it was checked; the delay grows evenly from the "
-        "deployment on",
+        "delay of the instrument's clock when it was checked; it is assumed to grow linearly "
+        "from the deployment on",
         {"checked": "2028-03-02T10:40", "late": "12 s"},
     )
     remark: Text | None = optional("any remark", "one terminal remade")
@@ -173,6 +175,15 @@ class Deployed(definition.Model):
         [{"label": "wire-jacketed-8", "length": "479.2 m"}],
         default=(),
     )
+
+    @property
+    def serials(self) -> dict[str, tuple[str, ...]]:
+        """Return the serial numbers of the items that give any, by label."""
+        return {
+            one.label: (one.serial,) if isinstance(one.serial, str) else one.serial
+            for one in self.items
+            if one.serial
+        }
 
 
 def check_deployed(

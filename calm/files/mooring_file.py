@@ -179,13 +179,12 @@ def unknown_releases(
 ) -> list[str]:
     """Return notes about releases whose serial number no piece has, as designed or as deployed."""
     parts = [part for part in parts_of(pieces) if part.component.role == "release"]
-    designed = {part.label: part.serial for part in parts}
-    items = () if deployed is None else deployed.items
-    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
+    given = {} if deployed is None else deployed.serials
+    serials = {one for part in parts for one in (*part.serials, *given.get(part.label, ()))}
     return [
         f"`releases`: no release of the line has the serial number {release.serial}."
         for release in releases
-        if serials != {None} and release.serial is not None and release.serial not in serials
+        if serials and release.serial is not None and release.serial not in serials
     ]
 
 

@@ -85,6 +85,11 @@ class Clamp:
         return _serial(self.equipment)
 
     @property
+    def serials(self) -> tuple[str, ...]:
+        """Return the serial number of this instrument, if known."""
+        return self.equipment.serials
+
+    @property
     def planned_depth(self) -> float | None:
         """Return the planned depth in still water [m]; None if there is none."""
         return self.equipment.planned_depth
@@ -129,8 +134,13 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Return the serial number of this piece; None if unknown."""
+        """Return the serial number of this piece, or those of its items; None if unknown."""
         return _serial(self.equipment)
+
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """Return the serial numbers of the items of this piece, as far as known."""
+        return self.equipment.serials
 
     @property
     def planned_depth(self) -> float | None:
@@ -145,8 +155,7 @@ class Piece:
 
 
 def _serial(equipment: Equipment) -> str | None:
-    assert not isinstance(equipment.serial, tuple)  # one was chosen as the item was expanded
-    return equipment.serial
+    return ", ".join(equipment.serials) or None
 
 
 def placed(piece: Piece, place: Place) -> Piece:
@@ -156,9 +165,10 @@ def placed(piece: Piece, place: Place) -> Piece:
 
     def moved(clamp: Clamp) -> Clamp:
         own = replace(place, clamp=clamp.place.clamp)
-        return replace(clamp, place=own, equipment=clamp.equipment.of(place.repeat))
+        return replace(clamp, place=own, equipment=clamp.equipment.of(place.repeat, 1))
 
-    return piece.with_clamps(moved, place=place, equipment=piece.equipment.of(place.repeat))
+    own = piece.equipment.of(place.repeat, piece.component.items or 1)
+    return piece.with_clamps(moved, place=place, equipment=own)
 
 
 def unplanned(piece: Piece) -> Piece:

@@ -171,8 +171,8 @@ class MooringReader:
         keys, problems = self._keys, [*self._problems]
         top = self._top.into(problems)
         chosen = choose_environment(top, environment, towed=self._towed)
-        stands_in = chosen[0] if chosen else _child(top, "environment")
-        in_air = stands_in is not None and stands_in.data.get("fluid") == "air"
+        section = chosen[0] if chosen else _child(top, "environment")
+        in_air = section is not None and section.data.get("fluid") == "air"
         if in_air not in self._lines:
             self._lines[in_air] = self._line(in_air)
         line = self._lines[in_air]
@@ -249,7 +249,6 @@ class MooringReader:
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:
-    """Return the mapping under a key; None if there is none."""
     return section.child(key) if isinstance(section.data.get(key), dict) else None
 
 
@@ -260,7 +259,6 @@ def _in_order(problems: list[Problem], path: str) -> list[Problem]:
 
 
 def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that a tow has no anchor."""
     for piece in pieces:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"
@@ -309,9 +307,9 @@ def _check_slides(
         at = (0.0, 0.0) if place is None else place.at
         here, deeper = seabed.at(*at), float(seabed.deeper(np.array([at]))[0])
         most = math.degrees(math.atan(checks.anchor_friction if own is None else own))
-        said = []
+        complaints = []
         if here.slope >= most:
-            said.append(
+            complaints.append(
                 f"with a friction of {math.tan(math.radians(most)):g} the anchor slides by its own "
                 f"weight on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less "
                 f"than {most:.3g}°"
@@ -319,10 +317,14 @@ def _check_slides(
         if place is not None and place.depth is not None:
             pass
         elif np.isnan(deeper):
-            said.append("the grid of the seabed has no depth here; give the anchor its `depth`")
+            complaints.append(
+                "the grid of the seabed has no depth here; give the anchor its `depth`"
+            )
         elif depth is not None and depth + deeper <= 0.0:
-            said.append(f"by its slope the seabed is {-depth - deeper:.3g} m above the water here")
-        for one in said:
+            complaints.append(
+                f"by its slope the seabed is {-depth - deeper:.3g} m above the water here"
+            )
+        for one in complaints:
             top.refuse_at(piece.line, piece.column, one)
 
 

@@ -82,7 +82,7 @@ def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
                 "a row has two figures, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
             )
         try:
-            figures = (way.read(figure) for way, figure in zip(_RESPONSE, row, strict=False))
+            figures = (reader.read(figure) for reader, figure in zip(_RESPONSE, row, strict=False))
             rows.append((at, *figures))
         except QuantityError as error:
             raise ValueError(f"`{key}`: {error}") from None
@@ -118,12 +118,13 @@ class Rigid(definition.Definition):
     wind_cd: definition.Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
     heave: Literal["filtered", "follows", "panels"] | None = optional(
-        "heave of a surface float in waves: by its hull, by panels, or that of the water",
+        "heave of a surface float in waves: from its hull, from panels, or equal to that of "
+        "the water",
         "follows",
     )
     rao: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_rao)] = optional(
-        "heave of a float over the elevation of the sea, by angular frequency in rad/s: amplitude "
-        "and phase; with its pitch four figures, the last two pitch per metre and phase",
+        "response of a float by angular frequency in rad/s: heave per metre of elevation and "
+        "its phase; with pitch, also pitch per metre of elevation and its phase",
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
     )
     centre_of_mass: Annotated[float | None, _REACH] = optional(
@@ -133,7 +134,7 @@ class Rigid(definition.Definition):
         "radius of gyration of a float with its load, about `centre_of_mass`", "0.9 m"
     )
     bail: Annotated[float | None, _REACH] = optional(
-        "height above the keel at which the line pulls a float; negative below it", "-0.5 m"
+        "height of the line's attachment above the keel; negative below it", "-0.5 m"
     )
 
     @model_validator(mode="after")
@@ -182,8 +183,8 @@ class Rigid(definition.Definition):
             largest = self.hull.displacement[-1][1]
             if CATALOGUE_DENSITY * definition.STANDARD_GRAVITY * largest < self.net_buoyancy:
                 raise ValueError(
-                    f"the `hull` displaces {largest:g} m³ at most, less than its net buoyancy of "
-                    f"{self.net_buoyancy:.5g} N takes"
+                    f"the `hull` displaces {largest:g} m³ at most, less than required by its "
+                    f"net buoyancy of {self.net_buoyancy:.5g} N"
                 )
         return self
 
@@ -191,7 +192,7 @@ class Rigid(definition.Definition):
 class SphereShape(Model):
     """A sphere as part of a body, for its drag alone."""
 
-    kind: Literal["sphere"] = Field(description="which kind of component it is")
+    kind: Literal["sphere"] = Field(description="kind of the component")
     diameter: definition.Diameter
     cx: SphereCoefficient = None
 
@@ -199,7 +200,7 @@ class SphereShape(Model):
 class CylinderShape(Model):
     """A cylinder as part of a body, for its drag alone."""
 
-    kind: Literal["cylinder"] = Field(description="which kind of component it is")
+    kind: Literal["cylinder"] = Field(description="kind of the component")
     diameter: definition.Diameter
     length: definition.Length
     cn: definition.NormalCoefficient = None
@@ -278,8 +279,8 @@ class Shaped(Rigid):
         if len(given) != 1:
             what = " and ".join(f"`{key}`" for keys in given for key in keys) or "no drag"
             raise ValueError(
-                f"gives {what}; one way is needed: `kn` with `kt`, `drag_area` with `cd`, "
-                "`drag_measurements`, or `made_of`"
+                f"gives {what}; drag must be given by one of: `kn` with `kt`, `drag_area` "
+                "with `cd`, `drag_measurements`, or `made_of`"
             )
         if self.made_of == () or self.drag_measurements == ():
             raise ValueError(f"`{given[0][0]}` is empty")
@@ -298,7 +299,7 @@ class Shaped(Rigid):
 class Body(Shaped):
     """A body in the line or clamped on it."""
 
-    kind: Literal["body"] = Field(description="which kind of component it is")
+    kind: Literal["body"] = Field(description="kind of the component")
 
 
 LEAST_WIRE_TENSION = 2224.0
@@ -308,14 +309,14 @@ LEAST_WIRE_TENSION = 2224.0
 class Profiler(Shaped):
     """A profiler that moves along a wire between two stops."""
 
-    kind: Literal["profiler"] = Field(description="which kind of component it is")
+    kind: Literal["profiler"] = Field(description="kind of the component")
     between: Annotated[tuple[definition.Text, ...] | None, BeforeValidator(_two_stops)] = optional(
         "labels of its upper and its lower stop: clamps on its wire, or pieces at the "
         "ends of the wire",
         ["upper bumper", "lower bumper"],
     )
     minimum_tension: Annotated[float, definition.POSITIVE_FORCE] = described(
-        "tension that its wire needs along its travel", "2224 N", default=LEAST_WIRE_TENSION
+        "minimum tension of its wire", "2224 N", default=LEAST_WIRE_TENSION
     )
     drive_force: definition.PositiveForce = optional("maximum force of its drive", "50 N")
     speed: Annotated[float | None, QuantityField("speed", above=0)] = optional(

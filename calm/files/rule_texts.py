@@ -65,13 +65,13 @@ RULES = {
         "a warning",
         "Defaults of CALM: ranges found at sea, and common typing errors",
         "environments are compared with each other, by `calm check`"),
-    "missing": RuleText("Missing figures", "",
+    "missing": RuleText("Missing values", "",
         "figures that rules need and a component lacks: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot check",
         "unknown",
         "The sources of the rules that need the figure",
         _ONCE),
-    "strength": RuleText("Strength", "tension",
+    "strength": RuleText("Strength", "load",
         "maximum tension of every piece; of the top one and the anchor if they have a load limit",
         "the smaller of its working load and its breaking load over `safety_factor`: 3 steel, "
         "5 synthetic, 5 anything in a surface mooring; of a synthetic rope with a breaking load "
@@ -79,17 +79,17 @@ RULES = {
         "The smaller of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
         "chain and wire), oceanographic practice MBL/3 to MBL/5",
         figures=("working_load", "breaking_load")),
-    "release-load": RuleText("Load of the release", "tension",
+    "release-load": RuleText("Release load", "load",
         "maximum tension of every release, and the tension below it when it opens",
         "the limit of `strength`, and its `opening_load` if given",
         "Static load and opening load given by the manufacturer",
         figures=("working_load", "opening_load")),
-    "clamp-grip": RuleText("Grip of the clamps", "tension",
+    "clamp-grip": RuleText("Clamp grip", "load",
         "weight in water and drag of every clamp, in the current, the fall and the rise",
         "its `grip`, or its `breaking_load`; not judged if neither is given",
         "Figures of the clamp given by the manufacturer",
         "the result does not contain the current at each clamp", figures=("grip",)),
-    "profiler": RuleText("Profiler on its wire", "tension",
+    "profiler": RuleText("Profiler on its wire", "load",
         "tension of the wire, obstacles on it and the force that the drive needs, at both "
         "stops and at the largest inclination of the wire",
         "`minimum_tension` of the profiler, 2224 N; its `drive_force`; jacketed wire of 6.35 to "
@@ -97,7 +97,7 @@ RULES = {
         "McLane Moored Profiler, user manual",
         "the profiles of a record are solved with the profiler at its upper stop",
         figures=("drive_force",)),
-    "strength-steps": RuleText("Strength steps", "tension",
+    "strength-steps": RuleText("Strength steps", "load",
         "every piece, compared with the cables above and below it",
         "half of their strength, if sources give both, for a piece with more than half of its "
         "allowable load: a warning",
@@ -114,7 +114,7 @@ RULES = {
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
-    "top-depth": RuleText("Depth of the top", "depth",
+    "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
         "`minimum_top_depth`: a failure; by default 10 m: a warning",
         "A default of CALM: clear of waves, hulls and nets"),
@@ -137,8 +137,8 @@ RULES = {
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
         "`fishbite_depth`, 1000 m: a warning",
-        "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
-        "1000 m and more",
+        "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more, far "
+        "from the shores; the limits of water depth and latitude are defaults of CALM",
         "ropes are bitten over months, not during one profile"),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -148,35 +148,36 @@ RULES = {
         "horizontal offset of the top",
         "`maximum_excursion`, if given",
         "The design's own `maximum_excursion`"),
-    "anchor-weight": RuleText("Anchor weight", "tension",
+    "anchor-weight": RuleText("Anchor weight", "load",
         "weight in water",
         "`anchor_factor` × (V + H / friction), 1.5 and 0.6",
         "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
         figures=("weight", "density")),
-    "anchor-uplift": RuleText("Anchor uplift", "tension",
+    "anchor-uplift": RuleText("Anchor uplift", "load",
         "V",
         "weight in water / 1.5",
-        "The vertical part of that rule: V ≤ weight in water / 1.5",
+        "Dewey's rule, vertical part: V ≤ weight in water / 1.5",
         figures=("weight", "density")),
-    "anchor-sliding": RuleText("Anchor sliding", "tension",
+    "anchor-sliding": RuleText("Anchor sliding", "load",
         "H",
         "friction × (weight in water / 1.5 − V)",
-        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction 0.6 "
-        "of a deadweight",
+        "Dewey's rule, horizontal part: H ≤ friction (weight in water / 1.5 - V), with a friction "
+        "coefficient of 0.6 for a deadweight",
         figures=("weight", "density")),
-    "slack": RuleText("Least tension", "tension",
+    "slack": RuleText("Minimum tension", "load",
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
-        "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
-    "wave-strength": RuleText("Strength in waves", "tension",
+        "Practice of mooring groups, 50 to 100 kgf above the release; no value is published, so "
+        "the limits are defaults of CALM"),
+    "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: mean and most probable maximum of 3 h",
         "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
         "with the loads used for `strength`; "
         "unknown for a surface mooring without `waves:`",
         "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically",
         _WAVES, figures=("working_load", "breaking_load")),
-    "wave-slack": RuleText("Slack in waves", "tension",
+    "wave-slack": RuleText("Slack in waves", "load",
         "minimum tension of every piece in `waves:`: mean and most probable minimum of 3 h",
         "above 0; `slack: allowed` on a piece exempts it",
         "A slack line snatches when it tightens, and linear tensions are not valid",
@@ -188,7 +189,7 @@ RULES = {
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
         "(wire); a life of three times the service",
         _WAVES),
-    "reserve": RuleText("Reserve of buoyancy", "used_buoyancy",
+    "reserve": RuleText("Reserve buoyancy", "used_buoyancy",
         "unused share of the surface float's buoyancy",
         "`minimum_reserve`, 0.3",
         "Dewey: a float that uses all its buoyancy submerges; the remaining share is for waves"),
@@ -212,7 +213,7 @@ RULES = {
         "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
         "IHO S-44, order 2: the error of a sounding, 95 %",
         _ONCE),
-    "figures": RuleText("Figures of components",
+    "figures": RuleText("Component values",
         "",
         "figures of pieces and clamps that are impossible for their size and material: buoyancy, "
         "mass, density, stiffness, strength, depth rating, coefficients of drag",
@@ -241,7 +242,7 @@ RULES = {
         "a warning, one for all joints of the line; not for a line without any hardware",
         "A default of CALM: a shackle that is not listed is neither bought nor judged",
         _ONCE),
-    "clamp-place": RuleText("Places of the clamps", "",
+    "clamp-place": RuleText("Clamp positions", "",
         "clamps on a cable or chain that overlap, or extend beyond its end",
         "5 cm: a failure",
         "Two parts cannot be in the same place",
@@ -267,16 +268,16 @@ RULES = {
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
-    "backup": RuleText("Back-up buoyancy", "tension",
+    "backup": RuleText("Back-up buoyancy", "load",
         "minimum net buoyancy of the part that remains connected to the release, over all breaks "
         "and losses of a float considered (below)",
         "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
         "more; not judged for a float that alone brings up a line, at most 50 m above the release; "
         "a warning for a surface mooring without floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
-        "floats",
+        "floats; the margin and the 50 m are defaults of CALM",
         _ONCE),
-    "launch-strength": RuleText("Strength in the launch", "tension",
+    "launch-strength": RuleText("Strength in the launch", "load",
         "tension of every piece as the line falls behind its anchor",
         "the smaller of `launch_working_factor`, 1, times its working load and its breaking load "
         "over `launch_safety_factor`, 2, with the loads used for `strength`",
@@ -288,14 +289,14 @@ RULES = {
         "2.5 m/s: a warning",
         "A default of CALM: a faster anchor may bury itself or break equipment on it",
         _ONCE, figures=("kt",)),
-    "recovery": RuleText("Rise", "speed",
+    "recovery": RuleText("Rise speed", "speed",
         "rise speed without the anchor, for a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
         "Defaults of CALM: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
         "above 3 m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "whether a part overtakes the parts ahead during the fall or the rise",
+        "whether a part overtakes the parts ahead in the fall or the rise, in loops of 2 m or more",
         "a warning",
         "A default of CALM: no part overtakes the parts ahead",
         _ONCE),

@@ -14,7 +14,7 @@ MOST_DEVIATION = 0.25
 values.
 """
 _SHARE = QuantityField("number", at_least=0.0)
-_TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %"
+_TOO_WIDE = "is above 25 %, the largest standard deviation; give a pair, the 5 and 95 % points"
 
 
 @dataclass(frozen=True)
@@ -49,18 +49,18 @@ class SpreadOf:
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:
-            raise QuantityError("is neither one deviation nor a pair, its 5 and 95 %")
+            raise QuantityError("is neither a standard deviation nor a pair of 5 and 95 % points")
         low, high = map(self._end, value)
         if not low < high:
-            raise QuantityError("is a pair, but its 5 % is not below its 95 %")
+            raise QuantityError("is a pair whose 5 % point is not below its 95 % point")
         return Spread(between=(low, high))
 
     def _deviation(self, value: object) -> float:
         deviation = self.one.read(value)
         if self.one is _SHARE and deviation > MOST_DEVIATION:
             bare = isinstance(value, int | float) or "%" not in str(value)
-            meant = f"{value} %" if bare and deviation <= 100.0 * MOST_DEVIATION else None
-            raise QuantityError(_TOO_WIDE, meant)
+            suggestion = f"{value} %" if bare and deviation <= 100.0 * MOST_DEVIATION else None
+            raise QuantityError(_TOO_WIDE, suggestion)
         return deviation
 
     def _end(self, value: object) -> float:

@@ -177,13 +177,12 @@ def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
     warm, salt = water.temperature.value, water.salinity.value
     if max(salt) < _RATIO:
         yield (
-            f"A salinity of {max(salt):g} is that of fresh water; 35 g in 1 kg, 0.035 as a share, "
-            "is written 35."
+            f"A salinity of {max(salt):g} is that of fresh water; write 35 for 35 g/kg, not 0.035."
         )
     elif warm[-1] > _WARMEST_BELOW and salt[-1] < warm[-1]:
         yield (
-            f"The lowest water has {warm[-1]:g} °C and a salinity of {salt[-1]:g}: temperature and "
-            "salinity exchanged?"
+            f"The deepest water has {warm[-1]:g} °C and a salinity of {salt[-1]:g}: are "
+            "temperature and salinity exchanged?"
         )
     given = (water.temperature, water.salinity)
     if all(len(each.depth) > 1 for each in given):
@@ -200,7 +199,7 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
         if value < greatest - _FALL:
             yield (
                 f"The density falls from {greatest:.6g} kg/m^3 at {depth:g} m to {value:.6g} "
-                f"kg/m^3 at {below:g} m: heavy water over light does not stay."
+                f"kg/m^3 at {below:g} m: such a stratification is unstable."
             )
             return
         if value >= greatest:

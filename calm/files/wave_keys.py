@@ -110,8 +110,8 @@ def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tupl
             continue
         near = nearest(text, SPECTRA) if name == "spectrum" else None
         what = "no such file" if name == "scatter" else f"neither {', '.join(SPECTRA)} nor a file"
-        meant = f"; did you mean `{near}`?" if near else ""
-        message = f"`{name}: {shown(text)}`: {what}{meant}"
+        suggestion = f"; did you mean `{near}`?" if near else ""
+        message = f"`{name}: {shown(text)}`: {what}{suggestion}"
         section.refuse(("waves", name), message)
     if len(section.problems) > before or not open_files:
         return ()

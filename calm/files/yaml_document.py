@@ -227,7 +227,7 @@ def _explain(
             keys = [*(name for one in forms for name in one.model_fields), *also_allowed]
             if also_allowed:
                 keys.remove("kind")
-            near = _meant(name, keys)
+            near = _nearest_key(name, keys)
             if near:
                 misspelt.add((location[:-1], near))
             kind = _tag(model) if len(details["loc"]) == 1 else None
@@ -282,10 +282,10 @@ _OTHER_NAMES = {
 
 def unknown_key(name: str, keys: list[str], owner: str = "") -> str:
     """Return the message about an unknown key, with the key probably meant."""
-    return unknown(f"unknown key `{shown(name)}`{owner}", _meant(name, keys) or name, keys)
+    return unknown(f"unknown key `{shown(name)}`{owner}", _nearest_key(name, keys) or name, keys)
 
 
-def _meant(name: str, keys: list[str]) -> str | None:
+def _nearest_key(name: str, keys: list[str]) -> str | None:
     others = (key for key, names in _OTHER_NAMES.items() if name in names.split() and key in keys)
     return next(others, None) or nearest(name, keys)
 
@@ -332,7 +332,6 @@ def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
 
 
 def _flow(value: object) -> str:
-    """Return a value as YAML on one line."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
     return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)

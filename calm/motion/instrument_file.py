@@ -215,6 +215,7 @@ def write_depths(
     copy[deviation] = xr.Variable(dims, tables[1], {
         "units": "m", "standard_name": "depth standard_error",
         "long_name": "standard deviation of the depth",
+        "coverage_content_type": "qualityInformation",
     })  # fmt: skip
     copy[mark] = xr.Variable(dims, tables[2], {
         "standard_name": "quality_flag", "long_name": "quality flag of the depth",

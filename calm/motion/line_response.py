@@ -151,11 +151,14 @@ def labels_of(mooring: Design) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Design) -> list[int]:
-    """Return the indices of possible instruments: all clamps, and pieces with that role."""
+    """Return the indices of possible instruments: clamps but for floats, and pieces with that
+    role.
+    """
     pieces = mooring.file.pieces
-    clamps = len(clamps_down(pieces))
-    inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
-    return [*range(clamps), *inline]
+    clamps = clamps_down(pieces)
+    fixed = [i for i, clamp in enumerate(clamps) if clamp.component.role != "float"]
+    own = (i for i, piece in enumerate(pieces) if piece.component.role == "instrument")
+    return [*fixed, *(len(clamps) + i for i in own)]
 
 
 SPAN, LOCAL = 0.25, 0.3

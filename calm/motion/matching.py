@@ -48,8 +48,8 @@ def places_of(mooring: Design) -> LinePlaces:
 def serials_of(mooring: Design) -> tuple[str, ...]:
     """Return the serial number of each clamp and piece, as deployed; empty if unknown."""
     file = mooring.file
-    deployed = () if file.deployed is None else file.deployed.items
-    given = {item.label: item.serial for item in deployed if item.serial}
+    deployed = {} if file.deployed is None else file.deployed.serials
+    given = {label: ", ".join(serials) for label, serials in deployed.items()}
     parts = [(one.label, one.serial) for one in clamps_down(file.pieces)]
     parts += [(one.label, one.serial) for one in file.pieces]
     return tuple(str(given.get(label) or serial or "") for label, serial in parts)

@@ -1,7 +1,6 @@
-"""CALM and the libraries that it needs in a page, as one archive made of what is installed.
+"""Archive of CALM and its libraries for the page, from the installed packages.
 
-Only files of Python and data are packed: a page has no use for compiled code of this machine. What
-is compiled for pages comes with the runtime.
+It contains only Python modules and data. Compiled libraries come with the runtime of the page.
 """
 
 import importlib.metadata
@@ -16,28 +15,28 @@ from pathlib import Path, PurePosixPath
 from calm.shipped import shipped_folder
 
 LIBRARIES = ("jinja2", "pint", "rich", "textual", "xlsxwriter")
-"""Needed by the builder and by what a page makes of a line."""
-OF_THE_RUNTIME = ("numpy", "pydantic", "pyyaml", "gsw")
-"""Taken from the runtime, which has them compiled for pages, with all that they need."""
+"""Distributions that the builder and its documents need."""
+IN_RUNTIME = ("numpy", "pydantic", "pyyaml", "gsw")
+"""Distributions that the runtime contains, compiled for pages, with their dependencies."""
 
-_NEEDED_BY_THEM = ("annotated-types", "pydantic-core", "typing-extensions", "typing-inspection")
-_LEFT_OUT = re.compile(
+_DEPENDENCIES = ("annotated-types", "pydantic-core", "typing-extensions", "typing-inspection")
+_EXCLUDED = re.compile(
     r"(^|/)(__pycache__|tests?|testsuite)/|\.(so|pyd|dylib|pyi|c|h|exe|whl|ttf|otf)$"
     r"|^calm/page/web/|^calm/verification/|^\.\./"
     r"|^pygments/(lexers|styles|formatters)/(?!__init__|_mapping|special|default|terminal)"
 )
-"""Compiled code, tests, fonts for PDF files, and the lexers of hundreds of languages."""
-_ALWAYS = (1980, 1, 1, 0, 0, 0)
-"""The time of every entry."""
+"""Files left out: compiled code, tests, fonts for PDF files, and most lexers."""
+_TIME_STAMP = (1980, 1, 1, 0, 0, 0)
+"""Time stamp of every entry."""
 
 
 def packed(python: str) -> bytes:
-    """A ZIP archive of modules, to be unpacked in the page: the same bytes for the same files.
+    """Create the ZIP archive of modules; equal files give equal bytes.
 
     Parameters
     ----------
     python : version of the runtime's Python, such as "3.13"; if this Python has the same version,
-        the archive holds the modules compiled, too, which makes the page start sooner
+        the archive also contains compiled modules, with which the page starts sooner
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()
@@ -52,7 +51,7 @@ def packed(python: str) -> bytes:
 
 
 def _put(archive: zipfile.ZipFile, name: str, content: bytes) -> None:
-    entry = zipfile.ZipInfo(name, _ALWAYS)
+    entry = zipfile.ZipInfo(name, _TIME_STAMP)
     entry.compress_type = zipfile.ZIP_DEFLATED
     archive.writestr(entry, content)
 
@@ -68,35 +67,35 @@ def _compiled(path: Path, name: str) -> bytes | None:
                 invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH,
             )  # fmt: skip
         except (py_compile.PyCompileError, ValueError):
-            return None  # a template of Python that is none yet
+            return None  # a template, which is not valid Python
         return Path(target).read_bytes()
 
 
 def _files() -> Iterator[tuple[str, Path]]:
-    """Name in the archive and place of every file."""
+    """Yield the name in the archive and the path of every file."""
     package = Path(__file__).parents[1]
     roots = {f"calm/_shipped/{name}": shipped_folder(name) for name in ("catalog", "lines")}
     for root, folder in {"calm": package, **roots}.items():
         for path in folder.rglob("*"):
             name = f"{root}/{path.relative_to(folder).as_posix()}"
             is_shipped = root == "calm" and name.startswith("calm/_shipped/")
-            if path.is_file() and not is_shipped and not _LEFT_OUT.search(name):
+            if path.is_file() and not is_shipped and not _EXCLUDED.search(name):
                 yield name, path
     for distribution in distributions():
         for file in distribution.files or ():
             name = file.as_posix()
             is_about = ".dist-info/" in name and file.name not in ("METADATA", "entry_points.txt")
             path = Path(str(distribution.locate_file(file)))
-            if not is_about and not _LEFT_OUT.search(name) and path.is_file():
+            if not is_about and not _EXCLUDED.search(name) and path.is_file():
                 yield name, path
 
 
 def distributions() -> list[importlib.metadata.Distribution]:
-    """The installed distributions of `LIBRARIES` and of all that these need."""
+    """Return the installed distributions of `LIBRARIES` and of their dependencies."""
     wanted, found = list(LIBRARIES), {}
     while wanted:
         name = normal_name(wanted.pop())
-        if name in found or name in (*OF_THE_RUNTIME, *_NEEDED_BY_THEM):
+        if name in found or name in (*IN_RUNTIME, *_DEPENDENCIES):
             continue
         try:
             found[name] = importlib.metadata.distribution(name)
@@ -110,5 +109,5 @@ def distributions() -> list[importlib.metadata.Distribution]:
 
 
 def normal_name(name: str) -> str:
-    """The name of a distribution as indices spell it."""
+    """Return the normalised name of a distribution (PEP 503)."""
     return re.sub(r"[-_.]+", "-", name).lower()

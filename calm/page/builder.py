@@ -1,4 +1,4 @@
-"""The line builder inside a page: messages of the page in, files and documents out."""
+"""The line builder inside a page: receives messages of the page, and sends files and documents."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from calm.tui.session import Session
 from calm.tui.start import open_session
 
 Post = Callable[[str, str, bytes | None], object]
-"""Sends the page a message: its kind, a text (often a name), and the content of a file."""
+"""Function that sends the page a message: kind, text (often a name), and content of a file."""
 
 
 class Button(NamedTuple):
-    """A common action, for people who use a mouse: its words and the name of the action."""
+    """A button for a common action: its title and the name of the action."""
 
     title: str
     action: str
@@ -45,35 +45,34 @@ BAR = (
 )
 
 FIRST = "upward-adcp-300m.yaml"
-"""The example that a first visit shows; a later one goes on with the file written last."""
+"""Example shown on the first visit; later visits open the latest file."""
 NEW = "mooring.yaml"
 """Name of a new file."""
 
 
 class PageBuilder(BuildApp):
-    """The line builder, which hands every file that it saves to the page."""
+    """The line builder; it passes every saved file to the page."""
 
     def __init__(self, session: Session, kept: KeptWork | None, page: WebPage) -> None:
         super().__init__(session, kept=kept)
-        self.workspace.papers_elsewhere = (
+        self.workspace.documents_elsewhere = (
             "The buttons above the line make its report, diagram and bill"
         )
         session.after_save = page.hand_over
 
     def get_driver_class(self) -> type[driver.PageDriver]:
-        """The driver of the page: Textual's own need a terminal."""
+        """Driver of the page; Textual's own drivers need a terminal."""
         return driver.PageDriver
 
 
 class WebPage:
-    """One page: a folder of files in its memory, and the builder of one of them.
+    """A page: a folder of files in its memory, and the builder of one of these files.
 
     Parameters
     ----------
-    post : sends a message: `write` (text for the terminal), `open` (name of the file that is
-        built), `saved` and `document` (name and content of a file), `told` and `failed` (a
-        sentence)
-    folder : where its files are
+    post : sends a message: `write` (text for the terminal), `open` (name of the edited file),
+        `saved` and `document` (name and content of a file), `told` and `failed` (a sentence)
+    folder : folder of its files
     columns, rows : size of the terminal
     """
 
@@ -94,19 +93,19 @@ class WebPage:
         self._post("write", text, None)
 
     def hand_over(self, path: Path, text: str) -> None:
-        """Give the page a file that has been saved."""
+        """Send a saved file to the page."""
         self._path = path
         self._post("saved", path.name, text.encode())
 
     # the builder
 
     async def run(self) -> None:
-        """Build one file after the other, without end: in a page there is nothing to go back to."""
+        """Edit one file after the other; a page has nothing else to return to."""
         while True:
             await self.build()
 
     async def build(self) -> None:
-        """Build the file that was opened last, until another is opened or the person leaves."""
+        """Edit the file opened last, until another file is opened or the user leaves."""
         try:
             session, kept = open_session(self._path)
         except CalmError as error:
@@ -120,15 +119,15 @@ class WebPage:
 
     @property
     def app(self) -> PageBuilder | None:
-        """The builder that runs."""
+        """The running builder, if any."""
         return self._app
 
     def receive(self, message: Mapping[str, Any]) -> None:
-        """Take a message of the page.
+        """Handle a message of the page.
 
-        `type` (text of keys and mouse), `resize` (columns, rows), `act` (action of `BAR`), `open`
-        (names and contents of files), `example` (name of a file of `lines`), `new`, `document`
-        (kind).
+        Kinds: `type` (input of keyboard and mouse), `resize` (columns, rows), `act` (action of
+        `BAR`), `open` (names and contents of files), `example` (name of a file in `lines`), `new`,
+        `document` (kind).
         """
         kind, app = message["kind"], self._app
         if kind == "type":
@@ -144,17 +143,17 @@ class WebPage:
             self._open({name: (shipped_folder("lines") / name).read_bytes()})
         elif kind == "new":
             path = _free(self._folder)
-            path.touch()  # so that a later visit finds what is kept of it
+            path.touch()  # so that a later visit finds its unsaved work
             self._turn_to(path)
         elif kind == "document":
             self._make(message["text"])
 
     def _act(self, app: PageBuilder, name: str) -> None:
-        """Do what a button says: of the line, by the key of the action."""
+        """Run the action of a button; an action of the line is run by its key."""
         if name.startswith("app."):
             app.call_later(app.run_action, name)
         elif app.screen is not app.builder:
-            self._post("told", "Finish what is open first: Esc leads back to the line", None)
+            self._post("told", "Close the open form first: Esc leads back to the line", None)
         else:
             app.take_typed()
             actions = (each for place in ("line", "anywhere") for each in ACTIONS[place])
@@ -162,7 +161,7 @@ class WebPage:
             app.call_later(app.simulate_key, action.keys.partition(",")[0])
 
     def _open(self, files: Mapping[str, bytes]) -> None:
-        """Put files into the folder and build the first mooring among them."""
+        """Write files into the folder, and edit the first mooring among them."""
         paths = []
         for name, content in files.items():
             path = self._folder / PurePosixPath(name.replace("\\", "/")).name
@@ -171,19 +170,18 @@ class WebPage:
         moorings = [each for each in paths if _is_mooring(each)]
         others = [each.name for each in paths if each not in moorings[:1]]
         if others:
-            self._post("told", f"{', '.join(others)} can be named in a mooring file now", None)
+            self._post("told", f"{', '.join(others)} can now be used in a mooring file", None)
         if moorings:
             self._turn_to(moorings[0])
 
     def _turn_to(self, path: Path) -> None:
-        """End the builder, which keeps what is not saved, and build another file."""
         self._path = path
         if self._app is not None:
             self._app.take_typed()
             self._app.exit(0)
 
     def _make(self, kind: str) -> None:
-        """Make a document once what was typed has been solved."""
+        """Make a document after the typed text has been solved."""
         app = self._app
         if app is None:
             return
@@ -207,7 +205,6 @@ class WebPage:
 
 
 def _is_mooring(path: Path) -> bool:
-    """Whether a file is YAML with a line or legs; other files may be named by one."""
     from calm.files import yaml_document
 
     if path.suffix not in (".yaml", ".yml"):
@@ -226,6 +223,5 @@ def _touched(path: Path) -> float:
 
 
 def _free(folder: Path) -> Path:
-    """A name for a new file."""
     names = [NEW, *(f"mooring-{number}.yaml" for number in range(2, 1000))]
     return next(path for path in map(folder.joinpath, names) if not path.exists())

@@ -1,4 +1,4 @@
-"""What a page offers to download of a line: its report, diagram, bill of material, deck lists."""
+"""Documents to download from a page: report, diagram, bill of material and deck lists."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Download:
 
     Attributes
     ----------
-    kind : what the page asks for
-    title : on its button
-    suffix : after the name of the mooring file
-    content : makes it of the mooring in each of its environments
+    kind : kind in the messages of the page
+    title : title of its button
+    suffix : suffix after the name of the mooring file
+    content : makes the file from the mooring in each of its environments
     """
 
     kind: str
@@ -66,31 +66,33 @@ DOCUMENTS = (
     Download("bill", "Bill of material", "-bill.csv", _bill),
     Download("deck", "Deck lists", "-deck.xlsx", _deck),
 )
-"""In the order of the buttons."""
+"""Kinds of documents, in the order of their buttons."""
 
 
 def document(kind: str, view: live.View) -> tuple[str, bytes]:
-    """Name and content of a document of a line that has been solved.
+    """Make a document of a solved line; return its name and content.
 
     Parameters
     ----------
-    kind : of `DOCUMENTS`
-    view : the line as the builder shows it; what was solved for it is not solved again
+    kind : a kind of `DOCUMENTS`
+    view : the line in the builder, whose solutions are reused
 
     Raises
     ------
     UsageError
-        The line is not solved, or is a tow, which has a report alone.
+        The line is not solved, or the document is not available for a tow.
     NoEquilibrium
-        It does not stand.
+        The line has no equilibrium.
     """
     wanted = next(each for each in DOCUMENTS if each.kind == kind)
     name = f"{view.path.stem}{wanted.suffix}"
     if view.result is None:
-        raise view.failure or UsageError("the line is not complete: the verdict says what it lacks")
+        raise view.failure or UsageError(
+            "the line is incomplete; the verdict names the missing parts"
+        )
     if view.result.towed:
         if kind != "report":
-            raise UsageError("a tow has a report alone")
+            raise UsageError("for a tow, only the report is available")
         from calm.report.html import page
         from calm.report.result_report import result_report
 

@@ -1,4 +1,4 @@
-"""Textual's driver for a terminal in a page: text goes out, keys and sizes come in."""
+"""Textual's driver for a terminal in a page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from textual.geometry import Size
 from textual.message import Message
 
 _BEGIN = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1006h\x1b[?2004h"
-"""Alternate screen, no cursor, mouse with all its movements, pastes in brackets."""
+"""Alternate screen, hidden cursor, all mouse movements, bracketed paste."""
 _END = "\x1b[?2004l\x1b[?1006l\x1b[?1003l\x1b[?1000l\x1b[?25h\x1b[?1049l"
 _ESCAPE = "\x1b"
 
@@ -25,9 +25,9 @@ class PageTerminal:
 
     Attributes
     ----------
-    write : shows a text
-    columns, rows : its size
-    driver : that of the application that runs
+    write : writes a text to the terminal
+    columns, rows : size of the terminal
+    driver : driver of the running application
     """
 
     write: Callable[[str], object]
@@ -36,12 +36,12 @@ class PageTerminal:
     driver: PageDriver | None = None
 
     def type(self, text: str) -> None:
-        """Take what keys and mouse send."""
+        """Receive the input of keyboard and mouse."""
         if self.driver is not None:
             self.driver.feed(text)
 
     def resize(self, columns: int, rows: int) -> None:
-        """Take another size."""
+        """Set the size."""
         self.columns, self.rows = columns, rows
         if self.driver is not None:
             self.driver.show_size()
@@ -62,40 +62,37 @@ class PageDriver(Driver):
 
     @property
     def is_web(self) -> bool:
-        """A page is no terminal of its own: no answer of a terminal is waited for."""
+        """True, so that Textual does not wait for replies of a terminal."""
         return True
 
     def write(self, data: str) -> None:
-        """Show a text."""
         self._terminal.write(data)
 
     def start_application_mode(self) -> None:
-        """Prepare the terminal, and tell the application its size."""
         self.write(_BEGIN)
         self.show_size()
 
     def stop_application_mode(self) -> None:
-        """Leave the terminal as it was."""
         self.write(_END)
         if self._terminal.driver is self:
             self._terminal.driver = None
 
     def disable_input(self) -> None:
-        """Nothing reads: the page sends what comes."""
+        """Do nothing: the page sends the input."""
 
     def show_size(self) -> None:
-        """Tell the application the size of the terminal."""
+        """Send the size of the terminal to the application."""
         size = Size(self._terminal.columns, self._terminal.rows)
         self.send_message(events.Resize(size, size))
 
     def feed(self, text: str) -> None:
-        """Take what keys and mouse send, as the events of Textual."""
-        if text == _ESCAPE:  # the page sends whole sequences: it is no beginning of one
+        """Convert the input of keyboard and mouse to Textual's events."""
+        if text == _ESCAPE:  # not the beginning of a sequence, since the page sends whole ones
             self.process_message(events.Key("escape", text))
             return
         for event in self._parser.feed(text):
             self.process_message(event)
 
     def send_message(self, message: Message) -> None:
-        """Give the application a message; there is but one thread in a page."""
+        """Post a message to the application; a page has only one thread."""
         self._app.post_message(message)

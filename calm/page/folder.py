@@ -1,4 +1,4 @@
-"""Writes the folder of a page: any web server can offer it, and none has to do anything more."""
+"""Writer of the folder of a page, which any web server can serve."""
 
 import hashlib
 import json
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from calm.errors import UsageError
-from calm.page.archive import OF_THE_RUNTIME, normal_name, packed
+from calm.page.archive import IN_RUNTIME, normal_name, packed
 from calm.page.builder import BAR
 from calm.page.documents import DOCUMENTS
 from calm.shipped import shipped_folder
@@ -16,32 +16,32 @@ from calm.version import __version__
 from calm.whole_file import put
 
 PYODIDE = "https://cdn.jsdelivr.net/pyodide/v0.29.5/full/"
-"""Address of the runtime that pages load, unless they have a copy of it."""
+"""Address of the runtime, for pages without a copy."""
 PYTHON = "3.13"
-"""Version of its Python."""
+"""Python version of the runtime."""
 TERMINAL = "https://cdn.jsdelivr.net/npm/@xterm/xterm@6.0.0/"
-"""Address of xterm.js, which draws the terminal."""
+"""Address of xterm.js, the terminal in the page."""
 
 ARCHIVE = "calm.zip"
 _RUNTIME = "runtime/"
 _CORE = ("pyodide.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 _CODE = ("pyodide.asm.js", "pyodide.asm.mjs")
-"""One of them, by the version of Pyodide."""
+"""Alternative files, depending on the version of Pyodide."""
 _SCREEN = ("xterm.js", "xterm.css")
 
 
 def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
-    """Write the page into a folder, which is made if need be; other files in it are left alone.
+    """Write the page into a folder, which is created if needed; other files in it are kept.
 
     Parameters
     ----------
-    runtime : folder with a release of Pyodide and xterm.js, in whatever folders below, of which
-        the page gets a copy; without it the page loads them from `PYODIDE` and `TERMINAL`
+    runtime : folder with a release of Pyodide and xterm.js, possibly in subfolders, which are
+        copied into the page; without it the page loads them from `PYODIDE` and `TERMINAL`
 
     Returns
     -------
     list of str
-        The names of the files written.
+        Names of the written files.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
 
 
 def _settings(own: dict[str, bytes], found: dict[str, Path]) -> dict[str, Any]:
-    """What the scripts of the page read: addresses, and what its menus list."""
+    """Return the settings for the scripts of the page: addresses and menu entries."""
     digest = hashlib.sha256()
     for name in sorted(own):
         digest.update(own[name])
@@ -78,7 +78,7 @@ def _settings(own: dict[str, bytes], found: dict[str, Path]) -> dict[str, Any]:
         "version": __version__,
         "built": digest.hexdigest()[:16],
         "runtime": _RUNTIME if found else PYODIDE,
-        "packages": list(OF_THE_RUNTIME),
+        "packages": list(IN_RUNTIME),
         "terminal": terminal,
         "archive": {"name": ARCHIVE, "size": len(own[ARCHIVE])},
         "examples": _examples(),
@@ -88,7 +88,7 @@ def _settings(own: dict[str, bytes], found: dict[str, Path]) -> dict[str, Any]:
 
 
 def _examples() -> list[dict[str, str]]:
-    """The moorings that come with CALM: their files and names."""
+    """Return file and title of the moorings shipped with CALM."""
     found = []
     for path in sorted(shipped_folder("lines").glob("*.yaml")):
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -103,17 +103,17 @@ def _lock(path: Path) -> dict[str, Any]:
 
 
 def _runtime_files(runtime: Path) -> dict[str, Path]:
-    """The files of a runtime that a page needs, by their names."""
+    """Return the required files of a runtime, by name."""
     if not runtime.is_dir():
         raise UsageError(f"--runtime: there is no folder {runtime}")
     there: dict[str, Path] = {}
     for path in sorted(runtime.rglob("*"), key=lambda path: len(path.parts), reverse=True):
-        there[path.name] = path  # the uppermost of several
+        there[path.name] = path  # the uppermost of several files of this name
     wanted = [*_CORE, *_SCREEN]
     wanted += [name for name in _CODE if name in there] or _CODE[:1]
     if "pyodide-lock.json" in there:
         packages = _lock(there["pyodide-lock.json"])["packages"]
-        names = list(OF_THE_RUNTIME)
+        names = list(IN_RUNTIME)
         for name in names:  # which grows
             if name in packages:
                 needed = map(normal_name, packages[name]["depends"])
@@ -122,7 +122,7 @@ def _runtime_files(runtime: Path) -> dict[str, Path]:
     missing = [name for name in wanted if name not in there]
     if missing:
         raise UsageError(
-            f"--runtime: {runtime} lacks {', '.join(missing)}; it has to hold a release of "
+            f"--runtime: {runtime} lacks {', '.join(missing)}; it must contain a release of "
             "Pyodide, and xterm.js and xterm.css of the npm package @xterm/xterm"
         )
     return {name: there[name] for name in wanted}

@@ -198,7 +198,6 @@ def pass_segment(
     )
 
 
-@within
 def pass_halves(
     cable: CableStretch,
     knots: Sequence[Knot],
@@ -214,14 +213,14 @@ def pass_halves(
 
     `near` and `expected` are as in `pass_segment`.
     """
-    half, upper = cut, 0.0
-    if halves:
-        half = 0.5 * cut
-        state, upper = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-        if upper == NO_BALANCE:
-            return cut, state, upper, state, upper
-    below, strain = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-    return cut, state, upper, below, strain
+    half = 0.5 * cut if halves else cut
+    above, upper, below, strain = state, 0.0, state, 0.0
+    for _ in range(2 if halves else 1):
+        above, upper = below, strain
+        below, strain = pass_segment(cable, knots, vibration, sea, above, half, near, expected)
+        if strain == NO_BALANCE:
+            break
+    return cut, above, upper, below, strain
 
 
 def vibrating_share(

@@ -181,7 +181,7 @@ class LawCompiler(_Compiler):  # type: ignore[misc]
             gc.set_threshold(*collected)
 
     def define_pipelines(self) -> list[Any]:
-        """Return numba's passes without the needless ones."""
+        """Return numba's passes without those that laws do not need."""
         pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         pipeline.passes = [
             (LawLowering if each is _Lowering else each, about)

@@ -38,9 +38,9 @@ GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(
 """Outcome of a march: whether it can continue, or the reason why not."""
 FAILURES = (
     "",
-    "the line runs off to infinity",
-    "a segment finds no balance",
-    "a rigid piece finds no balance",
+    "the line extends without limit",
+    "the forces on a segment do not balance",
+    "the moments on a rigid piece do not balance",
     "the line would need more than 50000 segments",
     "there is no room for so many segments",
 )

@@ -114,12 +114,12 @@ def march(
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
     stages, level, known = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0), cuts is not None
-    how = How(angle_step, reach, 0.0, stages, False, level, known, known, False, record)
+    settings = How(angle_step, reach, 0.0, stages, False, level, known, known, False, record)
     room = ROOM if cuts is None else len(cuts.lengths)
     while True:
         most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1
-        lengths, counts, columns, left = _paper(course, cuts, room, most, compiled)
-        given = (course, sea, how, depth, 0.0, lengths, counts, columns, left)
+        lengths, counts, columns, left = _work_arrays(course, cuts, room, most, compiled)
+        given = (course, sea, settings, depth, 0.0, lengths, counts, columns, left)
         outcome(pass_line, compiled, *given)
         if left[FAILURE] != NO_ROOM:
             break
@@ -133,7 +133,7 @@ def march(
     return End(float(left[Z]), force, cuts, columns, int(left[NODES]))
 
 
-def _paper(
+def _work_arrays(
     course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool
 ) -> tuple[Any, ...]:
     """Create the work arrays of a march: cuts, their counts, the record, and its results."""

@@ -187,8 +187,11 @@ class Track:
         first, top, total = len(self.loads), 0.0, sum([rows.length[piece] for piece in pieces])
         for piece in pieces:
             length, clamps = rows.length[piece], rows.clamps.get(piece, ())
-            hung = [(one, rows.clamp_at[one], 0.0, rows.clamp[one]) for one in clamps]
-            for one, down, size, load in [(-1, 0.5 * length, length, rows.rigid[piece]), *hung]:
+            clamp_loads = [(one, rows.clamp_at[one], 0.0, rows.clamp[one]) for one in clamps]
+            for one, down, size, load in [
+                (-1, 0.5 * length, length, rows.rigid[piece]),
+                *clamp_loads,
+            ]:
                 at = top + down
                 lever = 1.0 - at / total if total > 0.0 else 0.5
                 self.loads.append((piece, one, at, lever, size, *load))

@@ -219,7 +219,7 @@ def locate(
     doubts += [undecided] if undecided else []
     if not freedom:
         warnings.append(
-            "There are no more ranges than unknowns: nothing tells how well they fit, and no "
+            "There are no more ranges than unknowns: their fit cannot be tested, and no "
             "interval can be given."
         )
     return Located(
@@ -260,22 +260,22 @@ def _weighed(
     if other is None:
         return x, None, ""
     if near is None:
-        return x, other, "two places fit; say with --near LAT,LON which is meant"
+        return x, other, "two positions fit; select one with --near LAT,LON"
     plan = model.frame.place(np.array(near[0]), np.array(near[1]), np.array(0.0))
-    misses, away, cost = [], [], []
+    square_sums, away, cost = [], [], []
     for each in (x, other):
         place = model.place(each)
-        misses.append(float(np.sum(model.residuals(each)[used] ** 2)))
+        square_sums.append(float(np.sum(model.residuals(each)[used] ** 2)))
         away.append(float(np.linalg.norm((plan - place)[:2])))
         fall_back = max(FALL_BACK * abs(float(place[2])), LEAST_FALL_BACK)
-        cost.append(0.5 * (misses[-1] / scattered**2 + (away[-1] / fall_back) ** 2))
+        cost.append(0.5 * (square_sums[-1] / scattered**2 + (away[-1] / fall_back) ** 2))
     order = (0, 1) if cost[0] <= cost[1] else (1, 0)
     first, second = ((x, other)[at] for at in order)
     least = float(used.sum()) * range_model.FLOOR**2
     undecided = ""
     if abs(cost[0] - cost[1]) < log(ODDS):
         undecided = "two places fit, at {:.0f} and {:.0f} m from the plan"
-    elif misses[order[0]] > 4.0 * max(misses[order[1]], least):
+    elif square_sums[order[0]] > 4.0 * max(square_sums[order[1]], least):
         undecided = "two places remain, at {:.0f} and {:.0f} m from the plan: the nearer fits worse"
     return first, second, undecided.format(*(away[at] for at in order))
 
@@ -308,12 +308,12 @@ def _intervals(
         return nan, nan, nan, 0.0 if depth_given else nan
     _, sizes, axes = np.linalg.svd(jacobian, full_matrices=False)
     covariance = (axes.T / np.maximum(sizes, 1e-12) ** 2) @ axes
-    lengths, ways = np.linalg.eigh(covariance[:2, :2])
+    lengths, axes = np.linalg.eigh(covariance[:2, :2])
     # as the residuals tell, and no less than ranges and ship are known to scatter
     of_residuals = rms * sqrt(2.0 * float(fisher.ppf(CONFIDENCE, 2, freedom)))
     widest = max(of_residuals, range_model.FLOOR * sqrt(float(chi2.ppf(CONFIDENCE, 2))))
     reach = widest * np.sqrt(np.maximum(lengths, 0.0))
-    bearing = degrees(atan2(ways[0, 1], ways[1, 1])) % 180.0
+    bearing = degrees(atan2(axes[0, 1], axes[1, 1])) % 180.0
     depth = 0.0
     if not depth_given:
         side = 0.5 + 0.5 * CONFIDENCE
@@ -370,7 +370,7 @@ def with_deployed(
         It is written in a way that does not allow this change, or planned to stand where
         latitude and longitude are exchanged.
     """
-    said, doubts = _beside_the_plan(before, located, water_depth)
+    sentences, doubts = _beside_the_plan(before, located, water_depth)
     file = WorkingFile(path)
     position = {
         "latitude": f"{located.latitude:.6f} deg",
@@ -383,7 +383,7 @@ def with_deployed(
     except EditError as error:
         raise UsageError(f"{path}: {error}") from None
     read_mooring(path, text=draft.text)
-    return file, draft.text, said, doubts
+    return file, draft.text, sentences, doubts
 
 
 def _beside_the_plan(
@@ -393,12 +393,12 @@ def _beside_the_plan(
     planned, plan_depth = file.position, file.environment.depth
     assert plan_depth is not None  # of a mooring
     deeper = water_depth - plan_depth
-    said = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
+    sentences = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
     doubts = []
     if abs(deeper) > max(DEEPER, DEEPER_SHARE * plan_depth):
         doubts.append(f"the depth, {water_depth:.0f} m, is far from the planned {plan_depth:.0f} m")
     if planned is None:
-        return tuple(said), tuple(doubts)
+        return tuple(sentences), tuple(doubts)
     frame = Frame(planned.latitude, planned.longitude)
 
     def away(latitude: float, longitude: float) -> float:
@@ -408,11 +408,11 @@ def _beside_the_plan(
     there = located.latitude, located.longitude
     east, north, _ = frame.place(np.array(there[0]), np.array(there[1]), np.array(0.0)).tolist()
     distance = hypot(east, north)
-    said.insert(0, f"{distance:.0f} m towards {bearing_text(bearing_of(east, north))} of the "
+    sentences.insert(0, f"{distance:.0f} m towards {bearing_text(bearing_of(east, north))} of the "
                 "planned position")  # fmt: skip
     limit = FAR * max(water_depth, plan_depth)
     if distance <= limit:
-        return tuple(said), tuple(doubts)
+        return tuple(sentences), tuple(doubts)
     if abs(there[1]) <= 90.0 and away(there[1], there[0]) <= limit:
         raise UsageError(
             f"{located.survey.path}: latitude and longitude are exchanged: the anchor "
@@ -421,5 +421,5 @@ def _beside_the_plan(
     doubt = f"the place is {distance / 1000.0:.1f} km from the planned position"
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
         doubt += ", and near it if the positions are degrees and minutes, as 48 18 for 48.18"
-    said.append("that is far from the planned position: is it this mooring's?")
-    return tuple(said), (*doubts, doubt)
+    sentences.append("that is far from the planned position: is it this mooring's?")
+    return tuple(sentences), (*doubts, doubt)

@@ -71,8 +71,8 @@ class RangeModel:
     def jacobian(self, x: Floats) -> Floats:
         """Return (n, unknowns) of the residuals."""
         step = 0.01
-        ways = step * np.eye(self.unknowns)
-        columns = [self.residuals(x + way) - self.residuals(x - way) for way in ways]
+        steps = step * np.eye(self.unknowns)
+        columns = [self.residuals(x + change) - self.residuals(x - change) for change in steps]
         return np.stack(columns, axis=1) / (2.0 * step)
 
     def fitted(self) -> tuple[Floats, Booleans]:
@@ -82,19 +82,19 @@ class RangeModel:
         if count <= self.unknowns + SPARE:
             fits = (self.least_squares(start, used) for start in self._starts())
             return min(fits, key=lambda x: float(np.sum(self.residuals(x) ** 2))), used
-        x = self._sturdy()
+        x = self._robust_fit()
         residuals = np.abs(self.residuals(x))
         used = residuals <= 5.0 * scatter(residuals, self.unknowns)
         used[np.argsort(residuals)[: self.unknowns + SPARE]] = True
         for _ in range(2 * len(used)):
             x = self.least_squares(x, used)
-            changed = self.judged(x, used)
+            changed = self.tested(x, used)
             if (changed == used).all():
                 break
             used = changed
         return x, used
 
-    def _sturdy(self) -> Floats:
+    def _robust_fit(self) -> Floats:
         """Return the unknowns by a fit that outliers hardly move, from several sides."""
         from scipy.optimize import least_squares
 
@@ -139,7 +139,7 @@ class RangeModel:
         )  # fmt: skip
         return self._below(fit.x)
 
-    def judged(self, x: Floats, used: Booleans) -> Booleans:
+    def tested(self, x: Floats, used: Booleans) -> Booleans:
         """Reject the worst outlier, or restore a range that fits the others.
 
         A range is tested by its residual over its standard error, as estimated from the others.
@@ -205,12 +205,12 @@ class RangeModel:
         away = float(fit.x[-1]) - 1.0
         if abs(away) <= max(student.ppf(1.0 - 0.5 * BY_CHANCE, freedom) * deviation, 1e-3):
             return []
-        said = f"The ranges fit better when all are {abs(100.0 * away):.1f} % "
-        said += "longer" if away > 0.0 else "shorter"
+        text = f"The ranges fit better when all are {abs(100.0 * away):.1f} % "
+        text += "longer" if away > 0.0 else "shorter"
         if self.survey.timed:
-            said += f": is the speed of sound {(1.0 + away) * self.mean_speed(x):.0f} m/s?"
-            return [said]
-        return [f"{said}: were they taken with another speed of sound?"]
+            text += f": is the speed of sound {(1.0 + away) * self.mean_speed(x):.0f} m/s?"
+            return [text]
+        return [f"{text}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
         """Find another position that fits nearly as well, or within a scatter [m].
@@ -223,14 +223,14 @@ class RangeModel:
             same = replace(self, depth=self.frame.position(x)[2])
             fits += [np.append(same.least_squares(start[:2], used), x[2]) for start in starts]
 
-        def misses(x: Floats) -> float:
+        def square_sum(x: Floats) -> float:
             return float(np.sum(self.residuals(x)[used] ** 2))
 
         freedom = max(int(used.sum()) - self.unknowns, 1)
-        most = max(4.0 * max(misses(x), float(used.sum()) * FLOOR**2), freedom * scatter**2)
+        most = max(4.0 * max(square_sum(x), float(used.sum()) * FLOOR**2), freedom * scatter**2)
         apart = [fit for fit in fits if np.linalg.norm((fit - x)[:2]) > APART]
-        best = min(apart, key=misses, default=None)
-        return None if best is None or misses(best) > most else best
+        best = min(apart, key=square_sum, default=None)
+        return None if best is None or square_sum(best) > most else best
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:

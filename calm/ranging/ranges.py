@@ -86,7 +86,7 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
     """
     problems: list[Problem] = []
     signs = hemisphere_signs(hemisphere)
-    table, its_transducer, said = _survey_table(path)
+    table, its_transducer, notices = _survey_table(path)
     columns = read_named_columns(table, _COLUMNS, problems, other_names=_OTHER_NAMES)
     heads = columns.factors
     problems += [
@@ -118,7 +118,6 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
     problems += _misplaced(path, values)
     if problems:
         raise InputError(delimited.abridged(problems))
-    notices = said
     if columns.others:
         notices.append(f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}")
     once: dict[tuple[float, float, float], int] = {}
@@ -161,7 +160,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     placed = name in HEMISPHERES
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
-        raise ValueError(f"is a fill value; {leave} where there is none")
+        raise ValueError(f"is a fill value; {leave} if it is missing")
     sexagesimal = degrees_of(text, name) if placed else None
     if sexagesimal is None and (complaint := delimited.no_number(text)):
         degrees = "; degrees are needed, such as -5.2 or 5 12.0 W" if placed else ""
@@ -172,7 +171,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     if name == "longitude" and abs(value) > 360.0:
         raise ValueError("is beyond 360 degrees")
     if not placed and value <= 0.0:
-        raise ValueError("must be above 0; leave the cell blank where there was no reply")
+        raise ValueError("must be above 0; leave the cell blank if there was no reply")
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
         unit = DIMENSIONS[_COLUMNS[name]].unit
@@ -318,7 +317,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
             (number, f"{_placed(cells[:2])},{_placed(cells[2:4])},{2.0 * float(cells[4]):.9g}")
             for number, cells in rows
         ]
-        said = (
+        note = (
             "has no heading: read as degrees, minutes, degrees, minutes and the seconds one way; "
             "south and west are negative"
         )
@@ -326,7 +325,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
         header = "range[m],latitude,longitude"
         depth, release, transducer = map(float, rows[above - 1][1])
         lines = [(number, ",".join(cells)) for number, cells in rows[above + 1 :]]
-        said = (
+        note = (
             "has no heading: read as range, latitude and longitude below the depths and the drop; "
             f"its transducer is {transducer:g} m deep; the depth of the water in it, {depth:g} m, "
             f"and the release {release:g} m above the seabed count when given: --depth, "
@@ -334,7 +333,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
         )
     else:
         return _joined(delimited.read_table(path, EXAMPLE)), None, []
-    return delimited.read_table(path, EXAMPLE, [(1, header), *lines]), transducer, [said]
+    return delimited.read_table(path, EXAMPLE, [(1, header), *lines]), transducer, [note]
 
 
 def _bare_rows(path: Path) -> list[_BareRow]:

@@ -48,8 +48,8 @@ _MOVING = 0.1  # m/s over the ground: median speeds above this exclude a mooring
 
 def words_of(variable: xr.DataArray, *attributes: str) -> str:
     """Join the given attributes of a variable as lower-case words, separated by single blanks."""
-    told = " ".join(str(variable.attrs.get(name, "")) for name in attributes)
-    return re.sub(r"[\W_]+", " ", told.lower()).strip()
+    text = " ".join(str(variable.attrs.get(name, "")) for name in attributes)
+    return re.sub(r"[\W_]+", " ", text.lower()).strip()
 
 
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
@@ -81,8 +81,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
         if _OTHER_FRAME.search(frame) and not _TO_THE_EARTH.search(frame):
-            said = f"is in other coordinates, `{name}: {attributes[name]}`"
-            return f"{said}, not to the east and north; rotate it to the earth's first"
+            reason = f"is in other coordinates, `{name}: {attributes[name]}`"
+            return f"{reason}, not to the east and north; rotate it to the earth's first"
     return None
 
 
@@ -117,21 +117,21 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
     )
     if _is_magnetic_text(own):
         return True
-    for name, said in (*variable.attrs.items(), *dataset.items()):
+    for name, value in (*variable.attrs.items(), *dataset.items()):
         if _UNTURNED.fullmatch(str(name)):
-            if str(said).strip().lower() in _NO:
+            if str(value).strip().lower() in _NO:
                 return True
-        elif _DATUM.fullmatch(str(name)) and _is_magnetic_text(str(said)):
+        elif _DATUM.fullmatch(str(name)) and _is_magnetic_text(str(value)):
             return True
     return False
 
 
 def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether attributes of the variable or dataset refer directions to true north."""
-    for name, said in (*variable.attrs.items(), *dataset.items()):
-        if _UNTURNED.fullmatch(str(name)) and str(said).strip().lower() not in _NO:
+    for name, value in (*variable.attrs.items(), *dataset.items()):
+        if _UNTURNED.fullmatch(str(name)) and str(value).strip().lower() not in _NO:
             return True
-        if _DATUM.fullmatch(str(name)) and re.search(r"(?i)\btrue\b", str(said)):
+        if _DATUM.fullmatch(str(name)) and re.search(r"(?i)\btrue\b", str(value)):
             return True
     return False
 
@@ -141,7 +141,7 @@ def _is_magnetic_text(text: str) -> bool:
     return bool(_MAGNETIC.search(words)) and not _TRUE.search(words)
 
 
-def way_of(variable: xr.DataArray) -> str | None:
+def sense_of_direction(variable: xr.DataArray) -> str | None:
     """Return the convention of a direction that has no standard name.
 
     The long name and comment decide: ``"to"`` if the current flows to it, ``"from"`` if it comes

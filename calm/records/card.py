@@ -30,8 +30,8 @@ _TEXTS = {
 class VariableSummary:
     """Name, declared unit, minimum, median and maximum of a variable.
 
-    `said` quotes its long name and comment. The three figures are NaN for a variable without finite
-    values.
+    `description` quotes its long name and comment. The three figures are NaN for a variable without
+    finite values.
     """
 
     name: str
@@ -39,17 +39,17 @@ class VariableSummary:
     least: float
     median: float
     greatest: float
-    said: str = ""
+    description: str = ""
 
     @classmethod
-    def of(cls, name: str, units: str, values: Any, said: str = "") -> VariableSummary:
+    def of(cls, name: str, units: str, values: Any, description: str = "") -> VariableSummary:
         """Compute the figures from the finite elements of an array."""
         values = np.asarray(values, np.float64).ravel()
         known = values[np.isfinite(values)]
         if not known.size:
-            return cls(name, units, np.nan, np.nan, np.nan, said)
+            return cls(name, units, np.nan, np.nan, np.nan, description)
         ends = float(known.min()), float(np.median(known)), float(known.max())
-        return cls(name, units, *ends, said)
+        return cls(name, units, *ends, description)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +80,8 @@ class ReadCard:
     def sentence(self) -> str:
         """Format the card as a line of the `history` attribute."""
         rows = card_rows(self.to_dict())
-        told = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
-        return f"read {self.file}: {told}"
+        texts = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
+        return f"read {self.file}: {texts}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON object: times in ISO 8601, the step in seconds."""
@@ -115,22 +115,44 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of the parts of one file."""
-    variables = {taken: one for card in cards for taken, one in card.variables.items()}
+    """Merge the cards of several quantities of a file."""
+    variables = {role: one for card in cards for role, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)
+
+
+def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
+    """Merge the cards of a file's instruments; a median is that of the instruments' medians."""
+    variables = {}
+    for role in {role: None for card in cards for role in card.variables}:
+        each = [card.variables[role] for card in cards if role in card.variables]
+        figures = np.array([(one.least, one.median, one.greatest) for one in each])
+        known = figures[np.isfinite(figures).all(axis=1)]
+        if known.size:
+            least, median, greatest = known[:, 0].min(), np.median(known[:, 1]), known[:, 2].max()
+            each[0] = replace(
+                each[0], least=float(least), median=float(median), greatest=float(greatest)
+            )
+        variables[role] = each[0]
+    flags = {name: 0 for card in cards for name in card.flags}
+    for card in cards:
+        for name, count in card.flags.items():
+            flags[name] += count
+    times = np.unique(np.concatenate([card.times for card in cards]))
+    levels = sum(card.levels for card in cards)
+    return replace(cards[0], variables=variables, flags=flags, times=times, levels=levels)
 
 
 def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     """Format the dictionary of `ReadCard.to_dict` as (name, text) rows for display."""
     rows = [(name, card[name]) for name in _TEXTS if card[name]]
     for taken, one in card["variables"].items():
-        said = f"{one['name']} [{one['units']}]" if one["units"] else one["name"]
+        text = f"{one['name']} [{one['units']}]" if one["units"] else one["name"]
         if taken == "depth":
-            said = f"{_counted(card['levels'], 'level')}; {said}"
+            text = f"{_counted(card['levels'], 'level')}; {text}"
         if taken != "time":
-            said += f": {_values(one)}" + (f" ({one['said']})" if one["said"] else "")
-            rows.append((taken, said))
+            text += f": {_values(one)}" + (f" ({one['description']})" if one["description"] else "")
+            rows.append((taken, text))
     if "depth" not in card["variables"]:
         rows.append(("levels", str(card["levels"])))
     if card["times"]:
@@ -153,15 +175,15 @@ def _values(one: Mapping[str, Any]) -> str:
 def _when(card: Mapping[str, Any]) -> str:
     clock = card["variables"].get("time", {"name": "", "units": ""})
     unit = f" [{clock['units']}]" if clock["units"] else ""
-    said = f"{clock['name']}{unit}: " if clock["name"] else ""
-    said += f"{_counted(card['times'], 'time')}, {card['first']}"
+    text = f"{clock['name']}{unit}: " if clock["name"] else ""
+    text += f"{_counted(card['times'], 'time')}, {card['first']}"
     if card["step"] is None:
-        return said
-    said += f" to {card['last']}, step {_span(card['step'])}"
+        return text
+    text += f" to {card['last']}, step {_span(card['step'])}"
     if not card["gaps"]:
-        return f"{said}, no gaps"
+        return f"{text}, no gaps"
     gaps = _counted(card["number_of_gaps"], "gap")
-    return f"{said}, {gaps}, the longest of {_span(card['longest_gap'])}"
+    return f"{text}, {gaps}, the longest of {_span(card['longest_gap'])}"
 
 
 def _counted(number: int, noun: str) -> str:
@@ -184,10 +206,10 @@ def cut(text: str) -> str:
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
 
 
-def said_of(attributes: Mapping[Any, Any]) -> str:
+def description_of(attributes: Mapping[Any, Any]) -> str:
     """Return the long name and the comment of a variable."""
-    told = (str(attributes.get(name, "")).strip() for name in ("long_name", "comment"))
-    return cut("; ".join(filter(None, told)))
+    texts = (str(attributes.get(name, "")).strip() for name in ("long_name", "comment"))
+    return cut("; ".join(filter(None, texts)))
 
 
 def _span(seconds: float) -> str:

@@ -32,7 +32,7 @@ _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _MOST_LISTED = 5
 MOST_VALUES = 50_000_000
-"""Maximum number of values read at once; as times, one a second for a year and a half."""
+"""Maximum number of values read at once: readings every second for a year and a half."""
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )
@@ -262,11 +262,11 @@ _PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", 
 
 
 def refuse_other_salinity(variable: xr.DataArray) -> None:
-    """Reject a salinity whose unit is not that of practical salinity (UnreadableError)."""
+    """Reject a salinity with a unit other than those of practical salinity (UnreadableError)."""
     unit = str(variable.attrs.get("units", "")).strip()
     if unit.lower() not in _PRACTICAL:
-        said = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
-        raise UnreadableError(f"`{variable.name}`: its unit, {said}")
+        reason = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
+        raise UnreadableError(f"`{variable.name}`: its unit, {reason}")
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
@@ -396,7 +396,7 @@ def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
         for key in _ZONED:
             zone = str(attributes.get(key, "")).strip()
             if zone and zone.upper() not in ZONES_OF_UTC:
-                return [f"`{key}` is `{zone[:80]}`: the times are taken as they stand, in UTC"]
+                return [f"`{key}` is `{zone[:80]}`: CALM reads the times as UTC"]
     return []
 
 
@@ -411,8 +411,8 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     zone = _ZONE.search(unit)
     if zone is not None and zone[1].upper() not in ZONES_OF_UTC:
         raise UnreadableError(
-            f"the times in `{times.name}` are `{unit}`: what `{zone[1]}` is ahead of UTC is not "
-            "known for sure; write the offset in hours, such as `+01:00`, or use UTC"
+            f"the times in `{times.name}` are `{unit}`: the offset of `{zone[1]}` from UTC is "
+            "ambiguous; write it in hours, such as `+01:00`, or use UTC"
         )
     refusal = UnreadableError(
         f"the times in `{times.name}` cannot be read: their unit, `{unit}`, is none of seconds, "

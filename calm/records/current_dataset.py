@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calm.errors import refused
 from calm.physics.line import Floats
 from calm.records import cf_files, velocity
-from calm.records.card import ReadCard, VariableSummary, said_of, texts_in
+from calm.records.card import ReadCard, VariableSummary, description_of, texts_in
 from calm.records.current_terms import Terms
 from calm.records.grids import GridColumn, choose_column, is_regular
 from calm.records.level_depths import find_levels
@@ -23,10 +23,10 @@ from calm.records.value_tests import CurrentValues, current_doubts, step_doubts
 if TYPE_CHECKING:
     import xarray as xr
 
-AHEAD = 16_000_000
+READ_AHEAD = 16_000_000
 """Maximum size of profiles that are read together because the file compresses them so [bytes]."""
 
-LOOKED_AT = 64_000_000
+SAMPLED = 64_000_000
 """Sample size for tests of doubtful values, spread evenly over the record [bytes]."""
 
 
@@ -120,7 +120,8 @@ class CurrentDataset:
         )
         if not self._terms.on_the_line:
             for variable in self._flags:
-                first[self._along(variable, index, velocity.marked_bad)] = np.nan
+                bad = self._along(variable, index, velocity.marked_bad)
+                first[bad] = second[bad] = np.nan
         if self._velocity.turn is not None:
             impossible = (first < 0.0) | (np.abs(second) > 360.0)
             first, second = self._velocity.components(first, second)
@@ -150,10 +151,10 @@ class CurrentDataset:
         index : indices of the times, rising
         """
         every, times = self.times, None
-        said: list[str] = []
+        notes: list[str] = []
         if every is not None:
             every = every[index]
-            sparse = max(len(every) * self.size // LOOKED_AT, 1)
+            sparse = max(len(every) * self.size // SAMPLED, 1)
             if isinstance(index, slice):
                 index = slice(index.start, index.stop, (index.step or 1) * sparse)
             else:
@@ -165,14 +166,14 @@ class CurrentDataset:
             low, high = cf_files.valid_range(variable)
             outside = (values < low) | (values > high)
             if outside.any():
-                said.append(
+                notes.append(
                     f"{outside.sum()} of {np.isfinite(values).sum()} values of `{variable.name}` "
                     f"are left out, outside its valid range, {low:g} to {high:g}"
                 )
                 values[outside] = np.nan
             units = str(variable.attrs.get("units", ""))
-            told = said_of(variable.attrs)
-            summaries[taken] = VariableSummary.of(str(variable.name), units, values, told)
+            description = description_of(variable.attrs)
+            summaries[taken] = VariableSummary.of(str(variable.name), units, values, description)
         depth, u, v, _ = self.read(index)
         if self._levels is not None:
             variable = self._levels.variable
@@ -180,14 +181,14 @@ class CurrentDataset:
                 raise cf_files.UnreadableError(
                     f"the depths of its levels, `{variable.name}`, have no value"
                 )
-            told = said_of(variable.attrs)
-            summaries["depth"] = VariableSummary.of(str(variable.name), "m", depth, told)
+            description = description_of(variable.attrs)
+            summaries["depth"] = VariableSummary.of(str(variable.name), "m", depth, description)
         removed = {}
         for variable in () if self._terms.on_the_line else self._flags:
             bad = self._along(variable, index, velocity.marked_bad)
             removed[str(variable.name)] = int(bad.sum())
             if bad.any():
-                said.append(
+                notes.append(
                     f"{bad.sum()} of {bad.size} currents are left out, as `{variable.name}` marks "
                     "them as bad"
                 )
@@ -205,7 +206,7 @@ class CurrentDataset:
             depth, u, v, times, self._terms.water_depth, str(variable.attrs.get("units", "m/s")),
             factor, np.sum(good, axis=0) if good else None,
         )  # fmt: skip
-        return card, [*said, *current_doubts(values)]
+        return card, [*notes, *current_doubts(values)]
 
     @property
     def _taken(self) -> tuple[str, ...]:
@@ -251,8 +252,8 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
         )
     if declination is None:
         return ()
-    said = "" if current.magnetic else ", as you say: the file does not"
-    return (f"{which} were relative to magnetic north{said}, turned by {declination:g}°",)
+    unstated = "" if current.magnetic else ", as you say: the file does not"
+    return (f"{which} were relative to magnetic north{unstated}, turned by {declination:g}°",)
 
 
 def _single_levels(
@@ -337,7 +338,7 @@ class ArrayRecord(Record):
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step
             chunk = -(-(chunk - position % chunk) // int(self._index.step))
-        return start + min(chunk, AHEAD // max(self._current.size, 1))
+        return start + min(chunk, READ_AHEAD // max(self._current.size, 1))
 
     def close(self) -> None:
         """See `Record`."""

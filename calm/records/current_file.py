@@ -2,13 +2,11 @@
 
 A text table has the columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A record
 has a first column `time` and a row for each time and depth; the rows of one time must be adjacent.
-The record is read once, and its numbers are stored in a temporary file. A level without a value
-(blank, `nan` or `NA`) is omitted.
+A level without a value (blank, `nan` or `NA`) is omitted.
 """
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, islice
@@ -17,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError, refused
+from calm.errors import InputError, Problem, refused
 from calm.physics.line import Floats, Integers
 from calm.records import current_terms, delimited
 from calm.records.card import ReadCard, VariableSummary, cut
@@ -181,20 +179,15 @@ def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
 
 
 class CsvRecord(Record):
-    """A record in CSV, read once; its numbers are stored in a temporary file until it is closed.
+    """A record in CSV, read once into memory.
 
     Parameters and errors are the same as in `open_record`; all mistakes of the file are reported.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
         self._terms = terms
-        self._kept = tempfile.TemporaryFile()  # noqa: SIM115 (until it is closed)
-        try:
-            header = self._read(path)
-            self._index, chosen = choose_profiles(self._times, period, every, path)
-        except BaseException:
-            self._kept.close()
-            raise
+        header = self._read(path)
+        self._index, chosen = choose_profiles(self._times, period, every, path)
         self.time = self._times[self._index]
         doubts = self._inspect(header, period, every, path)
         self.notes = (*chosen, *self._turned, *doubts, *step_doubts(self.time), *RULES)
@@ -218,7 +211,7 @@ class CsvRecord(Record):
         return [*current_doubts(values)]
 
     def _read(self, path: Path) -> CurrentHeader:
-        """Read all profiles of the file into the temporary file."""
+        """Read all profiles of the file."""
         try:
             with path.open("rb") as file:
                 bare = (COMMENT.sub(rb"\1", line) if b"#" in line else line for line in file)
@@ -240,6 +233,7 @@ class CsvRecord(Record):
         problems: list[Problem] = []
         times: list[np.datetime64] = []
         counts: list[int] = []
+        parts = [np.empty((0, COLUMNS))]
         for rows in _whole_profiles(lines, first):
             begins = [
                 i for i, row in enumerate(rows) if not i or row.cells[0] != rows[i - 1].cells[0]
@@ -248,21 +242,14 @@ class CsvRecord(Record):
             times += [each for each in moments if each is not None]
             sizes = np.diff([*begins, len(rows)])
             which = np.repeat(np.arange(len(begins)), sizes)
-            try:
-                header.currents(rows, problems, self._terms, which).tofile(self._kept)
-                self._kept.flush()
-            except OSError:
-                place = tempfile.gettempdir()
-                raise UsageError(f"no room for the numbers of the record in {place}") from None
+            parts.append(header.currents(rows, problems, self._terms, which))
             counts += sizes.tolist()
             _refuse(problems, header, at_least=delimited.MOST_PROBLEMS)
         _refuse(problems, header)
         self._times = np.array(times, "datetime64[ns]")
         self._first = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
         self._most = max(counts, default=0)
-        self._rows = np.empty((0, COLUMNS))
-        if self._first[-1]:
-            self._rows = np.memmap(self._kept, np.float64, "r", shape=(self._first[-1], COLUMNS))
+        self._rows = np.concatenate(parts)
         self._has_w = any(heading(column)[0].lower() == "w" for column in header.columns)
         self._turned = turned_notices(header.columns, self._terms)
         return header
@@ -281,7 +268,6 @@ class CsvRecord(Record):
     def close(self) -> None:
         """See `Record`."""
         self._rows = np.empty((0, COLUMNS))
-        self._kept.close()
 
 
 def _card_of(

@@ -26,7 +26,7 @@ LARGEST_CSV = 50_000_000
 """Maximum size of a table that is read whole [bytes]."""
 
 MOST_PROBLEMS = 20
-"""Maximum number of mistakes shown for one file; a wrong unit would cause thousands."""
+"""Maximum number of mistakes shown for one file, as a wrong unit would cause thousands."""
 
 GAPS = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 """Lower-case cell texts that mark a missing value."""
@@ -254,12 +254,12 @@ def copied_table(text: str) -> CopiedTable:
     dialect = dialect_of([line.strip(" ") for _, line in lines])
     cells = [(number, tuple(dialect.cells(line.strip(" ")))) for number, line in lines]
     if not cells:
-        raise NoTableError("there are no numbers in it")
+        raise NoTableError("the text has no numbers")
     first = cells[0][1]
     headings = None if any(map(_begins_with_number, first)) else first
     rows = cells[headings is not None :]
     if not rows:
-        raise NoTableError("there are no numbers in it")
+        raise NoTableError("the text has no numbers")
     for number, row in rows:
         if len(row) != len(first):
             raise NoTableError(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -35,7 +35,7 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
 
     Parameters
     ----------
-    given : a record, or several
+    given : a record, several, or a mapping from labels to records, which gives ``LABEL=PATH``
     folder, name : output folder, and prefix of the file names
 
     Raises
@@ -43,6 +43,9 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
     TypeError
         A record is not a path, nor an object of xarray or pandas.
     """
+    if isinstance(given, Mapping) and not is_record(given):
+        each = [as_files(one, folder, f"{name}-{i}") for i, one in enumerate(given.values())]
+        return [f"{label}={path}" for label, (path,) in zip(given, each, strict=True)]
     if isinstance(given, str | Path) or not isinstance(given, Sequence):
         given = [given]
     found: list[str] = []

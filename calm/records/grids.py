@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 REACH = 8
-"""Columns on each side of the nearest one that are searched for water."""
+"""Number of columns searched for water on each side of the nearest column."""
 
 FAR = 5.0
 """Distance above which a record's drift, or its distance from the mooring, is reported [km]."""
@@ -312,7 +312,7 @@ class SeabedGrid:
         return float(self._depths(np.zeros((1, 2)))[0])
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the depth (n,) at places (n, 2) less that of the point [m].
+        """Return the depths (n,) at places (n, 2), minus the depth of the point [m].
 
         Places are given by their distances east and north of the point [m].
         """

@@ -79,10 +79,10 @@ def column_unit(
             return dimension, unit_factor(unit, dimension)
         except QuantityError as error:
             complaints.append(error)
-    said = next((one for one in complaints if one.suggestion), complaints[0])
-    meant = column.strip().replace(unit, said.suggestion) if said.suggestion else ""
+    first = next((one for one in complaints if one.suggestion), complaints[0])
+    meant = column.strip().replace(unit, first.suggestion) if first.suggestion else ""
     offer = f"; did you mean `{shown(meant)}`?" if meant else ""
-    raise QuantityError(f"`{shown(column)}` {said.complaint}{offer}")
+    raise QuantityError(f"`{shown(column)}` {first.complaint}{offer}")
 
 
 def is_time(column: str) -> bool:
@@ -96,7 +96,7 @@ def zone_complaint(column: str) -> str | None:
     if not zone or zone.upper() in ZONES_OF_UTC:
         return None
     return (
-        f"`{column.strip()[:40]}`: times are in UTC, or each says what it is ahead, as in "
+        f"`{column.strip()[:40]}`: times must be in UTC, or include their offset, as in "
         "2026-03-01T06:00+02:00"
     )
 

@@ -7,9 +7,11 @@ nominal depth.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,8 +20,15 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
-from calm.records import attributes, cf_files, velocity
-from calm.records.card import ReadCard, VariableSummary, joined_cards, said_of, texts_in
+from calm.records import attributes, cf_files, instrument_text, velocity
+from calm.records.card import (
+    ReadCard,
+    VariableSummary,
+    card_of_instruments,
+    description_of,
+    joined_cards,
+    texts_in,
+)
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
 from calm.records.value_tests import WATER, impossible_values, series_doubts
@@ -92,7 +101,7 @@ class InstrumentSeries(Identity):
     pressure: float = float("nan")
     called: str = ""
 
-    def judged(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
+    def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
         """Return the series without impossible values, with the doubts added to its note.
 
         Parameters
@@ -106,24 +115,28 @@ class InstrumentSeries(Identity):
         UnreadableError
             Most values are impossible for sea water, so the unit must be wrong.
         """
-        value, said = self.value, [*notes]
+        value, remarks = self.value, [*notes]
         if quantity in WATER:
             wrong, doubt, most = impossible_values(quantity, value)
             if most:
                 raise UnreadableError(f"`{variable}`: {doubt}")
-            said += [f"`{variable}`: {doubt}"] if doubt else []
+            remarks += [f"`{variable}`: {doubt}"] if doubt else []
             value = np.where(wrong, np.nan, value)
             known = value[np.isfinite(value)]
             if known.size >= _FEWEST and not known.any():
-                said.append(f"`{variable}`: all {known.size} values are 0, and are left out")
+                remarks.append(f"`{variable}`: all {known.size} values are 0, and are left out")
                 value = np.full_like(value, np.nan)
         doubts = series_doubts(value[:, np.newaxis, np.newaxis], self.time)
-        said += [f"`{variable}`: {doubt}" for doubt in doubts]
-        return replace(self, value=value, note="; ".join(filter(None, (self.note, *said))))
+        remarks += [f"`{variable}`: {doubt}" for doubt in doubts]
+        return replace(self, value=value, note="; ".join(filter(None, (self.note, *remarks))))
 
 
 def read_series(
-    given: Sequence[str], names: Sequence[str], flags: frozenset[int], seabed: float
+    given: Sequence[str],
+    names: Sequence[str],
+    flags: frozenset[int],
+    seabed: float,
+    usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
     """Read the series of several quantities from files; the keys are the names of the quantities.
 
@@ -133,6 +146,8 @@ def read_series(
     names : keys of `QUANTITIES_MEASURED`
     flags : accepted quality flags, for files with flags; 8 is never accepted
     seabed : water depth, for nominal heights above the seabed [m]; NaN if unknown
+    usual : depth of each part of the line by label [m], for a file without pressures and nominal
+        depth
 
     Raises
     ------
@@ -145,7 +160,7 @@ def read_series(
     problems: list[Problem] = []
     for label, path in files_given(given):
         try:
-            mine = _of_file(path, names, flags, seabed)
+            mine = _of_file(path, names, flags, seabed, usual.get(label, np.nan))
         except InputError as error:
             problems += error.problems
             continue
@@ -190,37 +205,66 @@ def split_label(text: str) -> tuple[str, Path]:
 
 
 def _of_file(
-    path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
+    path: Path, names: Sequence[str], flags: frozenset[int], seabed: float, nominal: float
 ) -> dict[str, list[InstrumentSeries]]:
     found: dict[str, list[InstrumentSeries]] = {name: [] for name in names}
-    with cf_files.opened(path) as dataset:
+    cards = []
+    with _opened(path) as dataset:
         for part in instruments_apart(velocity.with_components(dataset)):
-            file = _SeriesFile(part, path.name, flags, seabed)
-            for name in names:
-                found[name] += file.series(name)
+            file = _SeriesFile(part, path.name, flags, seabed, nominal)
+            mine = {name: file.series(name) for name in names}
+            each = [one.card for series in mine.values() for one in series if one.card is not None]
+            cards += [joined_cards(each)] if each else []
+            for name, series in mine.items():
+                found[name] += series
         if not any(found.values()):
             raise UnreadableError(f"holds no {' or '.join(names)}")
-    cards = [one.card for series in found.values() for one in series if one.card is not None]
-    whole = joined_cards(cards)
+    whole = card_of_instruments(cards)
     return {name: [replace(one, card=whole) for one in each] for name, each in found.items()}
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[xr.Dataset]:
+    if cf_files.holds_arrays(path):
+        with cf_files.opened(path) as dataset:
+            yield dataset
+    else:
+        with cf_files.reading(path):
+            yield instrument_text.read_plain_table(path)
 
 
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Split a dataset whose instruments follow each other along one dimension.
 
-    An index with `instance_dimension` assigns each reading to an instrument (CF's indexed ragged
-    arrays, as in the aggregated and hourly products of IMOS). A dataset without such an index is
-    returned alone.
+    These are the indexed and the contiguous ragged arrays of CF: an index with `instance_dimension`
+    assigns each reading to an instrument, as in the aggregated and hourly products of IMOS, or
+    counts with `sample_dimension` give the readings of each. Readings without an instrument are
+    left out. A dataset without such a variable is returned alone.
+
+    UnreadableError: the index or the counts do not fit the dimensions.
     """
     for name, index in dataset.variables.items():
-        instances = str(index.attrs.get("instance_dimension", ""))
-        if instances in dataset.dims and index.ndim == 1:
-            whose = np.asarray(index.values)
-            return [
-                dataset.drop_vars([name]).isel({index.dims[0]: whose == i, instances: i})
-                for i in range(dataset.sizes[instances])
-                if (whose == i).any()
-            ]
+        instances = index.attrs.get("instance_dimension")
+        readings = index.attrs.get("sample_dimension")
+        if index.ndim != 1 or not {instances, readings} & {*dataset.dims}:
+            continue
+        whose = np.nan_to_num(np.asarray(index.values, np.float64), nan=-1.0)
+        if readings in dataset.dims:
+            instances = index.dims[0]
+            whose = np.repeat(np.arange(whose.size), np.maximum(whose, 0.0).astype(np.int64))
+        else:
+            readings = index.dims[0]
+        count = dataset.sizes[instances]
+        if whose.size != dataset.sizes[readings] or whose.max(initial=0.0) >= count:
+            raise UnreadableError(
+                f"`{name}` does not fit its {count} instruments, which are counted from 0, and "
+                f"{dataset.sizes[readings]} readings"
+            )
+        return [
+            dataset.drop_vars([name]).isel({readings: whose == i, instances: i})
+            for i in range(count)
+            if (whose == i).any()
+        ]
     return [dataset]
 
 
@@ -243,6 +287,7 @@ class _SeriesFile:
     name: str
     flags: frozenset[int]
     seabed: float
+    usual: float
 
     def series(self, name: str) -> list[InstrumentSeries]:
         """Return the series of a quantity, one per instrument; empty if the file lacks it."""
@@ -275,7 +320,7 @@ class _SeriesFile:
         return [
             replace(
                 one, below=float(deep), card=card, pressure=pressure, called=one.label or called
-            ).judged(name, variable, notes)
+            ).checked(name, variable, notes)
             for one, deep in zip(found.series(value, who), below, strict=True)
         ]
 
@@ -296,9 +341,10 @@ class _SeriesFile:
             parts = (each * factor for each, factor in zip(found.values, factors, strict=True))
             return current.components(*parts)[0 if name == "u" else 1], []
         if "conductivity" in taken:
-            note = "salinity is computed from conductivity, temperature and pressure"
             nominal = np.array([one.nominal for one in who])
-            return practical_salinity(self.dataset, taken, found.values, nominal), [note]
+            nominal = np.where(np.isfinite(nominal), nominal, self.usual)
+            salinity = practical_salinity(self.dataset, taken, found.values, nominal)
+            return salinity, [*_salinity_notes(salinity, taken)]
         if name == "temperature":
             return cf_files.converted(first, found.values[0], "degC"), []
         cf_files.refuse_other_salinity(first)
@@ -385,6 +431,19 @@ def practical_salinity(
     with np.errstate(invalid="ignore"):
         salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
     return salinity
+
+
+_FRESH = 5.0
+
+
+def _salinity_notes(salinity: Floats, taken: Mapping[str, str]) -> Iterator[str]:
+    """Yield how a salinity was computed, and doubts about the unit of the conductivity."""
+    if not np.isfinite(salinity).any():
+        yield "salinity is not computed: there is neither a pressure nor a nominal depth"
+        return
+    yield f"salinity is computed from {', '.join(taken)}"
+    if (middle := float(np.nanmedian(salinity))) < _FRESH:
+        yield f"its median is {middle:.2g}: is `{taken['conductivity']}` in another unit?"
 
 
 def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
@@ -486,8 +545,8 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
             bad = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
             removed[str(marks.name)] = int(bad.sum())
             dropped |= bad
-    said = clock, str(dataset[clock].attrs.get("units", ""))
-    return Readings(times[order], time, along, parts, dropped, said, removed)
+    clock_unit = clock, str(dataset[clock].attrs.get("units", ""))
+    return Readings(times[order], time, along, parts, dropped, clock_unit, removed)
 
 
 def card_of(
@@ -502,9 +561,11 @@ def card_of(
     """
     summaries = {}
     for (meaning, name), values in zip(taken.items(), found.values, strict=True):
-        told = dataset[name].attrs
-        unit = str(told.get("units", ""))
-        summaries[meaning] = VariableSummary.of(name, unit, values, said_of(told))
+        variable_attributes = dataset[name].attrs
+        unit = str(variable_attributes.get("units", ""))
+        summaries[meaning] = VariableSummary.of(
+            name, unit, values, description_of(variable_attributes)
+        )
     return ReadCard(
         source, texts_in(dataset.attrs), summaries, found.dropped.shape[1], found.time,
         found.clock, found.flags,
@@ -526,8 +587,8 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
         tried = (cf_files.places_along(dataset, dim, seabed) for dim in (None, *single))
         place = next((float(one[0]) for one in tried if one is not None), _number(dataset.attrs))
         known = (_serials(dataset, dims) for dims in ((), *((dim,) for dim in single)))
-        told = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
-        serial = next(filter(None, known), [str(told).strip()])[0]
+        serial_text = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
+        serial = next(filter(None, known), [str(serial_text).strip()])[0]
         return [Identity(labels[0], serial, place, source)]
     count = dataset.sizes[along]
     labels = cf_files.labels_along(dataset, along) or ("",) * count

@@ -2,7 +2,7 @@
 
 RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
 columns in known units. Sea-Bird's `.cnv` files and the tables of RBR's library name each column and
-its unit in their headers.
+its unit in their headers, and so do plain tables such as ``time,temperature[degC],salinity[PSU]``.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, refused
+from calm.errors import InputError, Problem, refused, unknown
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
+from calm.records.headings import read_time_columns
 from calm.whole_file import read_content
 
 if TYPE_CHECKING:
@@ -128,13 +129,13 @@ def _lines(path: Path) -> list[str]:
 
 def _rodb(path: Path) -> xr.Dataset:
     lines = _lines(path)
-    said: dict[str, str] = {}
+    header: dict[str, str] = {}
     first = 0
     while first < len(lines) and (not lines[first].strip() or "=" in lines[first]):
         if found := _PAIR.match(lines[first]):
-            said[found[1].lower()] = found[2]
+            header[found[1].lower()] = found[2]
         first += 1
-    names = said["columns"].upper().split(":")
+    names = header["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
         raise refused(path, "its `Columns` have no YY, MM and DD", line=first)
     values = _numbers(path, lines, first, len(names))
@@ -144,14 +145,17 @@ def _rodb(path: Path) -> xr.Dataset:
     seconds = np.rint(of.get("HH", np.zeros(len(values))) * 3600.0)  # hours have five digits
     time = months.astype("M8[us]") + (day - 1) * np.timedelta64(1, "D")
     columns = {_RODB[name]: of[name] for name in names if name in _RODB}
-    latitude = said.get("latitude", "nan")
+    latitude = header.get("latitude", "nan")
     try:
-        nominal, degrees = float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude")
+        nominal, degrees = (
+            float(header.get("instrdepth", "nan")),
+            plain_degrees(latitude, "latitude"),
+        )
     except ValueError:
         raise refused(path, "its `InstrDepth` or `Latitude` is no number") from None
     if nominal in _MISSING or nominal < 0.0:
         nominal = math.nan
-    serial = said.get("serialnumber", "")
+    serial = header.get("serialnumber", "")
     return _dataset(path, time + seconds.astype("m8[s]"), columns, nominal, degrees, serial)
 
 
@@ -164,8 +168,8 @@ def _cnv(path: Path) -> xr.Dataset:
         raise refused(path, "its head names no columns")
     values = _numbers(path, lines, first, len(names))
     columns: dict[tuple[str, str], Floats] = {}
-    for j, (name, told) in names.items():
-        unit = _CNV_UNIT.search(told)
+    for j, (name, title) in names.items():
+        unit = _CNV_UNIT.search(title)
         for pattern, what, units in _CNV:
             if re.fullmatch(pattern, name) and unit is not None and unit[1] in units:
                 columns.setdefault((what, units[unit[1]]), values[:, j])
@@ -197,14 +201,14 @@ def _rbr(path: Path) -> xr.Dataset:
     lines = _lines(path)
     first = sum(1 for line in lines if line.startswith("//") or not line.strip())
     head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
-    told = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
+    titles = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
     moments = [line.partition(",")[0].strip() for line in lines[first:]]
-    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(told))
+    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(titles))
     try:
         time = np.array(moments, "M8[us]")
     except ValueError:
         raise refused(path, "has a row without a time", line=first + 1) from None
-    of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(told) if one}
+    of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(titles) if one}
     if "sea_pressure" in of or "pressure" in of:
         of["pressure"] = of.get("sea_pressure") or ("dbar", of["pressure"][1] - AIR)
     columns = {
@@ -214,6 +218,31 @@ def _rbr(path: Path) -> xr.Dataset:
     }
     serial = re.search(r"(?m)serialID: .* (\d+)$", "\n".join(lines[:first]))
     return _dataset(path, time, columns, serial=serial[1] if serial else "")
+
+
+_IN_TABLES = {
+    "temperature": "degC",
+    "salinity": "1",
+    "pressure": "Pa",
+    "length": "m",
+    "speed": "m/s",
+}
+
+
+def read_plain_table(path: Path) -> xr.Dataset:
+    """Read a table over time of one instrument, with columns such as ``temperature[degC]``.
+
+    InputError: the table has mistakes, or a column with another name.
+    """
+    table = read_time_columns(path, tuple(_IN_TABLES), "temperature[degC]")
+    names = {archive: what for what, (archive, _) in _WHAT.items()}
+    columns = {}
+    for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
+        what = names.get(label, label)
+        if what not in _WHAT:
+            raise refused(path, unknown(f"no column is called `{label}`", label, _WHAT), line=1)
+        columns[what, _IN_TABLES[dimension]] = values
+    return _dataset(path, table.time.astype("M8[us]"), columns)
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:

@@ -143,7 +143,7 @@ class _Levels:
         positive = str(levels.attrs.get("positive", "")).lower()
         datum = words_of(levels, "reference_datum")
         if _FROM_INSTRUMENT.search(words) or datum in ("sensor", "instrument", "transducer"):
-            return self._from_instrument(positive or self._way_it_looks(words))
+            return self._from_instrument(positive or self._stated_orientation(words))
         if not positive and name in _HEIGHTS and self._sign < 0:
             positive = "up"
         elif not positive and "depth" in words:
@@ -153,8 +153,8 @@ class _Levels:
         factor = self.factor if positive == "down" else -self.factor
         if self._sign * factor < 0:
             raise UnreadableError(
-                f"`{name}` is positive {positive}, and no level of it is below the surface: "
-                "its sign or its `positive` is wrong"
+                f"`{name}` is positive {positive}, but all levels are above the surface: its "
+                "sign or its `positive` is wrong"
             )
         return LevelDepths(levels, factor, 0.0, None, ())
 
@@ -170,15 +170,15 @@ class _Levels:
         values = known_values(first)
         return int((values > 0).any()) - int((values < 0).any())
 
-    def _from_instrument(self, way: str) -> LevelDepths:
+    def _from_instrument(self, orientation: str) -> LevelDepths:
         """Return levels counted from an instrument that looks up or down.
 
         MHKiT adds the height of the instrument above the seabed to `range` if the user supplies
         this height. For an instrument that looks down it adds the instrument's depth, and calls the
         water depth `depth`.
         """
-        name, factor = self.variable.name, self.factor if way == "down" else -self.factor
-        if way not in ("up", "down"):
+        name, factor = self.variable.name, self.factor if orientation == "down" else -self.factor
+        if orientation not in ("up", "down"):
             raise UnreadableError(
                 f"`{name}` is measured from the instrument, and the file does not say whether that "
                 "looks up or down (`positive: up` of the variable, or `orientation: up` of the "
@@ -189,8 +189,12 @@ class _Levels:
         attributes = self.dataset.attrs
         by_hand = any(attributes.get(each) for each in ("range_offset", "h_deploy"))
         offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
-        if offset and str(name).startswith("range") and (way == "down" or instrument is None):
-            if way == "down":
+        if (
+            offset
+            and str(name).startswith("range")
+            and (orientation == "down" or instrument is None)
+        ):
+            if orientation == "down":
                 note = f"`{name}` is measured from the surface, as its offset is added already"
                 return LevelDepths(self.variable, factor, 0.0, None, (note,))
             if water is None:
@@ -205,11 +209,11 @@ class _Levels:
         note = f"`{name}` is measured from the instrument, whose depth is `{instrument[0].name}`"
         return LevelDepths(self.variable, factor, 0.0, instrument, (note,))
 
-    def _way_it_looks(self, words: str) -> str:
+    def _stated_orientation(self, words: str) -> str:
         """Return the orientation of an instrument, ``"up"`` or ``"down"``; empty if unstated."""
-        for word, way in (("above", "up"), ("below", "down")):
+        for word, orientation in (("above", "up"), ("below", "down")):
             if word in words.split():
-                return way
+                return orientation
         given = [one.attrs.get("orientation", "") for one in (self.variable, self.dataset)]
         looks = re.sub(r"[\W_]+", " ", " ".join(map(str, given)).lower())
         up, down = _UPWARDS.search(looks), _DOWNWARDS.search(looks)

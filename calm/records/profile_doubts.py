@@ -118,7 +118,7 @@ def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterato
         strongest = float(speed[there].max(initial=0.0))
         if strongest > limit:
             yield (
-                f"the current reaches {say('speed', strongest)} {where}, where none was measured "
-                f"above {limit:g} m/s: cm/s, or knots, written as m/s?"
+                f"the current reaches {say('speed', strongest)} {where}; measured currents there "
+                f"are below {limit:g} m/s: cm/s, or knots, written as m/s?"
             )
             return

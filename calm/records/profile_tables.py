@@ -48,7 +48,7 @@ class QuantityTable:
 
 
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
-_NO_WAY = ("direction", "dir", "heading", "bearing")
+_AMBIGUOUS = ("direction", "dir", "heading", "bearing")
 
 
 def read_columns(
@@ -119,10 +119,10 @@ def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> 
     for j, column in enumerate(table.columns):
         name, unit = heading(column)
         name = name.lower() if name.lower() in known else name
-        if name.lower() in _NO_WAY and "toward" in known:
+        if name.lower() in _AMBIGUOUS and "toward" in known:
             message = (
-                f"`{shown(column)}` does not say which way: call it `toward` where the current "
-                "flows to, or `from` where it comes from"
+                f"`{shown(column)}` has an ambiguous sense: call it `toward` if the current "
+                "flows to this direction, or `from` if it comes from there"
             )
             table.refuse(("columns", j), message)
         elif name not in known:
@@ -182,7 +182,7 @@ def check_depths(
             previous = depth
 
 
-_AS_THEY_STAND = Terms()
+_DEFAULT_TERMS = Terms()
 Speed = TypeVar("Speed", float, Floats)
 
 TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
@@ -240,7 +240,7 @@ class SeaWater:
     salinity: DepthTable
 
 
-def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> CurrentTable | None:
+def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> CurrentTable | None:
     """Parse a current from a table.
 
     If the table has mistakes, they are added to its `problems`, and None is returned.
@@ -315,8 +315,8 @@ def read_currents(
         if turned:
             u, v = turned_by(turned, u, v)
     else:
-        way, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
-        angle = np.radians(values[way] + turn)
+        sense, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
+        angle = np.radians(values[sense] + turn)
         u, v = speeds * np.sin(angle), speeds * np.cos(angle)
     w = values.get("w", np.zeros(len(u)))
     u = np.where(np.isnan(w), np.nan, u)

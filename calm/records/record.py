@@ -164,7 +164,7 @@ def choose_profiles(
         span = f"{time_text(times[0])} to {time_text(times[-1])}"
         raise UsageError(f"{path} has no profile in this period: it is from {span}")
     if last - first < len(times):
-        notes.append(f"{last - first} of the {len(times)} profiles are in the period asked for")
+        notes.append(f"{last - first} of the {len(times)} profiles are in the requested period")
     chosen = slice(first, last, every)
     if every > 1:
         notes.append(f"one profile in {every} is taken, from the first on")
@@ -236,15 +236,15 @@ def made_record() -> bytes:
             ("time", "depth"),
             np.rint(values / RESOLUTION).astype(np.int16),
             {
-                "standard_name": f"{way}ward_sea_water_velocity",
-                "long_name": f"{way}ward velocity of the current",
+                "standard_name": f"{side}ward_sea_water_velocity",
+                "long_name": f"{side}ward velocity of the current",
                 "units": "m s-1",
                 "scale_factor": RESOLUTION,
                 "_FillValue": np.int16(_MISSING),
                 "coordinates": "latitude longitude",
             },
         )
-        for way, values in zip(("east", "north"), _currents(hours), strict=True)
+        for side, values in zip(("east", "north"), _currents(hours), strict=True)
     ]
     dataset = xr.Dataset(
         {"u": currents[0], "v": currents[1]},

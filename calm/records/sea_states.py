@@ -175,7 +175,7 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
     """
     if kind == "ochi-hubble":
         if period is not None:
-            raise UsageError("ochi-hubble has the periods that go with its height; give no period")
+            raise UsageError("ochi-hubble derives its periods from the height; remove the period")
         return _most_probable(height)
     period = full_sea_period(height) if period is None else period
     if wrong := _impossible(height, period):
@@ -186,14 +186,14 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
 
 def _impossible(height: float, period: float) -> str | None:
     """Return why a height [m] and peak period [s] are impossible or unsupported, else None."""
-    length, said = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
+    length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
-        return f"{said}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
+        return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
     if period < SHORTEST_PERIOD:
-        return f"{said}: seas are solved for from a peak period of {SHORTEST_PERIOD:g} s"
+        return f"{waves}: seas are solved for from a peak period of {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
         highest = f"{length:.1f} m long, they are {STEEPEST * length:.2f} m high at most"
-        return f"{said} would break: {highest}"
+        return f"{waves} would break: {highest}"
     return None
 
 
@@ -224,7 +224,7 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
         raise UsageError(
-            f"a swell of {period:g} s beside a sea of {sea.peak_period:g} s: a swell has the "
+            f"a swell of {period:g} s with a sea of {sea.peak_period:g} s: a swell has the "
             "longer period"
         )
     swell = ochi_hubble(((height, period, 3.0),))
@@ -243,7 +243,7 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 def _most_probable(height: float) -> SeaState:
     """Return the most probable Ochi-Hubble (1976) swell and sea for a significant height.
 
-    The constants are from secondary sources; the paper was not read.
+    The constants are from secondary sources, not from the paper itself.
 
     UsageError: the height exceeds that of any real sea.
     """
@@ -351,7 +351,9 @@ def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":
-        raise UsageError("ochi-hubble has periods of its own; a scatter table gives them")
+        raise UsageError(
+            "ochi-hubble defines its own periods and cannot use those of a scatter table"
+        )
     problems, states = [], []
     shares = [max(share, 0.0) for _, (*_, share) in rows]
     whole = sum(shares)

@@ -78,6 +78,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
     yield from sector_doubts(found.u[known], found.v[known])
     for values, side in ((found.u[known], "east"), (found.v[known], "north")):
         yield from _recurring(values, side)
+    yield from _component_doubts(found.u, found.v)
     if found.good is not None:
         poor = known & (found.good < 0.5)
         if poor.any():
@@ -85,6 +86,10 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
                 f"{poor.sum()} of {known.sum()} currents have less than half of their pings good"
             )
     if found.times is not None:
+        order = np.argsort(levels[there], kind="stable")
+        at = np.flatnonzero(there)[order]
+        yield from _turned_levels(levels[at], found.u[:, at] + 1j * found.v[:, at])
+        yield from _equal_levels(found.u[:, at], found.v[:, at])
         names = _level_names(found.depth)
         yield from series_doubts(np.stack([found.u, found.v], axis=2), found.times, names)
 
@@ -109,6 +114,9 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
             f"{deeper.sum()} of {there.sum()} levels with values are deeper than the water, "
             f"{say('depth', water_depth)}: the deepest is at {say('depth', deepest)}{feet}"
         )
+    unplaced = int((known & ~np.isfinite(depth)).sum())
+    if 0 < unplaced < known.sum():
+        yield f"{unplaced} of {known.sum()} currents have no depth, and are left out"
     empty = ~there & (levels >= 0.0) & (levels < water_depth - allowed)
     if empty.any() and there.any() and len(known) > 1:
         yield (
@@ -196,6 +204,76 @@ def _recurring(values: Floats, side: str) -> Iterator[str]:
         )
 
 
+def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
+    """Yield missing, equal and zero components of currents (n, k) [m/s]."""
+    known = np.isfinite(u) & np.isfinite(v)
+    one_alone = int((np.isfinite(u) != np.isfinite(v)).sum())
+    if one_alone >= _FEWEST:
+        yield f"{one_alone} of {u.size} currents have one component without the other"
+    u, v = u[known], v[known]
+    speed = np.hypot(u, v)
+    moving = speed > 0.0
+    if np.unique(u[moving]).size >= _VARIED and (u == v).all():
+        yield f"all {u.size} currents have equal components to the east and to the north"
+    zeros, smallest = int((~moving).sum()), speed[moving].min(initial=np.inf)
+    # twelve steps of a resolution surround zero within 2.5 steps
+    if zeros > max(int((speed[moving] <= 2.5 * smallest).sum()), _VARIED):
+        yield (
+            f"{zeros} of {u.size} currents are exactly 0, and hardly any are nearly 0: a fill "
+            "value, or a stalled rotor?"
+        )
+
+
+def _equal_levels(u: Floats, v: Floats) -> Iterator[str]:
+    """Yield that adjacent levels of currents (n, k) are the same at all times."""
+    if len(u) < MANY or u.shape[1] < 2:
+        return
+    same = ((u[:, 1:] == u[:, :-1]) & (v[:, 1:] == v[:, :-1])).all(axis=0)
+    if same.any():
+        yield (
+            f"{same.sum()} of {u.shape[1]} levels have the same currents at all times as the level "
+            "above: a mean over depth, or a level repeated?"
+        )
+
+
+_ALIKE, _UNLIKE = 0.8, 0.5
+
+
+def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
+    """Yield levels whose currents agree with both neighbours only if rotated or mirrored.
+
+    Parameters
+    ----------
+    depth : (k,) rising [m]
+    current : (n, k) to the east (real) and to the north (imaginary) [m/s]; NaN in gaps
+    """
+    turned = []
+    for i in range(1, len(depth) - 1):
+        three = current[:, i - 1 : i + 2]
+        above, own, below = three[np.isfinite(three).all(axis=1)].T
+        size = [float(np.linalg.norm(one)) for one in (above, own, below)]
+        if (
+            own.size < MANY
+            or not min(size)
+            or not 0.8 * min(size[::2]) <= size[1] <= 1.25 * max(size[::2])
+        ):
+            continue
+        if np.vdot(above, below).real < _ALIKE * size[0] * size[2]:
+            continue
+        mean = above / size[0] + below / size[2]
+        scale = float(np.linalg.norm(mean)) * size[1]
+        rotated = np.vdot(mean, own) / scale
+        mirrored = abs(np.vdot(mean.conj(), own)) / scale
+        if rotated.real < _UNLIKE and max(abs(rotated), mirrored) > _ALIKE:
+            turned.append(depth[i])
+    if turned:
+        yield (
+            f"currents at {', '.join(f'{one:g}' for one in turned)} m have other directions than "
+            "those above and below, which agree: is a compass, a sign or the order of the "
+            "components wrong?"
+        )
+
+
 def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) -> Iterator[str]:
     """Yield doubts about the sequence of values in time.
 
@@ -206,7 +284,10 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     names : (k,) place of each series, "" for a single series
     """
     yield from _years(times)
-    if len(times) > 2:
+    again = int((times[1:] == times[:-1]).sum())
+    if 2 * again >= len(times) > 1:
+        yield f"{again} of {len(times)} times repeat the one before: several instruments in one?"
+    elif len(times) > 2:
         yield from _gaps(times)
     yield from _unchanged(values, times, names)
     if len(times) > 2 and np.median(np.diff(times)) <= _SLOWEST:
@@ -272,12 +353,14 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
         if limits.least <= factor * middle + zero <= limits.greatest
     ]  # fmt: skip
     meant = f": is it in {likely[0]}?" if likely else ""
+    if not fraction and 2 * wrong.sum() <= known.size and np.unique(doubted).size == 1:
+        meant = ": a fill value?"
     count, span = int((known < _FRACTION).sum()), f"below {_FRACTION:g}"
     if not fraction:
         allowed = f"{limits.least:g} to {limits.greatest:g} {limits.unit}".rstrip()
         count, span = int(wrong.sum()), f"no {name} of sea water, {allowed}"
-    said = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
-    return wrong, said, bool(2 * wrong.sum() > known.size)
+    sentence = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
+    return wrong, sentence, bool(2 * wrong.sum() > known.size)
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
@@ -315,6 +398,10 @@ def _years(times: Times) -> Iterator[str]:
             f"{outside.sum()} of {times.size} times are before {_FIRST_YEAR} or after {last}: the "
             f"first is {time_text(times[outside][0])}"
         )
+
+    unset = int((times.astype("datetime64[M]") == np.datetime64("1970-01")).sum())
+    if unset:
+        yield f"{unset} of {times.size} times are in January 1970: was the clock not set?"
 
 
 def gaps_of(times: Times) -> tuple[np.timedelta64, NDArray[np.intp]]:

@@ -44,7 +44,7 @@ _TOWARD = _Sought(
     ("sea_water_velocity_to_direction", "direction_of_sea_water_velocity"),
     ("HCDT", "toward", "CD_310", "LCDAAP01"),
 )
-_FLOWS = {"to": "flows to", "from": "comes from"}
+_SENSES = {"to": "flows to", "from": "comes from"}
 _FROM = _Sought(("sea_water_velocity_from_direction",), ())
 
 _ALONG_THE_GRID = {"sea_water_x_velocity": _EAST, "sea_water_y_velocity": _NORTH}
@@ -115,30 +115,32 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         ]
         if len(magnetic) == 1:
             other = north if magnetic == [east] else east
-            raise UnreadableError(f"`{magnetic[0]}` is to magnetic north, `{other}` is not")
+            raise UnreadableError(
+                f"`{magnetic[0]}` is relative to magnetic north, `{other}` is not"
+            )
         units = {factor_of(dataset[name], "speed"): name for name in (east, north)}
         if len(units) > 1:
-            said = " and ".join(f"`{dataset[name].attrs['units']}`" for name in (east, north))
-            notes.append(f"its components have different units, {said}")
+            units_text = " and ".join(f"`{dataset[name].attrs['units']}`" for name in (east, north))
+            notes.append(f"its components have different units, {units_text}")
         true = attributes.is_true(dataset[east], dataset.attrs)
         return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)
-    direction, way = _direction(dataset, regular, notes)
-    if speed is not None and direction is not None and way is not None:
-        notes.append(f"`{direction}` is the direction the current {_FLOWS[way]}")
-        turn = 0.0 if way == "to" else 180.0
+    direction, sense = _direction(dataset, regular, notes)
+    if speed is not None and direction is not None and sense is not None:
+        notes.append(f"`{direction}` is the direction the current {_SENSES[sense]}")
+        turn = 0.0 if sense == "to" else 180.0
         magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
         true = attributes.is_true(dataset[direction], dataset.attrs)
         return Velocity((speed, direction), up, turn, magnetic_north, true, tuple(notes))
     if speed is not None and direction is not None:
         raise UnreadableError(
-            f"`{direction}` does not say whether it is where the current flows to or where it "
-            f"comes from; its `standard_name` should be {_TOWARD.standard[0]} or "
+            f"`{direction}` is ambiguous: the current may flow to this direction or come from "
+            f"it; its `standard_name` should be {_TOWARD.standard[0]} or "
             f"{_FROM.standard[0]}"
         )
     raise UnreadableError(
-        "holds no current: eastward and northward velocity, or speed and direction to or from, "
-        "are looked for by CF standard name, then by usual name"
+        "holds no current: CALM searches for eastward and northward velocity, or speed and "
+        "direction to or from, by CF standard name, then by usual name"
     )
 
 
@@ -146,14 +148,14 @@ def _direction(
     dataset: xr.Dataset, regular: bool, notes: list[str]
 ) -> tuple[str | None, str | None]:
     """Find the direction variable and its convention: "to", "from", or None if unstated."""
-    for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
+    for sought, sense in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
-            return name, way
+            return name, sense
     unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
     if unclear is None:
         return None, None
-    return _believed(dataset, unclear), attributes.way_of(dataset[unclear])
+    return _checked(dataset, unclear), attributes.sense_of_direction(dataset[unclear])
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
@@ -168,7 +170,7 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
             listed = ", ".join(true or found)
             raise UnreadableError(f"several variables are {standard_name}: {listed}")
         if found:
-            return _believed(dataset, (true or found)[0])
+            return _checked(dataset, (true or found)[0])
     name = next((name for name in sought.usual if name in dataset.data_vars), None)
     if name is None:
         return None
@@ -178,11 +180,11 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
         places = first_present(dataset, ("nav_lat", "lat", "latitude"))
         regular = regular or not any(dataset[one].ndim == 2 for one in places)
     if regular and _ALONG_THE_GRID.get(own) is sought:
-        way = "east" if sought is _EAST else "north"
-        notes.append(f"`{name}`, {own}, is {way}ward: the grid runs along latitudes")
+        sense = "east" if sought is _EAST else "north"
+        notes.append(f"`{name}`, {own}, is {sense}ward: the grid runs along latitudes")
     elif own and own not in sought.standard and not _only_marked(own, sought):
         raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
-    return _believed(dataset, name)
+    return _checked(dataset, name)
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
@@ -191,7 +193,7 @@ def _only_marked(own: str, sought: _Sought) -> bool:
     return plain != own and plain in sought.standard
 
 
-def _believed(dataset: xr.Dataset, name: str) -> str:
+def _checked(dataset: xr.Dataset, name: str) -> str:
     """Return the name of a variable, if its own attributes allow its use."""
     layers = layers_of(dataset)
     variable = dataset[name]
@@ -249,11 +251,11 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     vector = dataset[name]
     if (reason := attributes.other_frame(dataset.attrs)) is not None:
         raise UnreadableError(f"`{name}` {reason}")
-    _believed(dataset, name)
+    _checked(dataset, name)
     labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
     places = {
-        way: next((labels.index(label) for label in wanted if label in labels), None)
-        for way, wanted in _WAYS.items()
+        sense: next((labels.index(label) for label in wanted if label in labels), None)
+        for sense, wanted in _WAYS.items()
     }
     if places["east"] is None or places["north"] is None:
         raise UnreadableError(
@@ -261,11 +263,11 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
             "earth's coordinates first"
         )
     parts = {}
-    for way, place in places.items():
+    for sense, place in places.items():
         if place is not None:
             part = vector.isel({_DIRECTIONS: place}, drop=True)
             units = vector.attrs.get("units", "")
-            part.attrs = {"units": units, "standard_name": f"{way}ward_sea_water_velocity"}
+            part.attrs = {"units": units, "standard_name": f"{sense}ward_sea_water_velocity"}
             parts[f"{name}[{labels[place]}]"] = part
     return dataset.assign(parts)
 
@@ -273,17 +275,17 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
 def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
     """Return the flag variable of a velocity: ancillary, matching in name, or for all variables."""
     beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
-    told = (other for other in dataset.data_vars if _OF_VELOCITY.search(str(other)))
-    named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS), *_OF_ALL, *map(str, told)]
+    meanings = (other for other in dataset.data_vars if _OF_VELOCITY.search(str(other)))
+    named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS), *_OF_ALL, *map(str, meanings)]
     for other in named:
-        if other not in dataset.variables or not _tells_flags(dataset[other]):
+        if other not in dataset.variables or not _holds_flags(dataset[other]):
             continue
         if set(dataset[other].dims) <= set(dataset[name].dims):
             return dataset[other]
     return None
 
 
-def _tells_flags(variable: xr.DataArray) -> bool:
+def _holds_flags(variable: xr.DataArray) -> bool:
     named = "status_flag" in str(variable.attrs.get("standard_name", ""))
     return named or "flag_values" in variable.attrs or variable.dtype.kind in "iu"
 
@@ -301,18 +303,18 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 
 def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
     """Return a mask of bad values, from flag meanings or else from the flags 3, 4 and 9."""
-    bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
+    bad, meanings = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
     masks = np.atleast_1d(variable.attrs.get("flag_masks", [])).tolist()
     values = np.atleast_1d(variable.attrs.get("flag_values", masks)).tolist()
-    if told and len(told) == len(masks) == len(values) and variable.dtype.kind in "iu":
-        bits = zip(masks, values, told, strict=True)
+    if meanings and len(meanings) == len(masks) == len(values) and variable.dtype.kind in "iu":
+        bits = zip(masks, values, meanings, strict=True)
         bad_bits = [(mask, value) for mask, value, meaning in bits if _BAD.search(meaning)]
         given = np.asarray(variable.values)
         found = [(given & mask) == value for mask, value in bad_bits if mask]
         bits_bad: NDArray[np.bool_] = np.logical_or.reduce([np.zeros(given.shape, bool), *found])
         return bits_bad
-    if told and len(told) == len(values):
-        pairs = zip(values, told, strict=True)
+    if meanings and len(meanings) == len(values):
+        pairs = zip(values, meanings, strict=True)
         bad = [_flag(value) for value, meaning in pairs if _BAD.search(meaning)]
     flags = np.asarray(variable.values)
     kinds, which = np.unique(flags.astype(object).astype(str), return_inverse=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State
+from calm.checks.finding import State, grouped_by
 from calm.drawing.graph import Axes, Graph, LegendEntry, Scale, Stroke, covering, to_one_scale
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
@@ -21,7 +21,6 @@ from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, quantity, table_of
-from calm.report.check_tables import grouped
 from calm.report.provenance import degrees_text, position_text
 from calm.units import KNOT
 
@@ -57,23 +56,23 @@ def _instructions(plan: DropPlan) -> Prose:
         speed += f" ({plan.ship_speed / KNOT:.1f} kn)"
     said = [
         f"Steam towards {bearing_text(plan.course)} true at {speed} over the ground, and pay out "
-        "the line, the float first."
+        "the line, float first."
     ]
     if plan.start is None:
         said.append(
-            "The start of the run follows from the time that a piece takes on deck: add "
-            "`deck_time` to `document` in the file."
+            "Set `deck_time` (handling time per piece) in the `document` of the file to compute "
+            "where the run starts."
         )
     else:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
         start = _distance(abs(plan.start.distance))
         said.append(
-            f"Put the float over the side {start} {behind} the target: "
-            f"the run takes some {duration(plan.start.time)}."
+            f"Deploy the top float {start} {behind} the target; the run takes about "
+            f"{duration(plan.start.time)}."
         )
     said.append(
-        f"Let the anchor go {_distance(abs(plan.tow_past))} {beyond} the target, with the float "
-        f"{_distance(plan.streamed)} behind it."
+        f"Release the anchor {_distance(abs(plan.tow_past))} {beyond} the target, with the top "
+        f"float {_distance(plan.streamed)} astern."
     )
     return Prose(tuple(said))
 
@@ -81,26 +80,26 @@ def _instructions(plan: DropPlan) -> Prose:
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
     early, late = plan.fall_time_band
     near, far = plan.fall_back_band
-    cube = "of a cube of its volume, since the file gives it no `kt`"
-    given = "as given" if plan.drag_known else cube
+    cube = "assumed (cube of equal volume, because `kt` is not set)"
+    given = "as specified" if plan.drag_known else cube
     side = "right" if plan.aside >= 0.0 else "left"
     pull = max(plan.pulls, key=lambda each: each.tension)
-    halved = "with the anchor's drag halved or doubled"
+    halved = "with half and twice the drag of the anchor"
     error, back = max(ceil(plan.time_error), 1), _distance(max(ceil(plan.distance_error), 1))
     figures = {
         "Fall time": f"{plan.fall_time:.0f} s ± {error} s; {early:.0f} to {late:.0f} s {halved}",
-        "Fall-back, towards the float": f"{_distance(plan.fall_back)} ± {back}; "
+        "Fallback towards the float": f"{_distance(plan.fall_back)} ± {back}; "
         f"{_distance(near)} to {_distance(far)} {halved}",
-        "Lateral offset": f"{_distance(abs(plan.aside))} to the {side}, seen from where it is "
-        "let go",
-        "Float behind the ship when let go": f"{_distance(plan.streamed)}, towards "
+        "Lateral offset": f"{_distance(abs(plan.aside))} to the {side}, looking from the release "
+        "point towards the float",
+        "Float astern at anchor release": f"{_distance(plan.streamed)}, towards "
         f"{bearing_text(plan.astern)} true",
-        "Let go, from the target": whereabouts(plan, plan.let_go),
+        "Release point, from the target": whereabouts(plan, plan.let_go),
         "Start of the run, from the target": "unknown"
         if plan.start is None
         else whereabouts(plan, plan.start.place),
         "Speed at touchdown": say("speed", plan.touchdown_speed),
-        "Greatest tension in the fall": f"{say('tension', pull.tension)} in {pull.part.label}, "
+        "Maximum tension in descent": f"{say('tension', pull.tension)} in {pull.part.label}, "
         f"after {pull.time:.0f} s",
         "Drag of the anchor at 1 m/s": f"{say('tension', plan.anchor_drag)}, {given}",
     }
@@ -122,7 +121,7 @@ def _fall_table(plan: DropPlan) -> Table:
         return number(heading, lambda n: f"{at[n]:.{decimals}f}" if n >= first else "-", unit)
 
     return table_of(
-        "The fall",
+        "Descent",
         range(_ROWS),
         column("anchor depth", "depth", deepest),
         column("time", "s", path.time),
@@ -131,7 +130,7 @@ def _fall_table(plan: DropPlan) -> Table:
         column("tension at anchor", "tension", path.anchor_tension, first=1),
         column("float at", "offset", path.float_x),
         column("float depth", "depth", np.maximum(path.float_depth, 0.0)),
-        note="Distances are from where the anchor is let go, towards the float.",
+        note="Distances are measured from the release point towards the float.",
     )
 
 
@@ -142,8 +141,8 @@ def _depths_table(plan: DropPlan) -> list[Table]:
         if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
     ]
     # components of equal rating share a row; those that sink below their rating are separate
-    runs = grouped(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
-    rows = [(max(run, key=lambda one: one.greatest), run) for run in runs]
+    runs = grouped_by(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
+    rows = [(max(run, key=lambda one: one.greatest), run) for run in runs.values()]
     depth = QUANTITIES["depth"]
 
     def label(row: tuple[DepthReached, Sequence[DepthReached]]) -> str:
@@ -167,14 +166,14 @@ def _depths_table(plan: DropPlan) -> list[Table]:
 
 def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
-        "The line is modelled as a chain without inertia: the first 20 s, the jerk at "
-        "touchdown and waves are not in these figures.",
-        "± is twice the change when segments and time steps are doubled; the current and "
-        "the drag of the anchor are less certain.",
+        "Inertia is neglected, so the first 20 s, the touchdown transient and waves are not "
+        "represented.",
+        "± is the numerical error: twice the change on doubling segments and time steps. The "
+        "current and the drag of the anchor are less certain.",
     ]
     if plan.rest_difference is not None:
         notes.append(
-            f"The line comes to rest {plan.rest_difference:.2f} m at most from its equilibrium."
+            f"The final position is within {plan.rest_difference:.2f} m of the static equilibrium."
         )
     return tuple(notes)
 
@@ -237,7 +236,7 @@ def drop_figure(plan: DropPlan) -> str:
         shapes.mark(moment.x[0], moment.depth[0], "o", 3.5, stroke.colour)
     shapes.line(plan.path.anchor_x, plan.path.anchor_depth, Stroke(_PATH, 1.4))
     shapes.mark(plan.fall_back, depth, "v", 6.0, _PATH)
-    below = "distance from where the anchor is let go, towards the float [m]"
+    below = "distance from the release point towards the float [m]"
     shapes.frame(7, 6, below=below, beside="depth [m]", grid=True)
     _draw_speed(page, (_LEFT + wide + 12.0, top, _WIDTH - _LEFT - wide - 20.0, tall), plan, up)
     return page.svg()
@@ -272,10 +271,10 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
     if outliers:
         several = "lines" if len(outliers) > 1 else "line"
         lines = ", ".join(map(str, outliers))
-        said.append(Prose((f"Not used, they do not fit the others: {several} {lines}.",)))
-    notes = ["Rays are taken as straight, and the sea surface as the ellipsoid WGS 84."]
+        said.append(Prose((f"Rejected as outliers: {several} {lines}.",)))
+    notes = ["Acoustic rays are assumed straight, and the sea surface is the WGS 84 ellipsoid."]
     if located.survey.timed:
-        notes.append("Times are taken as two-way, without a turn-around delay of the transponder.")
+        notes.append("Times are two-way travel times, without a transponder delay.")
     shown: tuple[blocks.Block, ...] = (
         blocks.Pairs(_located_figures(located, water_depth)),
         *blocks.warned(located.warnings),
@@ -283,7 +282,7 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
         _residuals(located),
         blocks.Note(tuple(notes)),
     )
-    return ReportPart("Place of the anchor", shown)
+    return ReportPart("Anchor position", shown)
 
 
 def _located_figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...]:
@@ -291,17 +290,17 @@ def _located_figures(located: Located, water_depth: float) -> tuple[tuple[str, s
     within = "unknown"
     if np.isfinite(major):
         towards = f"{round(bearing) % 180:03d}°"
-        within = f"{major:.1f} m by {minor:.1f} m, the longer towards {towards}"
-    sure = f" ± {located.depth_95:.1f} m with 95 %" if np.isfinite(located.depth_95) else ""
-    sure = ", as given" if located.depth_given else sure
+        within = f"{major:.1f} m by {minor:.1f} m, major axis towards {towards}"
+    sure = f" ± {located.depth_95:.1f} m (95 %)" if np.isfinite(located.depth_95) else ""
+    sure = ", as specified" if located.depth_given else sure
     latitude = degrees_text(located.latitude, "NS", 1)
     longitude = degrees_text(located.longitude, "EW", 1)
     pairs = [
         ("Latitude, longitude", f"{located.latitude:.6f}, {located.longitude:.6f}"),
         ("", f"{latitude}  {longitude}"),
-        ("Within, with 95 %", within),
+        ("95 % ellipse", within),
         ("Depth", f"{water_depth:.1f} m{sure}"),
-        ("Ranges in use", f"{int(located.used.sum())} of {len(located.used)}"),
+        ("Ranges used", f"{int(located.used.sum())} of {len(located.used)}"),
         ("Scatter", f"{located.rms:.2f} m" if np.isfinite(located.rms) else "unknown"),
     ]
     if located.survey.timed:

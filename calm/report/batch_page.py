@@ -50,7 +50,7 @@ def summary_report(summary: Summary) -> blocks.Report:
             *left_out,
             Prose(batch_summary.DEFINITIONS),
         ),
-        "Through time": (Figure("Least and greatest in each interval", through_time),),
+        "Through time": (Figure("Minimum and maximum in each interval", through_time),),
         "How often": (
             responses, Figure("Clamped instruments, or components", instruments), *left_out,
         ),
@@ -78,11 +78,10 @@ def summary_report(summary: Summary) -> blocks.Report:
 
 
 _EXTRAPOLATED = (
-    f"No level is given beyond {EXTRAPOLATION:.0f} times the length of the record. A "
-    "level describes how the mooring responds to currents like those recorded: it "
-    "covers neither what the record is too short to hold or lost in its gaps, nor a "
-    "current field that changes. A fitted tail has no bounds: a tilt beyond 90° or a "
-    "knockdown below the seabed means that the record cannot be extrapolated so far."
+    f"Return levels are limited to {EXTRAPOLATION:.0f} times the length of the record. They "
+    "describe the response to currents like those recorded, not to events missing from a short or "
+    "gappy record, nor to a changing current regime. A fitted tail has no bounds: a tilt above 90° "
+    "or a knockdown below the seabed means that the record cannot be extrapolated so far."
 )
 
 
@@ -109,12 +108,12 @@ def limits_table(summary: Summary) -> Table:
         *blocks.of_first(
             words("component", "limit.criterion.part.label"),
             number("limit", limit),
-            number("broken in", lambda one: percent(one.share), "% of profiles"),
+            number("exceeded in", lambda one: percent(one.share), "% of profiles"),
             number("worst value", lambda one: figure(one, one.worst)),
             words("when", lambda one: when(one.time), 0.0),
         ),
-        note="Strength: at the ends of a piece and at the clamps on it. Least tension: at the ends "
-        "of a piece. Anchor sliding: H + friction × V against friction × weight in water / factor.",
+        note="Strength is judged at the ends of a piece and at its clamps, minimum tension at the "
+        "ends. Anchor sliding: H + friction × V against friction × weight in water / factor.",
         sortable=True,
     )
 
@@ -144,7 +143,7 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
     """Yield the worst profiles by each response, together with their other responses."""
     for name, profiles in summary.worst.items():
         if not profiles:
-            yield Prose((f"The {TITLES[name]} is not known in any profile.",), State.UNKNOWN)
+            yield Prose((f"The {TITLES[name]} is unknown in all profiles.",), State.UNKNOWN)
             continue
         worst = "worst " * (len(profiles) == statistics.WORST)
         title = f"The {len(profiles)} {worst}profiles by {TITLES[name]}"
@@ -217,9 +216,9 @@ def summary_paths(result: Path) -> tuple[Path, Path]:
 _QUANTITIES = ("knockdown", "tilt", "tension")
 _PERIODS = (10, 50, 100)
 _ALL = (
-    "All percentiles, limits and profiles are in the JSON and on the page. Depths "
-    "and offsets agree with `calm run` to 1e-4 of the water depth, tensions to 2e-4; "
-    "profiles are not audited one by one."
+    "The JSON file and the HTML page list all percentiles, limits and profiles. Depths and offsets "
+    "agree with `calm run` to 1e-4 of the water depth, tensions to 2e-4; individual profiles are "
+    "not audited."
 )
 
 

@@ -130,7 +130,7 @@ def rules_table(summary: Summary) -> Table:
         return number(heading, cell, unit)
 
     return table_of(
-        "How often a rule fails",
+        "Failure rates",
         summary.rules,
         words("rule", "title"),
         number("judged in", lambda rule: grouped(rule.judged), "profiles", narrow=False),
@@ -138,10 +138,10 @@ def rules_table(summary: Summary) -> Table:
         broken("at most", "fails_at_most", State.FAIL),
         broken("warns", "warns", State.WARN),
         number("limits", lambda rule: len(rule.exceedances), narrow=False),
-        words("most often broken by", _most_often),
-        note="Shares are of the profiles in which a rule is judged. At most: if the rule also "
-        "fails in every profile with a current that was not solved. A limit judged in no "
-        "profile is unknown.",
+        words("most often exceeded by", _most_often),
+        note="Shares refer to the profiles in which a rule is judged. “At most” also counts every "
+        "profile with a current that was not solved. A limit that is judged in no profile is "
+        "unknown.",
     )
 
 
@@ -188,13 +188,13 @@ QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
 DEFINITIONS = (
-    "Every profile has the same weight, so a share of the profiles is a share of the time if the "
-    "record is evenly spaced. Means, percentiles, maxima and exceedance curves are of the "
-    "profiles solved. The share in which a rule fails is of the profiles in which it is judged; "
-    "the share “at most” also counts every profile with a current that was not solved.",
-    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) "
-    "p of n is the p quantile. Tension of a component: the greater of its two ends. "
-    "Knockdown and depth of a component: of its upper end.",
+    "All profiles have the same weight, so shares of the profiles are shares of the time only if "
+    "the record is evenly spaced. Means, percentiles, maxima and exceedance curves cover the "
+    "solved profiles. Failure rates refer to the profiles in which a rule is judged; the upper "
+    "bound (“at most”) also counts every profile with a current that was not solved.",
+    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is the "
+    "p quantile. The tension of a component is the larger of those at its two ends; its knockdown "
+    "and depth are at its upper end.",
 )
 """Definitions of the statistics, printed with the tables."""
 
@@ -239,9 +239,8 @@ def left_out(summary: Summary) -> str:
     with_current = summary.solved + summary.unsolved
     return (
         f"{grouped(summary.unsolved)} of {grouped(with_current)} profiles with a current "
-        f"({percent(summary.unsolved / with_current)} %) were not solved. They are left "
-        "out of all means, percentiles, maxima and curves, which are too low if these "
-        "are the strongest currents."
+        f"({percent(summary.unsolved / with_current)} %) have no solution and are excluded from "
+        "all statistics, which are too low if these are the strongest currents."
     )
 
 
@@ -251,7 +250,8 @@ def refusals(summary: Summary) -> Iterator[str]:
     for response in summary.known_responses:
         for fit in response.return_levels:
             if isinstance(fit, LevelsRefused):
-                said = f"no return levels by {METHODS_IN_SHORT[fit.method]}: {fit.reason}"
+                method = METHODS_IN_SHORT[fit.method]
+                said = f"no return levels by {method}: {fit.reason}"
                 reasons.setdefault(said, []).append(TITLES[response.name])
     for said, of in reasons.items():
         yield said if len(of) == len(summary.known_responses) else f"{', '.join(of)}: {said}"
@@ -272,5 +272,5 @@ def stops_tables(summary: Summary) -> Iterator[Table]:
         words("profiler", 0),
         words("stop", 1),
         *(number(head, at) for at, head in enumerate(shares, 2)),
-        note="The stop is no deeper than this in that share of the profiles.",
+        note="In the stated share of the profiles, the stop is no deeper than this.",
     )

@@ -170,11 +170,11 @@ class Listing:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """Title block of a drawing: small text above and below the title, and fields."""
+    """Title block of a drawing: small text above the title, lines below it, and fields."""
 
     above: str
     title: str
-    below: str
+    below: tuple[str, ...]
     fields: tuple[tuple[str, str], ...]
 
 

@@ -337,7 +337,7 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
     table = table_of("", _ROWS, words("", 1), words("", 2, 0.0), *map(cable, range(len(figures))))
     notes = [_NOTE]
     if several:
-        notes.append("Each of these cables fits what is given.")
+        notes.append("Each of these cables fits the input.")
     if any(min(each["phi_a"], each["phi_b"]) < 0.0 for each in figures):
         notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
     return ReportPart(f"Uniform current, K = {answer.k:.6g}", (table, Note(tuple(notes))))

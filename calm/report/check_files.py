@@ -12,6 +12,7 @@ from calm.checks.finding import (
     State,
     governing,
     governing_of_each_rule,
+    grouped_by,
     worst_state,
 )
 from calm.checks.inventory import total_of
@@ -22,7 +23,7 @@ from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 from calm.report import provenance
 from calm.report.check_facts import key_figures
-from calm.report.check_tables import GRAVE, counted_as, grouped
+from calm.report.check_tables import GRAVE, counted_as
 from calm.report.result_files import members
 from calm.version import __version__
 
@@ -42,7 +43,7 @@ def listed_findings(
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
-    leads = map(governing, grouped(found, _listed_as))
+    leads = map(governing, grouped_by(found, _listed_as).values())
     kept = leading | {
         id(lead)
         for lead in leads

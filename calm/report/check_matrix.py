@@ -5,15 +5,23 @@ from dataclasses import dataclass
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
-from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    by_rule,
+    governing,
+    told_of_rule,
+    worst_of,
+)
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
-    figure_text,
-    limit_text,
     percent_text,
     short,
     where_text,
+    without_asides,
 )
 from calm.report.page_one import (
     SignedMooring,
@@ -114,7 +122,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
         failed = [one for one in used if one.state is State.FAIL]
         lead = governing(failed) if failed else worst
     title, use = RULES[lead.rule].title.lower(), percent_text(lead.utilisation)
-    told = f"{title}, {lead.component or 'whole line'}, {use} %"
+    told = f"{title}, {lead.component or 'whole line'}, {use}\u00a0%"
     return MatrixCell(governing(used).utilisation, state, told)
 
 
@@ -124,36 +132,35 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
     state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
-    said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
-    said += f", {len(incomplete)} more lack figures" if incomplete else ""
-    said += "; the first failure of each is named below." if failing else "."
+    verdict = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
+    verdict += f"; {len(incomplete)} more lack values." if incomplete else "."
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
-    yield Prose(((Span(head, state), Span(said)),), state)
+    yield Prose(((Span(head, state), Span(verdict)),), state)
     note = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
-    note += ". Launch: greatest use in launch, recovery and breaks."
+    note += ". Launch includes recovery and breaks."
     if len(shown) < len(names):
-        note += f" {len(names) - len(shown)} milder environments are left out."
+        note += f" {len(names) - len(shown)} milder environments are omitted."
     yield table_of(
-        "Greatest use, %",
+        "Largest use, %",
         rows,
         words("Mooring", lambda row: short(row.mooring, 44), 1.0),
         number("Water\nm", lambda row: row.depth, share=0.2),
         *(_column(codes[name], name) for name in shown),
         number("Launch", lambda row: _shown(row.handling), share=0.24),
-        aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
-        "failing. ?: not known. Grey: 90 and more",
+        aside="over all checks, rounded up. White on black: fails. Hatched: over 100 without "
+        "failure. ?: unknown. Grey: 90 and more",
         note=note,
     )
     yield table_of(
-        "What governs",
+        "Governing checks",
         rows,
         words("Mooring", lambda row: short(row.mooring, 44), 1.1),
         words(f"Governs in {codes[names[0]]}", lambda row: short(row.governs, 60), 1.3),
         words("First failure", lambda row: _failure(row, codes), 1.3),
         number("Accepted", lambda row: row.accepted),
-        note=f"{sum(row.findings for row in rows)} findings stand behind this page; a page of each "
-        "mooring follows, with a row a rule. Use leaves out fish bite, metals and least tension, "
-        "which are limits of another kind.",
+        note=f"This page summarises {sum(row.findings for row in rows)} findings. A page on each "
+        "mooring follows. Fish bite, metals and minimum tension are excluded from the use, because "
+        "their limits are no capacities.",
     )
 
 
@@ -194,32 +201,29 @@ def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
 
 
 def mooring_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the one-page report of a mooring: verdict, load cases, and one row per rule."""
+    """Yield the one-page report of a mooring: verdict, load cases, and every rule."""
     findings = [*signed.assessment.every_finding()]
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases_table(signed)
     groups = by_rule(findings)
-    leads = governing_rows(findings)
-    others = [worst_of(groups[name]) for name in groups if name not in {one.rule for one in leads}]
+    told = {name: told_of_rule(found) for name, found in groups.items()}
+    leads = [one.rule for one in governing_rows(findings)]
+    order = [*leads, *(name for name in groups if name not in leads)]
     yield table_of(
         "Checks",
-        [*leads, *others],
-        words("", lambda one: Cell(state=worst_of(groups[one.rule]).state), 0.0),
+        [one for name in order for one in told[name]],
+        words("", lambda one: Cell(state=one.state), 0.0),
         words("Rule", lambda one: RULES[one.rule].title, 1.0),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one, one.value)),
-        words("Limit", lambda one: limit_text(one) or "–", 0.0),
+        *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
-        number("Over 100\nof judged", lambda one: _over(groups[one.rule])),
-        words(
-            "What to do",
-            lambda one: Cell(detail=short(advice(worst_of(groups[one.rule])), 90)),
-            1.5,
-        ),
-        aside="a row a rule; over 100 % and judged, in all environments",
+        number("Over\n100 %", lambda one: _over(groups[one.rule])
+               if one is told[one.rule][0] else None),
+        words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
+        aside="per rule, the finding with the largest use, and a more severe one below it; over "
+        "100 %: number of findings in all environments",
         ruled=False,
-    )
+    )  # fmt: skip
     yield sign_off(signed)
 
 

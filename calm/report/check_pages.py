@@ -2,14 +2,23 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from math import ceil
+from itertools import groupby
 
 import numpy as np
 
+from calm.case.result_tables import item_numbers, run_of
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
-from calm.checks.criterion import said
-from calm.checks.finding import Finding, State, by_rule, governing, worst_of
+from calm.checks.criterion import limit_value_text
+from calm.checks.finding import (
+    DEFAULT_ENVIRONMENT,
+    Finding,
+    State,
+    by_rule,
+    governing,
+    grouped_by,
+    told_of_rule,
+)
 from calm.checks.inventory import InventoryItem, total_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss
@@ -31,69 +40,76 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.check_tables import grouped
-from calm.report.drawing_page import item_numbers
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
     figure_text,
     limit_text,
+    open_counts,
     percent_text,
     plain,
     where_text,
 )
 from calm.report.page_one import MOST_REVISIONS, TEXT_HEIGHT, SignedMooring, item_tags
+from calm.report.sheet import accuracy_text
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
     """Yield one row per rule, with the governing piece and case, the limit and the remedy."""
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
-    yield blocks.Heading("How far to trust these figures")
+    yield blocks.Heading("Accuracy of these values")
     yield Prose((_trust(signed),))
 
 
 def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     """Tabulate the governing finding of each rule, by decreasing utilisation."""
     tags = item_tags(signed)
-    rows = []
-    for name, found in by_rule(findings).items():
-        lead = governing(found)
-        if lead.utilisation is None:
-            lead = worst_of(found)
-        worst = worst_of(found)
-        if worst.state.severity < State.WARN.severity and lead.state is not State.PASS:
-            worst = lead
-        rows.append((name, lead, worst, len({one.component for one in found})))
-    rows.sort(key=lambda row: (-(row[1].utilisation if row[1].utilisation is not None else -1.0),
-                               -row[2].state.severity))  # fmt: skip
+    rules = [(told_of_rule(found), found) for found in by_rule(findings).values()]
+    rules.sort(key=lambda rule: _used_most(rule[0][0]))
+    rows = [
+        (one, len({each.component for each in found}) if one is told[0] else 0)
+        for told, found in rules
+        for one in told
+    ]
     counts = {state: sum(one.state is state for one in findings) for state in State}
-    told = ", ".join(
-        f"{count} {state.value.replace('-', ' ')}" for state, count in counts.items() if count
+    items = open_counts(signed.assessment)
+
+    def of_items(state: State) -> str:
+        return f" (open item{'s' * (items[state] != 1)}: {items[state]})" if items[state] else ""
+
+    counted = ", ".join(
+        f"{count} {state.value.replace('-', ' ')}{of_items(state)}"
+        for state, count in counts.items()
+        if count
     )
 
-    def basis(row: tuple[str, Finding, Finding, int]) -> Cell:
-        _, lead, worst, _ = row
-        source, todo = plain(lead.source).rstrip("."), advice(worst)
-        tag = tags.get((worst.rule, worst.component))
+    def basis(row: tuple[Finding, int]) -> Cell:
+        one, _ = row
+        source, todo = plain(one.source).rstrip("."), advice(one)
+        tag = tags.get((one.rule, one.component))
         return Cell(detail=f"{source}.", then=f"{todo} ({tag})" if todo and tag else todo)
 
     return table_of(
         "Checks in full",
         rows,
-        words("", lambda row: Cell(state=row[2].state), 0.0),
+        words("", lambda row: Cell(state=row[0].state), 0.0),
         words("Rule", lambda row: Cell(
-            RULES[row[0]].title, f"({row[3]})" if row[3] > 1 else "", goes_on=True), 1.2),
-        number("Use %", lambda row: Cell(percent_text(row[1].utilisation), strong=True)),
-        number("Found", lambda row: figure_text(row[1], row[1].value)),
-        words("Limit", lambda row: limit_text(row[1]) or "–", 0.0),
-        words("Where, case", lambda row: where_text(row[1]), 0.9),
-        words("Basis of the limit; what to do", basis, 2.2),
-        note=f"These {len(rows)} rows stand for {len(findings)} findings: {told}. All of them are "
-        "in the files beside this report.",
-        aside="a row a rule: the piece and the case with the greatest use; in brackets the pieces "
-        "judged",
+            RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
+        *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
+        words("Basis of the limit; remedy", basis, 2.2),
+        note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
+        "this report list them.",
+        aside="per rule, the finding with the largest use, and a more severe one below it; number "
+        "of pieces in brackets",
     )  # fmt: skip
+
+
+def _used_most(finding: Finding) -> tuple[float, int]:
+    """Sort key of findings: largest utilisation first, those without one last."""
+    used = finding.utilisation
+    return 1.0 if used is None else -used, -finding.state.severity
 
 
 _A_DIFFERENCE = 0.1
@@ -104,22 +120,13 @@ def _trust(signed: SignedMooring) -> str:
     """Describe the uncertainty of the results."""
     results = [one for case in signed.standing for one in case.results]
     if not results:
-        return "The mooring has no equilibrium; nothing that rests on one is judged."
-    depth = max(one.accuracy.depth for one in results)
-    share = max(
-        100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
-        for one in results
-    )
-    text = (
-        f"The numerical error of the solution is below {ceil(10.0 * depth) / 10.0:.1f} m and "
-        f"{max(ceil(10.0 * share) / 10.0, 0.1):.1f} % of a tension. The inputs are not known so "
-        "well: the current to about a tenth, the drag of a cable to about a fifth."
-    )
+        return "The mooring has no equilibrium, so checks that need one were skipped."
+    text = accuracy_text(results)
     given = signed.standing[0]
     strums = next((one for one in signed.standing if one.code == f"{given.code}s"), None)
     if strums is not None and strums.knockdown - given.knockdown >= _A_DIFFERENCE:
         text += (
-            f" If the cables strum (case {strums.code}), the knockdown grows from "
+            f" If the cables strum (case {strums.code}), the knockdown increases from "
             f"{say('knockdown', given.knockdown)} to {say('knockdown', strums.knockdown)}."
         )
     return plain(text)
@@ -131,8 +138,8 @@ def handling_page(signed: SignedMooring) -> Iterator[Block]:
     if assessment.launch is not None or assessment.recovery is not None:
         yield Beside((_launch(assessment),), (_recovery(assessment),))
     else:
-        of_net = "The launch and the recovery of a net of legs are not judged."
-        of_line = "Neither the launch nor the recovery could be solved."
+        of_net = "Launch and recovery of a net of legs are not checked."
+        of_line = "Launch and recovery have no solution."
         several = len({one.leg.name for one in assessment.stands}) > 1
         yield Prose((of_net if several else of_line,))
     if assessment.backup:
@@ -147,37 +154,39 @@ def _pairs(title: str, rows: Iterable[tuple[str, str, str]]) -> Table:
 def _launch(assessment: Assessment) -> Table:
     launch = assessment.launch
     if launch is None:
-        return _pairs("Launch, anchor last", [("Could not be solved", "", "")])
+        return _pairs("Launch, anchor last", [("No solution", "", "")])
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
-    drag = "" if launch.anchor_drag_known else ", its drag not known"
+    drag = "" if launch.anchor_drag_known else ", drag assumed"
     tension = launch.greatest_tension
     label = assessment.file.pieces[int(np.nanargmax(tension))].label
-    return _pairs(
-        "Launch, anchor last",
-        [
-            ("Anchor at touchdown" + drag, say("speed", launch.fall_speed),
-             _limit(assessment, "launch-speed")),
-            ("with twice and half the drag",
-             f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
-            ("Pull of the falling anchor", LOAD.say(launch.anchor_tension), ""),
-            (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))),
-             _limit(assessment, "launch-strength")),
-        ],
-    )  # fmt: skip
+    strong = [one for one in assessment.findings if one.rule == "launch-strength"]
+    loaded = [one for one in strong if one.component == label]
+    most = governing(strong) if strong else None
+    rows = [
+        ("Touchdown speed" + drag, say("speed", launch.fall_speed),
+         _limit(assessment, "launch-speed")),
+        ("with twice and half the drag",
+         f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
+        ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
+        (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
+    ]  # fmt: skip
+    if most is not None and most.utilisation is not None and most.component != label:
+        rows.append((f"Largest use, {most.component}", figure_text(most), _limit_of([most])))
+    return _pairs("Launch, anchor last", rows)
 
 
 def _recovery(assessment: Assessment) -> Table:
     rise = assessment.recovery
     if rise is None:
-        return _pairs("Recovery, after release", [("Could not be solved", "", "")])
+        return _pairs("Recovery, after release", [("No solution", "", "")])
     still = ", in still water" if rise.in_still_water else ""
     arrivals = [float(rise.arrival[piece]) for piece in rise.order]
     first, last = rise.time_to_surface, max(arrivals, default=None)
     tensions = np.fmax(rise.tension_top, rise.tension_bottom)
     rows = [
-        ("Net buoyancy of all that rises", LOAD.say(rise.net_buoyancy), ""),
+        ("Net buoyancy of the rising line", LOAD.say(rise.net_buoyancy), ""),
         (
-            f"Speed of the rise{still}",
+            f"Rise speed{still}",
             say("speed", rise.rise_speed),
             _limit(assessment, "recovery"),
         ),
@@ -191,8 +200,12 @@ def _recovery(assessment: Assessment) -> Table:
 
 
 def _limit(assessment: Assessment, rule: str) -> str:
-    """Limit of a rule, and its utilisation if available."""
-    found = [one for one in assessment.findings if one.rule == rule]
+    """Limit of a rule that judges a single value, and its utilisation if available."""
+    return _limit_of([one for one in assessment.findings if one.rule == rule])
+
+
+def _limit_of(found: Sequence[Finding]) -> str:
+    """Limit of the governing one of some findings, and its utilisation if available."""
     if not found:
         return ""
     lead = governing(found)
@@ -206,15 +219,16 @@ _MOST_BREAKS = 10
 def _breaks(assessment: Assessment) -> Table:
     """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
     parts = {piece.index: piece for piece in assessment.file.pieces}
-    groups: dict[str, list[Break]] = {}
-    part = "the top"
-    for one in assessment.backup:
+    section = {None: "the top"}
+
+    def section_of(one: Break) -> str:
         piece = parts.get(one.break_after)
         if piece is None or piece.component.role in ("line", "float", "release"):
-            part = one.label
-        groups.setdefault(part, []).append(one)
+            section[None] = one.label
+        return section[None]
+
     rows: list[tuple[str, Break | Loss]] = []
-    for name, breaks in groups.items():
+    for name, breaks in grouped_by(assessment.backup, section_of).items():
         judged = [one for one in breaks if one.judged]
         if judged:
             worst = min(judged, key=lambda one: one.margin - one.required)
@@ -232,34 +246,40 @@ def _breaks(assessment: Assessment) -> Table:
         return Cell(percent_text(share), strong=True)
 
     unjudged = sum(not one.judged for one in assessment.backup)
-    note = f"A row stands for the worst of its {len(assessment.backup)} breaks. " if rows else ""
+    note = f"{len(assessment.backup)} breaks, the worst of each section. " if rows else ""
     if left > 0:
-        note += f"{left} parts with more buoyancy to spare are left out. "
+        note += f"{left} sections with a larger margin are omitted. "
     if unjudged:
         note += (
-            f"{unjudged} breaks in the lowest floats, or between them and the release, leave it on "
-            "the seabed in any design and are not judged."
+            f"{unjudged} breaks within the lowest floats, or between them and the release, strand "
+            "the release in any design and are not judged."
         )
     return table_of(
         "Breaks and losses",
         rows,
         words("Break or loss", 0, 2.0),
         number(f"Weight to\nlift {unit}", lambda row: load_text(row[1].weight_lifted)),
-        number(f"Buoyancy\nover {unit}", lambda row: load_text(row[1].margin)),
+        number(f"Net buoy-\nancy {unit}", lambda row: load_text(row[1].margin)),
         number(f"Required {unit}", lambda row: load_text(row[1].required)),
-        number(f"Comes\nloose {unit}", lambda row: load_text(row[1].loose)
+        number(f"Drifting\npart {unit}", lambda row: load_text(row[1].loose)
                if isinstance(row[1], Break) else None),
         number("Use %", used),
         note=note.strip(),
-        aside="what still floats with the release after any one break or loss",
+        aside="net buoyancy of the section with the release after a break or loss",
         ruled=False,
     )  # fmt: skip
+
+
+def _runs(numbers: Iterable[str]) -> list[str]:
+    """Join the numbers of clamps on one piece, such as ``7a–7d``."""
+    groups = groupby(dict.fromkeys(numbers), lambda one: re.sub(r"\D.*", "", one))
+    return [run_of([*own]) for _, own in groups]
 
 
 def _inventory(signed: SignedMooring) -> Table:
     """Tabulate number, length, mass and weight of each component, with item numbers."""
     items = signed.assessment.inventory
-    numbers = item_numbers(signed) if signed.standing else {}
+    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
     unit = LOAD.display_unit
 
     def length(group: Sequence[InventoryItem]) -> str | None:
@@ -269,7 +289,7 @@ def _inventory(signed: SignedMooring) -> Table:
     def mass(group: Sequence[InventoryItem]) -> str:
         known = [one.dry_mass for one in group if one.dry_mass is not None]
         if not known:
-            return "not known"
+            return "unknown"
         least = "≥ " if len(known) < len(group) else ""
         return least + QUANTITIES["dry_mass"].format(sum(known))
 
@@ -280,31 +300,27 @@ def _inventory(signed: SignedMooring) -> Table:
     def places(group: Sequence[InventoryItem]) -> Cell:
         if group is items:
             missing = total_of(items).missing_masses
-            return Cell(detail=f"{missing} give no mass" if missing else "")
-        known = list(dict.fromkeys(
-            numbers[one.label] if one.clamped_on is None else f"on {numbers[one.clamped_on]}"
-            for one in group if one.label in numbers
-        ))  # fmt: skip
-        text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
-        return Cell(detail=text)
+            return Cell(detail=f"{missing} without mass" if missing else "")
+        known = _runs(numbers[one.label] for one in group if one.label in numbers)
+        return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
         return "Total" if group is items else group[0].name or group[0].use
 
     return table_of(
         "Inventory",
-        grouped(items, lambda one: one.use),
-        number("Pieces", len),
+        grouped_by(items, lambda one: one.use).values(),
+        number("Pieces", lambda group: sum(one.items for one in group)),
         words("Component", name, 1.6),
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
         ),
-        number("Cut length\nm", length),
-        number("Mass in\nair kg", mass),
+        number(f"Cut length\n{QUANTITIES['length'].display_unit}", length),
+        number(f"Mass in\nair {QUANTITIES['dry_mass'].display_unit}", mass),
         number(f"Weight in\nwater {unit}", weight),
         words("Items", places, 1.0),
         sums=[items],
-        aside="for the purchase and the packing list",
+        aside="for purchase and packing",
         ruled=False,
     )
 
@@ -312,23 +328,26 @@ def _inventory(signed: SignedMooring) -> Table:
 def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     """Yield the limits, environment, exclusions, mooring file, and hash of all inputs."""
     assessment = signed.assessment
-    waters = {one.leg.file.environment.name or "own": one.leg.water for one in assessment.stands}
+    waters = {
+        one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
+        for one in assessment.stands
+    }
     waves = all(one.leg.file.environment.waves for one in assessment.stands)
     unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
-    unseen = f"{plain('; '.join(unjudged))}.", "No use on these pages includes them."
+    unseen = f"{plain('; '.join(unjudged))}.", "No utilisation in this report includes them."
     text = provenance.source_text(assessment.file)
     name = provenance.file_name(assessment.file)
     limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters)
-    beside = environment, blocks.Heading("Not judged"), Prose(unseen)
+    beside = environment, blocks.Heading("Not covered"), Prose(unseen)
     yield Beside((limits,), beside, 0.62)
     yield from (history := [*_history(assessment.file)])
-    said_of = "The file could not be read again." if text is None else text.rstrip()
+    listing = "The file could not be read again." if text is None else text.rstrip()
     above = max(len(limits.rows), len(environment.rows) + _UNJUDGED)
     above += sum(len(table.rows) + 3 for table in history)
     room = TEXT_HEIGHT[paper] - _AROUND - _ROW * above
-    yield Listing("Mooring file", said_of, name, 2 * int(room / _LISTED))
+    yield Listing("Mooring file", listing, name, 2 * int(room / _LISTED))
     yield Prose((
-        "SHA-256 of the inputs, the mooring file with every figure of the catalogue used:",
+        "SHA-256 of the inputs (mooring file and all catalogue values used):",
         signed.sha256,
     ))  # fmt: skip
 
@@ -351,8 +370,10 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
         return text[:1].upper() + text[1:]
 
     def source(key: LimitKey) -> Cell:
-        usual = "" if key.default is None else f"; the default is {_value(key, key.default)}"
-        return Cell(detail=plain(f"the design’s own{usual}" if own(key) else _in_short(key.source)))
+        usual = "" if key.default is None else f"; default {_value(key, key.default)}"
+        return Cell(
+            detail=plain(f"set by the design{usual}" if own(key) else _in_short(key.source))
+        )
 
     return table_of(
         "Limits used",
@@ -360,13 +381,13 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
         words("Limit", lambda key: Cell(called(key), strong=own(key))),
         number("Value", lambda key: Cell(_value(key, key.value), strong=own(key))),
         words("Source", source, 1.6),
-        aside="the design’s own in bold",
+        aside="limits set by the design in bold",
         ruled=False,
     )
 
 
 def _value(key: LimitKey, value: float | None) -> str:
-    return plain(LOAD.say(value) if key.dimension == "force" else said(key, value))
+    return plain(limit_value_text(key, value))
 
 
 def _in_short(source: str) -> str:
@@ -433,7 +454,7 @@ def _environment(waters: dict[str, Water]) -> Table:
 def _water_note(water: Water) -> str:
     low, high = float(water.density.min()), float(water.density.max())
     density = f"{low:.1f}" if high - low < 0.05 else f"{low:.1f} to {high:.1f}"
-    return f"Density {density} kg/m³. Launch, rise and breaks are judged in the first environment."
+    return f"Density {density} kg/m³. Launch, rise and breaks are checked in environment 1."
 
 
 def _history(file: MooringFile) -> Iterator[Table]:

@@ -1,4 +1,4 @@
-"""The report of a design check: six pages of a mooring, or a matrix and a page of each of many."""
+"""The report of a design check: that of one mooring, or a matrix and a page of each of many."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -45,12 +45,11 @@ def mooring_section(
     `against` is a comparison of the mooring with its original design.
     """
     signed = signed_mooring(assessment)
-    pages = (
-        page_one(signed, paper), drawing_pages(signed, paper), line_page(signed),
-        chain(checks_page(signed), _likelihood(assessment)), handling_page(signed),
-        basis_page(signed, paper),
+    details = chain(
+        drawing_pages(signed, paper), line_page(signed), checks_page(signed),
+        _likelihood(assessment), handling_page(signed), basis_page(signed, paper),
     )  # fmt: skip
-    parts = [*_pages(pages)]
+    parts = [*_pages([page_one(signed, paper), details])]
     if against is not None:
         parts += [_page([PageBreak()]), comparison_part(against)]
     return CheckedSection(
@@ -94,5 +93,5 @@ def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
     worst = max((row.conclusion for row in rows), key=[*type(rows[0].conclusion)].index)
     foot = f"CALM {__version__}  inputs of each mooring: on its own page"
     running = Running("", title, worst.words, provenance.date() or "", foot)
-    front = _page([blocks.TitleBlock("", title, "", ()), *summary_page(rows)])
+    front = _page([blocks.TitleBlock("", title, (), ()), *summary_page(rows)])
     return blocks.Report(title, "", (front,), tuple(sections), provenance.date(), running=running)

@@ -4,8 +4,7 @@ A mooring without failures takes at most `MOST_LINES` lines of 80 characters. Se
 appear as a matrix of maximum utilisations.
 """
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import ceil
 from textwrap import wrap
@@ -19,7 +18,7 @@ from calm.checks.finding import (
     governing_of_each_rule,
 )
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING
-from calm.quantities import say
+from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Line, OpenItem, Prose, ReportPart, Span, number, words
 from calm.report.check_matrix import MatrixCell, environments_of, summary_row
@@ -32,10 +31,10 @@ from calm.report.open_items import (
     open_groups,
     open_items,
     percent_text,
-    quantity_of,
     short,
+    without_asides,
 )
-from calm.report.page_one import case_columns, shown_cases
+from calm.report.page_one import case_columns, governing_rows, shown_cases
 
 MOST_LINES = 40
 """Maximum number of lines of a mooring without failures."""
@@ -86,9 +85,9 @@ def _head(assessment: Assessment) -> Line:
 
 def _verdict(assessment: Assessment) -> Line:
     """Format the verdict and the number of open items."""
-    said = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
-    told = counts_text(open_groups(assessment)) or "nothing is open"
-    return (Span(_apart(said, told), STATES[assessment.verdict]),)
+    verdict = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
+    counts = counts_text(open_groups(assessment)) or "no open items"
+    return (Span(_apart(verdict, counts), STATES[assessment.verdict]),)
 
 
 def _apart(left: str, right: str) -> str:
@@ -114,8 +113,8 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
             dense=True,
         )
     if fallen:
-        told = (f"! {one.code} {one.words}: no equilibrium ({one.failure})" for one in fallen)
-        yield Prose(tuple((Span(text, State.FAIL),) for text in told))
+        texts = (f"! {one.code} {one.words}: no equilibrium ({one.failure})" for one in fallen)
+        yield Prose(tuple((Span(text, State.FAIL),) for text in texts))
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
@@ -154,10 +153,10 @@ def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
 def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
     """Summarise the utilisation of the remaining checks, and explain case codes of rows above."""
     most = max((one.utilisation or 0.0 for one in rest), default=None)
-    told = [f"all other checks: {percent_text(most)} % or less"] if rest else []
+    others = [f"all other checks: {percent_text(most)} % or less"] if rest else []
     shown = {one.case[-1] for one in rows if one.case}
     codes = ", ".join(f"{code} {means}" for code, means in _CODES.items() if code in shown)
-    return "  " + "; ".join(filter(None, (*told, codes)))
+    return "  " + "; ".join(filter(None, (*others, codes)))
 
 
 _CODES = {"L": "launch", "R": "rise", "B": "break", "w": "in waves"}
@@ -169,18 +168,12 @@ def _title(finding: Finding) -> str:
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
     """Select the findings to show in rows, and return the governing ones of other rules."""
-    failed = governing_of_each_rule(_of_state(every, State.FAIL))
-    leads = _without_repeats(governing_of_each_rule(every))
-    used = [one for one in leads if one.utilisation is not None and one not in failed]
-    used.sort(key=lambda one: -(one.utilisation or 0.0))
+    failed = governing_of_each_rule(one for one in every if one.state is State.FAIL)
+    used = [one for one in governing_rows(every) if one not in failed]
     most = [one for one in used if (one.utilisation or 0.0) >= _HALF or _is_open(one)]
     most = most[: max(_MOST_ROWS, sum(map(_is_beyond, most)))] or used[:3]
     rest = [one for one in used if one not in most]
     return [*sorted(failed, key=lambda one: one.rank), *most], rest
-
-
-def _of_state(findings: Iterable[Finding], state: State) -> list[Finding]:
-    return [one for one in findings if one.state is state]
 
 
 def _is_open(finding: Finding) -> bool:
@@ -189,16 +182,6 @@ def _is_open(finding: Finding) -> bool:
 
 def _is_beyond(finding: Finding) -> bool:
     return (finding.utilisation or 0.0) > 1.0
-
-
-def _without_repeats(findings: Sequence[Finding]) -> list[Finding]:
-    """Omit the load of a release if its strength has the same values."""
-    told = {(one.component, one.value, one.limit) for one in findings if one.rule == "strength"}
-    return [
-        one
-        for one in findings
-        if one.rule != "release-load" or (one.component, one.value, one.limit) not in told
-    ]
 
 
 def _sign(state: State) -> str:
@@ -211,8 +194,11 @@ def _bar(finding: Finding) -> Cell | None:
 
 
 def _found(finding: Finding) -> str:
-    quantity = quantity_of(finding)
-    return "" if finding.value is None or quantity is None else quantity.format(finding.value)
+    """Format a value without its unit, which the limit has."""
+    quantity = QUANTITIES.get(RULES[finding.rule].quantity)
+    if finding.value is None or quantity is None:
+        return ""
+    return quantity.number_and_unit(finding.value, finding.limit)[0]
 
 
 def _where(finding: Finding) -> str:
@@ -220,8 +206,8 @@ def _where(finding: Finding) -> str:
 
 
 def _in_short(item: OpenItem) -> OpenItem:
-    """An item without sources in brackets."""
-    text = re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", item.text.replace("\u00a0", " "))
+    """An item without long passages in brackets."""
+    text = without_asides(item.text.replace("\u00a0", " "))
     return replace(item, head=item.head.replace("\u00a0", " "), text=text)
 
 
@@ -233,9 +219,11 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
         if len(kept) == most or (most is None and room < 0 and kept):
             break
         kept.append(item)
-    left = len(items) - len(kept)
-    note = f"   and {left} more: in the report (--report) and in --json" if left else ""
-    return blocks.OpenItems("Open items", tuple(kept), note)
+    left = items[len(kept) :]
+    notes = [f"{len(left)} more in the report (--report) and the JSON (--json)"] if left else []
+    unknown = [one.head.removesuffix(".") for one in left if one.state is State.UNKNOWN]
+    notes += wrap(f"Also unknown: {'; '.join(unknown)}.", _WIDTH - 3) if unknown else []
+    return blocks.OpenItems("Open items", tuple(kept), "\n".join(f"   {one}" for one in notes))
 
 
 def _height(block: blocks.Block) -> int:
@@ -254,10 +242,10 @@ def _height(block: blocks.Block) -> int:
 
 
 def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
-    """Exclusions of any static check."""
+    """Effects that no check covers."""
     waves = any(one.rule == "wave-slack" for one in findings)
     beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
-    return (f"Beyond a static check: {', '.join(beyond)}.",)
+    return (f"Not covered: {', '.join(beyond)}.",)
 
 
 def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
@@ -273,15 +261,15 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     places = f"{len(names)} ENVIRONMENT{'S' * (len(names) != 1)}"
     head = f"DESIGN CHECK OF {len(rows)} MOORINGS IN {places}: {said}"
     yield Prose(((Span(head, state),),))
-    milder = f"; {len(names) - len(kept)} milder ones are left out" * (len(kept) < len(names))
+    milder = f"; {len(names) - len(kept)} milder environments omitted" * (len(kept) < len(names))
     room = max(20, _WIDTH - 6 * len(kept) - 8)
     yield blocks.table_of(
         "",
         rows,
-        words("greatest use, %", lambda row: short(row.mooring, room)),
+        words("largest use, %", lambda row: short(row.mooring, room)),
         *(_of_environment(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
-        note="! fails  ~ over 100, a warning or accepted  ? not known\n"
+        note="! fails  ~ over 100, a warning or accepted  ? unknown\n"
         + ", ".join(f"{codes[name]} {name}" for name in kept if codes[name] != name)
         + milder,
         dense=True,

@@ -2,15 +2,12 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from functools import partial
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from itertools import groupby
 from operator import attrgetter
-from typing import TypeVar
 
-from calm.checks.assess import RULES
-from calm.checks.criterion import said
-from calm.checks.finding import AS_GIVEN, Finding, State, worst_of
+from calm.checks.criterion import limit_value_text
+from calm.checks.finding import Finding, State, grouped_by, worst_of
 from calm.checks.inventory import InventoryItem
 from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
@@ -18,48 +15,21 @@ from calm.quantities import QUANTITIES
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
 
-Item = TypeVar("Item")
-
-
-def figure_of(finding: Finding, name: str) -> str:
-    """Format the value, limit or margin of a finding with its unit; "" if unknown."""
-    value = getattr(finding, name)
-    if value is None:
-        return ""
-    text = QUANTITIES[RULES[finding.rule].quantity].say(value)
-    return text if name != "margin" or text.startswith("-") else f"+{text}"
-
-
-FIGURES = (
-    words("state", lambda one: Cell(one.state.value, state=one.state), 0.0),
-    *(number(name, partial(figure_of, name=name)) for name in ("value", "limit", "margin")),
-)
-"""Columns of findings."""
-
-
-def place_of(finding: Finding) -> str:
-    """Name the environment of a finding and its situation."""
-    changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
-    return f"{finding.environment}{changed}"
-
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """Select the most severe finding of each rule on each component, most severe first."""
-    groups = grouped(findings, lambda each: (each.rule, each.place, each.missing))
-    return sorted(map(worst_of, groups), key=attrgetter("rank"))
-
-
-def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
-    """Return the items of each key together, in the order in which the keys come."""
-    groups: dict[Hashable, list[Item]] = {}
-    for item in items:
-        groups.setdefault(key(item), []).append(item)
-    return list(groups.values())
+    groups = grouped_by(findings, lambda each: (each.rule, each.place, each.missing))
+    return sorted(map(worst_of, groups.values()), key=attrgetter("rank"))
 
 
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """Group findings of one rule that differ only in component and values."""
-    return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
+    """Group findings of one rule that differ only in component and values.
+
+    Each missing value of a component is a group of its own.
+    """
+    return [*grouped_by(
+        findings, lambda one: (one.rule, one.state, one.missing or _wording(one))
+    ).values()]  # fmt: skip
 
 
 def _wording(finding: Finding) -> str:
@@ -67,7 +37,7 @@ def _wording(finding: Finding) -> str:
     text = f"{finding.message} {finding.remedy or ''}"
     if finding.component is not None:
         text = text.replace(finding.component, "")
-    return re.sub(r"\d[\d.]*", "#", text)
+    return re.sub(r"-?\d[\d.]*(?: k?N\b)?", "#", text)
 
 
 def named(labels: Iterable[str], most: int = 3) -> str:
@@ -106,9 +76,9 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     A missing value of a component counts once, and so does a cluster in which every float fails or
     warns.
     """
-    by_mooring = grouped(findings, attrgetter("mooring"))
-    found = [one for each in by_mooring for one in grouped(worst_by_part(each), counted_as)]
-    return Counter(one[0].state for one in found)
+    by_mooring = grouped_by(findings, attrgetter("mooring")).values()
+    groups = (grouped_by(worst_by_part(each), counted_as).values() for each in by_mooring)
+    return Counter(one[0].state for each in groups for one in each)
 
 
 GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
@@ -128,37 +98,37 @@ def counted_as(finding: Finding) -> tuple[Hashable, ...]:
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
     """Tabulate limits with their defaults and sources, changed limits first."""
-    departs = Cell("departs", state=State.WARN)
+    departs = Cell("changed", state=State.WARN)
     return table_of(
         title,
         sorted(limits, key=lambda key: not key.departs),
         words("", lambda key: departs if key.departs else None, 0.0),
         words("limit", "name", 1.2),
-        number("as used", lambda key: said(key, key.value)),
-        number("default", lambda key: said(key, key.default)),
+        number("value", lambda key: limit_value_text(key, key.value)),
+        number("default", lambda key: limit_value_text(key, key.default)),
         words("source of the default", "source", 2.0),
-        note="A limit that departs from its default is the design's own; no source is given "
-        "for it.",
+        note="Limits that differ from their defaults are set in the mooring file, without a "
+        "source.",
     )
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """Tabulate the number and quantity of each component, with room for spares."""
-    note = "Cut lengths are of wires, ropes and chains. Spares are filled in by hand."
+    note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
     if any(item.dry_mass is None for item in items):
-        note += " ≥ marks a lower bound, because masses in air are missing: plan no lift on it."
+        note += " ≥ marks a lower bound without the unknown masses: do not plan lifts by it."
 
     def summed(name: str) -> Field:
         return quantity(name, lambda group: None)[0], lambda group: _sum(name, group)
 
     return table_of(
         "Inventory",
-        grouped(items, lambda item: item.use),
+        grouped_by(items, lambda item: item.use).values(),
         words(
             "component", lambda group: "Total" if group is items else group[0].name or group[0].use
         ),
         words("id", lambda each: None if each is items else each[0].use),
-        number("pieces", len),
+        number("pieces", lambda group: sum(item.items for item in group)),
         *map(summed, ("cut_length", "dry_mass", "wet_weight")),
         blocks.blank("spares"),
         note=note,

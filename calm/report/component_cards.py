@@ -4,7 +4,6 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from functools import partial
 from typing import Any
 
 from pydantic import BaseModel
@@ -186,8 +185,7 @@ def _text(name: str, value: Any) -> str:
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
     if isinstance(value, EstimatedFigure):
-        said = value.in_words(partial(_text, value.quantity))
-        return f"{_heading(value.quantity)} {said}"
+        return f"{_heading(value.quantity)} {value.in_words}"
     if isinstance(value, BaseModel):
         value = value.model_dump(exclude_none=True)
     if isinstance(value, Mapping):
@@ -201,8 +199,8 @@ def in_words(missing: MissingFigures) -> str:
     """Describe the missing values of a component, with unpublished ones last."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
-    parts = [f"gives no {', '.join(open_yet)}"] if open_yet else []
-    parts += [f"searched for and not found: {', '.join(sought)}"] if sought else []
+    parts = [f"lacks {', '.join(open_yet)}"] if open_yet else []
+    parts += [f"not published: {', '.join(sought)}"] if sought else []
     return "; ".join(parts)
 
 
@@ -210,7 +208,7 @@ def summarised(missing: Sequence[MissingFigures]) -> str:
     """Return how many components lack which figure."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
-    return f"{len(missing)} of them lack figures: {figures}"
+    return f"{len(missing)} of them lack values: {figures}"
 
 
 def to_objects(

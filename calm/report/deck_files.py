@@ -7,6 +7,7 @@ from io import BytesIO
 from operator import attrgetter
 from typing import Any
 
+from calm.checks.finding import environment_text
 from calm.deck import Deck
 from calm.drawing.line_drawing import line_drawing
 from calm.drop import DropPlan
@@ -65,14 +66,14 @@ def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
     stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
     lifts = [(stage, one) for stage, each in stages.items() for one in each]
     rows: dict[str, Sequence[Any]] = {
-        "parts": deck.assessment.inventory,
+        "parts": [(deck.numbers[one.label], one) for one in deck.assessment.inventory],
         "cutting": deck.cuts,
-        "instruments": deck.instruments,
+        "instruments": [(deck.numbers[one.item.label], one) for one in deck.instruments],
         "hardware": deck.hardware,
         "shipping": deck.shipped,
         "lifts": lifts,
-        "deployment": [*enumerate(deck.deployment, 1)],
-        "recovery": [*enumerate(deck.recovery, 1)],
+        "deployment": [(deck.numbers[one.label], one) for one in deck.deployment],
+        "recovery": [(deck.numbers[one.item.label], one) for one in deck.recovery],
     }
     sheets = {name: _sheet(_COLUMNS[name], items) for name, items in rows.items()}
     if deck.result.several:
@@ -86,7 +87,7 @@ def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
 
 _COLUMNS = {
     "parts": """
-        index label use name role clamped_on at[m] cut_length[m] mass[kg]=dry_mass
+        number= index label use name role clamped_on at[m] cut_length[m] mass[kg]=dry_mass
         weight_in_water[N]=wet_weight
     """,
     "cutting": """
@@ -95,8 +96,9 @@ _COLUMNS = {
         termination over_the_side=over onto_the_drum=onto
     """,
     "instruments": """
-        label=item.label use=item.part.use name=item.name serial=item.serial clamped_on=item.on
-        depth[m]=item.depth still_depth[m]=still planned_depth[m]=item.planned_depth
+        number= label=item.label use=item.part.use name=item.name serial=item.serial
+        clamped_on=item.on depth[m]=item.depth still_depth[m]=still
+        planned_depth[m]=item.planned_depth
         least_depth[m]=shallowest.depth least_in=shallowest.environment
         greatest_depth[m]=deepest.depth greatest_in=deepest.environment
         greatest_tilt[deg]=greatest_tilt
@@ -128,9 +130,9 @@ each item.
 
 
 _INDEX: dict[str, Callable[[Any], int]] = {
-    "parts": attrgetter("index"),
+    "parts": lambda one: one[1].index,
     "cutting": attrgetter("item.index"),
-    "instruments": attrgetter("item.index"),
+    "instruments": lambda one: one[1].item.index,
     "lifts": lambda one: one[1].index,
     "deployment": lambda one: one[1].index,
     "recovery": lambda one: one[1].item.index,
@@ -176,7 +178,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     parts[-1] = replace(parts[-1], blocks=(*parts[-1].blocks, PageBreak()))
     report = provenance.report_of(
         deck.file.name,
-        f"{deck.order}, environment: {deck.environment}",
+        f"{deck.order}, {environment_text(deck.environment)}",
         *parts,
         deck_logs.recovery_part(deck),
     )

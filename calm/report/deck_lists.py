@@ -4,24 +4,26 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
+from calm.checks.finding import OWN, environment_text
 from calm.deck import Deck
 from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, rows_on_paper
 from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Note, ReportPart, number, quantity, table_of, words
+from calm.report.check_tables import named
 from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
-    "Spares: a tenth, rounded up, at least one; of shackles, pins and thimbles at least two. A "
-    "default of this program."
+    "Spares: 10 %, rounded up, at least one (two for shackles, pins and thimbles); a default of "
+    "CALM."
 )
 _IMPLIED = (
-    "Each shackle is counted with a bolt, nut and cotter pin unless its name or note says screw "
-    "pin, and a termination that names a thimble with one at each end. Where metals touch that "
-    "corrode each other (calm check warns of them), an isolator is counted for each contact and an "
-    "anode for each piece of the baser metal. Nothing else is counted unless the line lists it."
+    "Each shackle includes a bolt, nut and cotter pin, unless its name or note says “screw pin”. A "
+    "termination that mentions a thimble includes one at each end. Each contact of dissimilar "
+    "metals (a warning of calm check) adds an isolator, and an anode for the less noble metal. All "
+    "other hardware must be listed in the line."
 )
 _BOX = "☐"
 
@@ -42,11 +44,11 @@ def cutting_part(deck: Deck) -> ReportPart:
             rows.append((Cell(_marked(marks, kinds), indented=True), *[""] * 7, _BOX))
     unit = QUANTITIES["length"].display_unit
     note = (
-        "Lengths are without load unless one is given; marks are measured from the upper end, "
-        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much "
-        f"{'that of its leg is ' if deck.result.several else ''}if this "
-        f"piece alone is {_SHARE} longer, in the environment {deck.environment}. Over side, onto "
-        "drum: the order; the piece that goes over last is spooled first."
+        "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
+        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: change in the top "
+        f"depth{' of the leg' if deck.result.several else ''} if only this piece is {_SHARE} "
+        f"longer, in the {environment_text(deck.environment)}. Over side, onto drum: "
+        "sequence numbers; the last piece deployed is spooled first."
     )
     table = table_of(
         "Wires and ropes",
@@ -152,9 +154,9 @@ def shipping_part(deck: Deck) -> ReportPart:
         at_least("mass in air", "dry_mass", "mass", "missing_masses"),
         at_least("volume", "volume", "volume", "missing_volumes"),
         blocks.blank("packed in", share=0.8),
-        note="Volumes are of the parts themselves, without packing: spheres, cylinders and "
-        "cables by their size, others by what they displace. ≥ marks a lower bound, "
-        "because figures are missing. Spares are not included.",
+        note="Volumes exclude packing: those of spheres, cylinders and cables follow from their "
+        "size, others from their displacement. ≥ marks a lower bound, because values are missing. "
+        "Spares are not included.",
         sums=[all_shipped(deck.shipped)],
     )
     return ReportPart("Shipping list", (table,))
@@ -169,20 +171,19 @@ def lifts_part(deck: Deck) -> ReportPart:
             f"{say('wet_weight', heaviest.weight)} in water."
         )
     if unknown:
-        shown = ", ".join(unknown[:6]) + (" …" if len(unknown) > 6 else "")
-        said.append(f"A lower bound: no mass in air is known for {shown}.")
+        told = named(unknown, len(unknown))
+        said.append(f"This is a lower bound: the mass in air of {told} is unknown.")
     greatest = max(deck.lifts.deployment, key=lambda one: one.hanging or 0.0, default=None)
     if greatest is not None and (greatest.hanging or 0.0) > 0.0:
         said.append(
-            f"The greatest hanging load is {say('wet_weight', greatest.hanging)} in water, "
-            f"with {greatest.label} over the side."
+            f"Maximum suspended load: {say('wet_weight', greatest.hanging)} in water, with "
+            f"{greatest.label} over the side."
         )
     note = (
-        "In air: mass of the piece with its clamps, as the crane lifts it; cables are paid out. "
-        "Hanging: weight in water of everything over the side, of a net of the leg alone, hanging "
-        "straight down from the ship; below 0 it floats. Drag and swell are not included. "
-        "Shackles, links and swivels are lifted with the pieces next to them; in the files each "
-        "has its own row."
+        "In air: crane load of the piece with its clamps; cables are paid out instead. Suspended: "
+        "weight in water of all pieces over the side, hanging vertically; in a net, of the leg "
+        "alone. A negative value floats. Drag and swell are not included. Shackles, links and "
+        "swivels are lifted with the adjacent pieces; the files list them in separate rows."
     )
     return ReportPart("Lifts", (blocks.Prose(tuple(said)), _stages(deck), Note((note,))))
 
@@ -195,12 +196,12 @@ def _stages(deck: Deck) -> blocks.Table:
         f"In the order over the side{', leg by leg' * deck.result.several}",
         [one for one in deck.lifts.deployment if one.label not in joints],
         *([words("leg", lambda one: deck.leg(one.index))] if deck.result.several else []),
-        number("no.", "index"),
+        number("no.", lambda one: deck.numbers[one.label]),
         words("at the rail", "label", 2.0),
         quantity("lift_mass", "mass", "lift in\nair"),
         quantity("wet_weight", "weight", "lift in\nwater"),
-        quantity("wet_weight", "hanging", "hangs at\ndeployment"),
-        quantity("wet_weight", lambda one: recovery.get(one.label), "hangs at\nrecovery"),
+        quantity("wet_weight", "hanging", "suspended,\ndeployment"),
+        quantity("wet_weight", lambda one: recovery.get(one.label), "suspended,\nrecovery"),
     )
 
 
@@ -226,25 +227,27 @@ def instruments_part(deck: Deck) -> ReportPart:
 
         def cell(one: DeckInstrument) -> Cell:
             found = getattr(one, name)
-            return Cell(depth.format(found.depth), found.environment)
+            own = found.environment == OWN
+            return Cell(depth.format(found.depth), "default" if own else found.environment)
 
         return number(heading, cell, depth.display_unit)
 
-    note = f"Depths are in the environment {deck.environment}."
+    note = f"Depths are in the {environment_text(deck.environment)}."
     if several:
         note += (
-            f" Least and greatest depth, and tilt, are over {len(deck.environments)} "
-            "environments; the line below names which."
+            f" Minimum and maximum depth, and tilt, cover {len(deck.environments)} environments; "
+            "the governing environment is below the depth."
         )
     table = table_of(
         "Instruments and releases",
         rows,
+        number("no.", lambda one: deck.numbers[one.item.label]),
         words("instrument", named, 2.0),
         words("serial number", "item.serial", 0.8),
         quantity("depth", "item.depth", "depth"),
         quantity("depth", "still", "still\nwater"),
         *([quantity("planned_depth", "item.planned_depth")] if planned else []),
-        *([extreme("least", "shallowest"), extreme("greatest", "deepest")] if several else []),
+        *([extreme("minimum", "shallowest"), extreme("maximum", "deepest")] if several else []),
         number("tilt", lambda one: QUANTITIES["tilt"].format(one.greatest_tilt), "°"),
         number("limit", limits, "°"),
         words("sampling", "item.part.equipment.sampling", 0.9),

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from calm.case.result_tables import run_of
 from calm.deck import Deck, RecoveredItem
-from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
+from calm.deck.deck_items import DeckItem, DeckRow, Order, hardware_text, rows_on_paper
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
@@ -35,10 +36,10 @@ def deployment_part(deck: Deck) -> ReportPart:
     """Build the deployment log: preparations, order over the side, and anchor position."""
     last = deck.order is Order.ANCHOR_LAST
     said = (
-        ("Anchor last: the top" if last else "Anchor first: the lower end")
+        ("Anchor-last deployment: the top" if last else "Anchor-first deployment: the lower end")
         + f"{' of each leg' if deck.result.several else ''} goes over the side first. "
         + (_LEGS if deck.result.several else "")
-        + "Lengths are as cut; clamps are placed from the upper end of their piece, unstretched."
+        + "Lengths are as cut; positions of clamps are from the upper end of the unloaded piece."
     )
     unit = QUANTITIES["depth"].display_unit
     soundings = table_of(
@@ -66,25 +67,28 @@ def recovery_part(deck: Deck) -> ReportPart:
     rise = deck.rise
     said = []
     if deck.result.several:
-        said.append("The rise of a net is not solved: the lists go down each leg.")
+        said.append(
+            "The ascent of a net is not computed; the pieces of each leg are listed from top to "
+            "bottom."
+        )
     elif rise is None:
-        said.append("The rise is not known: the list goes down the line.")
+        said.append("The ascent has no solution; pieces are listed from top to bottom.")
     elif rise.time_to_surface is None:
-        said.append("Once released, the line does not rise by itself: the list goes down the line.")
+        said.append("After release the line does not rise; pieces are listed from top to bottom.")
     elif rise.time_to_surface == 0.0:
         said.append(
-            "Its float is at the surface; what comes up from below is listed with its time."
+            "The float is at the surface; pieces that rise from below are listed with their times."
         )
     else:
         first = rise.time_to_surface / 60.0
         said.append(
-            f"Once released, the line rises at {say('speed', rise.rise_speed)}; the first "
-            f"float is expected after {first:.0f} min."
+            f"After release the line rises at {say('speed', rise.rise_speed)}; the first float "
+            f"surfaces after {first:.0f} min."
         )
         if rise.tangles:
-            said.append("It may double back in the rise: the order may differ.")
+            said.append("The line may double back during the ascent and change the order.")
         if rise.in_still_water:
-            said.append("The rise is computed in still water.")
+            said.append("The ascent is computed in still water.")
     named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
     known = tuple((name, text) for name, text in named if text)
     events = table_of(
@@ -108,8 +112,8 @@ def recovery_part(deck: Deck) -> ReportPart:
 
 
 _LEGS = (
-    "The legs stand in the order of the file, anchor first from the last to the first; which goes "
-    "when is not planned. "
+    "The legs are listed in file order, or in reverse for anchor-first deployment; CALM does not "
+    "plan their sequence. "
 )
 _EVENTS = (
     "On station", "First float seen, bearing", "All floats counted", "Hooked", "All on board",
@@ -164,27 +168,27 @@ def _span(values: Sequence[float]) -> str:
     return " to ".join(ends)
 
 
-def _numbers(row: DeckRow, order: dict[int, int]) -> str:
-    """Return the first and the last number that the items of a row have in the list."""
-    numbers = [order[id(one)] for one in (*row.items, *row.floats, *row.joints)]
-    return "–".join(dict.fromkeys((str(min(numbers)), str(max(numbers)))))
+def _numbers(row: DeckRow, deck: Deck) -> str:
+    """Return the numbers of the items of a row, which are the same on all sheets."""
+    return run_of([deck.numbers[one.label] for one in (*row.items, *row.floats, *row.joints)])
 
 
 def _piece(row: DeckRow) -> Cell:
-    detail = f"{row.name}; with {row.joined}" if row.joined else row.name
+    joints = hardware_text(row.joints)
+    detail = f"{row.name}; with {joints}" if joints else row.name
     return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
 def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
     """Tabulate the releases with their codes, and checks with boxes or room to write."""
-    releases = deck.file.releases
-    known = {release.serial for release in releases}
-    rows = [(Cell(one.serial or ""), "\n".join(one.code_lines)) for one in releases]
-    rows += [
-        (Cell(one.serial or "", one.label), "")
-        for one in deck.parts
-        if one.role == "release" and (one.serial is None or one.serial not in known)
-    ]
+    codes = {one.serial: "\n".join(one.code_lines) for one in deck.file.releases}
+    rows = []
+    for part in deck.parts:
+        if part.role == "release":
+            items = max(part.part.component.items or 1, len(part.serials))
+            for serial in (*part.serials, *[""] * items)[:items]:
+                rows.append((Cell(serial, part.label), codes.pop(serial, "")))
+    rows += [(Cell(serial or ""), text) for serial, text in codes.items()]
     table = table_of(
         "Releases",
         rows,
@@ -201,7 +205,6 @@ def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
 
 
 def _over_the_side(deck: Deck) -> list[Table]:
-    order = {id(one): number for number, one in enumerate(deck.deployment, 1)}
     planned = any(one.planned_depth is not None for one in deck.deployment)
 
     def length(row: DeckRow) -> str:
@@ -216,9 +219,9 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
     unit, deep = QUANTITIES["length"].display_unit, QUANTITIES["depth"].display_unit
     fields = (
-        number("no.", lambda row: _numbers(row, order)),
+        number("no.", lambda row: _numbers(row, deck)),
         words("piece", _piece, 3.8),
-        words("length,\nor place", length, 1.3, unit=unit),
+        words("length,\nor position", length, 1.3, unit=unit),
         *([quantity("depth", "first.depth"), number("planned", plan, deep)] if planned else []),
         words("serial\nnumber", "first.serial", 0.7),
         blank("over", "UTC", 0.6),
@@ -251,7 +254,7 @@ def _positions(deck: Deck) -> Table:
         ("Target", "", target, QUANTITIES["depth"].say(file.environment.depth)),
         ("Fall-back target", "", "", ""),
         ("First piece over", start, "", ""),
-        ("Anchor let go", let_go, "", ""),
+        ("Anchor release", let_go, "", ""),
         ("Anchor, ranged", "", *_deployed(deck)[1:]),
     )
     return table_of(
@@ -267,7 +270,6 @@ def _positions(deck: Deck) -> Table:
 
 
 def _surfacing(deck: Deck) -> list[Table]:
-    order = {id(one.item): number for number, one in enumerate(deck.recovery, 1)}
     risen = {id(one.item): one for one in deck.recovery}
     listed = [one.item for one in deck.recovery if not one.item.is_joint]
 
@@ -275,20 +277,20 @@ def _surfacing(deck: Deck) -> list[Table]:
         return _expected([risen[id(one)] for one in (*row.items, *row.floats)])
 
     fields = (
-        number("no.", lambda row: _numbers(row, order)),
+        number("no.", lambda row: _numbers(row, deck)),
         words("piece", _piece, 4.6),
         words("serial\nnumber", "first.deployed_serial", 0.95),
-        words("up after,\nor hangs", expected, 0.0),
+        words("surfaces\nor hangs", expected, 0.0),
         blank("seen", "UTC", 0.65),
         blank("on deck", "UTC", 0.65),
         words("whole,\nruns,\nfouled", lambda _: "☐ ☐ ☐", 0.0),
         words("remarks", "first.remark"),
     )
     note = (
-        "Up after: time since the release, or the depth at which a piece hangs once the "
-        "line is up. By itself: buoyant enough to surface alone; the rest comes up with "
-        "it. The order is that of surfacing, not of hauling. Shackles, links and swivels "
-        "come with the pieces they join."
+        "Surfaces or hangs: time from release to surfacing, or the depth at which the piece hangs "
+        "from the surfaced line. By itself: the piece is buoyant enough to surface alone; other "
+        "pieces are lifted with it. Pieces are listed in order of surfacing, not of hauling. "
+        "Shackles, links and swivels surface with the pieces they connect."
     )
     tables = [
         table_of(title, rows_on_paper(items), *fields, by_hand=True)

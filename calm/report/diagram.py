@@ -8,6 +8,7 @@ from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case.leg_result import LegResult
+from calm.checks.finding import environment_text
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
@@ -21,6 +22,7 @@ from calm.report.provenance import title_pairs
 from calm.report.sheet import ends_told, leg_title
 
 _HEADINGS = (
+    (("no.",), ""),
     (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
     (("planned",), "planned_depth"),
     (("above", "seabed"), "height"), (("tension",), "tension"),
@@ -102,11 +104,13 @@ class _Diagram:
         parts = [part for leg in legs for part in leg]
         self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
         self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
-        headings = [(*words, QUANTITIES[name].display_unit) for words, name in _HEADINGS
+        headings = [(*words, QUANTITIES[name].display_unit if name else "")
+                    for words, name in _HEADINGS
                     if name != "planned_depth" or has_plans(deck)]  # fmt: skip
         rows = (row for part in parts for row in part.rows)
         self.column = column = schematic.column_of(rows, headings, paper.column_width)
-        self.legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
+        drawn = (one for part in parts for one in (part.cable, part.sign.symbol) if one)
+        self.legend = tuple(dict.fromkeys(drawn))
         sets = (  # long cables are drawn shorter where that saves a page
             [
                 (line, schematic.measured(leg, column, growth))
@@ -203,15 +207,15 @@ class _Diagram:
         page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
         pen = page.draw("g", stroke=INK, stroke_width=0.9, fill=INK)
         step = self.paper.column_width / _LEGEND_COLUMNS
-        for place, sign in enumerate(self.legend):
+        for place, symbol in enumerate(self.legend):
             x = left + 14.0 + step * (place % _LEGEND_COLUMNS)
             y = top + _LEGEND_ROW * (place // _LEGEND_COLUMNS) + _LEGEND_ROW / 2 - 3.0
-            if sign.symbol in LINES:
-                draw_cable(pen, sign.symbol, x, y - 9.0, y + 9.0)
+            if symbol in LINES:
+                draw_cable(pen, symbol, x, y - 9.0, y + 9.0)
             else:
-                figure = figure_of(Sign(sign.symbol))
+                figure = figure_of(Sign(symbol))
                 figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-            page.letters(x + 18.0, y, sign.symbol.value, size=FONT)
+            page.letters(x + 18.0, y, symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
         """Draw the framed fields, blank if unknown; `sheet` is a text such as "2 of 5"."""
@@ -317,7 +321,8 @@ _Fields = tuple[tuple[str, tuple[str, ...]], ...]
 
 def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
     """The title block of a mooring, row by row, without the number of its page."""
-    known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": deck.environment}
+    environment = environment_text(deck.environment).removeprefix("environment ")
+    known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
     columns = _COLUMNS[paper]
     room = (paper.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
     fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]

@@ -1,21 +1,25 @@
 """Page 2 of a design check: the mooring from the top to the anchor, a row a part."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import ceil
 
+from calm.case.result_tables import item_numbers, run_of
 from calm.deck.deck_items import DeckItem, deck_items_of
 from calm.drawing.check_figures import beside_row, row_height, seabed_row, surface_row
-from calm.drawing.schematic.pen import wrapped
-from calm.drawing.schematic.shown_parts import ShownPart, place_text
+from calm.drawing.schematic.pen import text_width
+from calm.drawing.schematic.shown_parts import ShownPart, TextRow, place_text
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, PageBreak, Table, number, table_of, words
 from calm.report.load_cases import LOAD, load_text
 from calm.report.page_one import SignedMooring, afloat, drawn_parts
 from calm.report.sheet import leg_title
 
-_SHEET = {"a4": 660.0, "letter": 612.0}
+_SHEET = {"a4": 688.0, "letter": 648.0}
 """Room for the rows of a drawing [pt]."""
-_WORDS = 200.0  # width of the words of a row
-_LINE_HEIGHT = 10.6
+_WORDS, _DEPTHS = 322.0, 38.0  # width of the words of a row with the depths, and of a depth
+_LINE_HEIGHT = 9.6
+_BOLD, _REGULAR, _WRAPPED = 0.70, 0.77, 1.08
+"""Width of letters over the bound of `text_width`, and of several lines over that of one."""
 _SEA_ROW = 16.0
 
 
@@ -23,7 +27,7 @@ def drawing_pages(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     """Yield the mooring drawing, top to anchor, one row per part, on one or more sheets."""
     if not signed.standing:
         return
-    numbers = item_numbers(signed)
+    numbers = item_numbers(*signed.standing[0].results)
     for leg, result in enumerate(signed.standing[0].results):
         title = "Mooring drawing"
         if result.leg.of_several:
@@ -34,34 +38,15 @@ def drawing_pages(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
             yield table
 
 
-def item_numbers(signed: SignedMooring) -> dict[str, str]:
-    """The number of every piece in the line, with a letter behind it of a clamp."""
-    found: dict[str, str] = {}
-    piece = 0
-    for result in signed.standing[0].results:
-        letters = 0
-        for one in deck_items_of(result):
-            if one.on is None:
-                piece, letters = piece + 1, 0
-                found[one.label] = str(piece)
-            else:
-                found[one.label] = f"{piece}{_letter(letters)}"
-                letters += 1
-    return found
-
-
-def _letter(place: int) -> str:
-    return chr(ord("a") + place) if place < 26 else f".{place + 1}"
-
-
 def _sheets(
     signed: SignedMooring, leg: int, numbers: Mapping[str, str], title: str, room: float
 ) -> Iterator[Table]:
     case = signed.standing[0]
-    others = [one for one in signed.standing[1:] if one.code != "0"]
-    other = max(others, key=lambda one: one.knockdown, default=None)
-    cases = [one for one in (case, other) if one is not None and len(one.results) > leg]
+    changed = [one for one in signed.standing[1:] if one.code != "0"]
+    other = max(changed, key=lambda one: one.knockdown, default=None)
     still = next((one for one in signed.standing if one.code == "0"), None)
+    chosen = (still if still is not case else None, case, other)
+    cases = [one for one in chosen if one is not None and len(one.results) > leg]
     weights = {one.label: one.wet_weight for one in signed.assessment.inventory}
     tension: dict[str, float] = {}
     for one in signed.standing:
@@ -74,35 +59,37 @@ def _sheets(
         own = [weights.get(one.label) for one in items]
         known = [one for one in own if one is not None]
         plan = items[0].planned_depth
-        if plan is None and still is not None and first in still.rows:
-            plan = still.rows[first].upper[0]
         levels = (one.rows[first].upper[0] if first in one.rows else None for one in cases)
         loads = [tension[one.label] for one in items if one.on is None]
         length = _length(items, lengths[0])
-        pieces = [one for one in items if one.on is None] or items
         return (
-            run_of([numbers[one.label] for one in pieces]),
+            run_of([numbers[one.label] for one in items]),
             length,
             _buoyancy(-sum(known)) if len(known) == len(own) else "?",
-            "" if plan is None else depth(plan),
+            *(["" if plan is None else depth(plan)] if planned else ()),
             *(depth(level) for level in levels),
             load_text(max(loads)) if loads else "",
         )
 
     result = case.results[leg]
-    items = deck_items_of(result)
+    items = deck_items_of(result, signed.apart)
+    planned = any(one.planned_depth is not None for one in items)
     surface = afloat(result)
     parts = drawn_parts(result, items, cells)
-    rows = [_row(part, first=part is parts[0], last=part is parts[-1]) for part in parts]
-    sea = _end_row(surface_row(_SEA_ROW), "sea surface", depth(0.0), len(cases))
-    bed = _end_row(seabed_row(_SEA_ROW), "seabed", depth(result.water.depth), len(cases))
+    width = _WORDS - _DEPTHS * (len(cases) + planned)
+    rows = [_row(part, width, first=part is parts[0], last=part is parts[-1]) for part in parts]
+    ends = len(cases), planned
+    sea = _end_row(surface_row(_SEA_ROW), "sea surface", depth(0.0), *ends)
+    bed = _end_row(seabed_row(_SEA_ROW), "seabed", depth(result.water.depth), *ends)
+    heads = ["still" if one.code == "0" else f"case {one.code}" for one in cases]
+    first, *others = [*["planned"] * planned, *heads]
+    heads = [f"Depth {QUANTITIES['depth'].display_unit}\n{first}", *(f"\n{one}" for one in others)]
     columns = (
         words("", 0, 0.0), words("Item", 1, 0.0), words("", 2),
         number("Length\n" + QUANTITIES["length"].display_unit, 3),
         number(f"Net buoy-\nancy {LOAD.display_unit}", 4),
-        number("Depth m\nplanned", 5),
-        *(number(f"\ncase {one.code}", 6 + at) for at, one in enumerate(cases)),
-        number(f"Largest\ntension {LOAD.display_unit}", 6 + len(cases)),
+        *(number(head, 5 + at) for at, head in enumerate(heads)),
+        number(f"Largest\ntension {LOAD.display_unit}", 5 + len(heads)),
     )  # fmt: skip
     heights = [height for height, _ in rows]
     breaks = [at for at, part in enumerate(parts) if part.junction]
@@ -136,23 +123,25 @@ def _buoyancy(force: float) -> str:
 
 
 _DRAWING_NOTE = (
-    "Planned: the planned depth of a piece, or else its depth in still water. Depths: of the upper "
-    "end. Length: as cut, or the place of a clamp on its piece. Largest tension: of all standing "
-    "cases. Net buoyancy: in sea water, downward negative."
+    "Depths are at the upper end; planned: as the mooring file gives them; still: in still water. "
+    "Lengths are as cut; clamps have their position on the piece. The largest tension is "
+    "over all moored cases. Net buoyancy is positive upwards."
 )
 
 
-def _end_row(picture: str, name: str, depth: str, cases: int) -> tuple[Cell, ...]:
-    depths = (Cell(detail=depth) for _ in range(1 + cases))
+def _end_row(picture: str, name: str, depth: str, cases: int, planned: bool) -> tuple[Cell, ...]:
+    depths = *[Cell()] * planned, *(Cell(detail=depth) for _ in range(cases))
     return (Cell(picture=picture), Cell(), Cell(detail=name), Cell(), Cell(), *depths, Cell())
 
 
-def _row(part: ShownPart, *, first: bool, last: bool) -> tuple[float, tuple[Cell, ...]]:
-    """Return the height and cells of a row; junctions are set in small letters."""
+def _row(
+    part: ShownPart, width: float, *, first: bool, last: bool
+) -> tuple[float, tuple[Cell, ...]]:
+    """Return the height and cells of a row; `width` is that of its words. Junctions are set in
+    small letters.
+    """
     (row,) = part.rows
-    told = f"{row.label}  {row.name}" if row.name else row.label
-    lines = len(wrapped(told, _WORDS, 8.0))
-    height = max(row_height(part), _LINE_HEIGHT * lines + 3.0)
+    height = max(row_height(part), _LINE_HEIGHT * _lines(row, part, width) + 3.0)
     picture = Cell(picture=beside_row(part, height, first=first, last=last))
     if part.junction:
         return height, (
@@ -162,6 +151,16 @@ def _row(part: ShownPart, *, first: bool, last: bool) -> tuple[float, tuple[Cell
     name = Cell(row.label, row.name, strong=True, goes_on=True)
     number_, *figures = row.cells
     return height, (picture, Cell(number_), name, *map(Cell, figures))
+
+
+def _lines(row: TextRow, part: ShownPart, width: float) -> int:
+    """Number of lines that the words of a row take in a width."""
+    if part.junction:
+        told = _REGULAR * text_width(row.label, 8.0)
+    else:
+        told = _BOLD * text_width(row.label, 9.0, bold=True)
+        told += _REGULAR * text_width(f"  {row.name}", 8.0)
+    return 1 if told <= width else ceil(_WRAPPED * told / width)
 
 
 def _broken(
@@ -179,8 +178,3 @@ def _broken(
             end = fits[-1] if fits else end
         yield begin, end
         begin = end
-
-
-def run_of(numbers: Sequence[str]) -> str:
-    """Format the numbers of consecutive items as a range."""
-    return numbers[0] if len(numbers) == 1 else f"{numbers[0]}–{numbers[-1]}"

@@ -32,10 +32,10 @@ SMALLEST_SHARE = 0.005
 """Share of a total below which drag forces are summed in one row."""
 
 _SHARES = (
-    "Shares: all drags grow together from zero to their full value, and each is charged with the "
-    "change that its own growth causes. Drag: the horizontal force of the water."
+    "Shares: all drag forces are increased together from zero to their full value, and each is "
+    "attributed the change that its own increase causes. Drag is the horizontal force of the water."
 )
-_CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; lengths are not."
+_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are kept."
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
@@ -47,10 +47,10 @@ def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
     unknown = masses.count(None)
     mass = f"{say('dry_mass', sum(filter(None, masses)))} in air without the anchor"
     if unknown:
-        parts = "1 part gives" if unknown == 1 else f"{unknown} parts give"
+        parts = "1 part has" if unknown == 1 else f"{unknown} parts have"
         mass = f"at least {mass} ({parts} no mass)"
     if unknown == len(masses):
-        mass = "no part gives its mass in air"
+        mass = "unknown, because no part has a mass in air"
     rise = (("Recovery", text),) if (text := _rise(result.leg)) else ()
     return (*rise, ("Mass", mass))
 
@@ -60,7 +60,7 @@ def _rise(result: LegResult) -> str:
     with suppress(NoEquilibrium):
         rise = recovery_of(result.leg, result)
         if rise.time_to_surface is None:
-            return "does not rise by itself"
+            return "does not rise after release"
         if rise.time_to_surface > 0.0:
             return (
                 f"rises at {say('speed', rise.rise_speed)}, top at the surface after "
@@ -105,10 +105,10 @@ _COLUMNS = {
         ("knockdown", "knock-\ndown", "knockdown", "m"),
         ("excursion", "excur-\nsion", "offset", "m"),
         ("used_buoyancy", "buoyancy\nused", "used_buoyancy", "%", 100.0),
-        ("tension", "anchor\npull", "tension", "N"),
-        ("vertical", "\nup", "vertical", "N"),
-        ("horizontal", "\nsideways", "horizontal", "N"),
-        ("required_weight", "weight\nneeded", "required_weight", "N"),
+        ("tension", "anchor\nload", "tension", "N"),
+        ("vertical", "\nvertical", "vertical", "N"),
+        ("horizontal", "\nhorizontal", "horizontal", "N"),
+        ("required_weight", "weight\nrequired", "required_weight", "N"),
     )
 }
 _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
@@ -125,7 +125,7 @@ def explanation_part(explanation: Explanation) -> ReportPart:
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]
-    title = f"What causes the {' and '.join(wholes)} of {explanation.label}"
+    title = f"Causes of the {' and '.join(wholes)} of {explanation.label}"
     causes, changes = explanation.causes, explanation.changes
     failures = (f"{one.name}: {one.failure}" for one in changes if one.failure is not None)
     shown: tuple[Block, ...] = (
@@ -177,8 +177,8 @@ def _changes(explanation: Explanation) -> Table:
     anchor = _ANCHOR if explanation.figures.tension is not None else ()
     columns = [_COLUMNS[name] for name in (*explanation.quantities, *anchor)]
     now = explanation.figures
-    as_it_is = ("as it is", *(column.text(now) for column in columns))
-    rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in as_it_is]]
+    present = ("present design", *(column.text(now) for column in columns))
+    rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in present]]
     for change in explanation.changes:
         if change.failure is not None:
             rows.append((change.name, change.failure.status, *([""] * (len(columns) - 1))))
@@ -194,10 +194,10 @@ _ROWS = (
     ("knockdown", "knockdown", "knockdown of the top"),
     ("excursion", "offset", "excursion of the top"),
     ("used_buoyancy", "used_buoyancy", "buoyancy used, of 1"),
-    ("tension", "tension", "pull on the anchor"),
-    ("vertical", "vertical", "  up"),
-    ("horizontal", "horizontal", "  sideways"),
-    ("required_weight", "required_weight", "anchor weight needed"),
+    ("tension", "tension", "anchor load"),
+    ("vertical", "vertical", "  vertical"),
+    ("horizontal", "horizontal", "  horizontal"),
+    ("required_weight", "required_weight", "anchor weight required"),
 )
 """Rows: name in `Figures`, quantity, words."""
 
@@ -207,12 +207,12 @@ def sizing_part(sizing: Sizing) -> ReportPart:
     assert sizing.after is not None
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
-        lines.append((Span(f"As it is: {sizing.before.failure}", State.WARN),))
+        lines.append((Span(f"Present design: {sizing.before.failure}", State.WARN),))
     old = sizing.before.result.warnings if sizing.before.result is not None else ()
     new = sizing.after.result.warnings if sizing.after.result is not None else ()
     lines += [(Span(f"! {text}", State.FAIL),) for text in new if text not in old]
-    effort = f"Found by {sizing.solves} solves, with the settings of the file."
-    effort = "Solved as it is." if sizing.solves == 1 else effort
+    effort = f"Found after {sizing.solves} solves with the settings of the file."
+    effort = "Solved once." if sizing.solves == 1 else effort
     lines += [*sizing.notes, (Span(effort, quiet=True),)]
     table = _comparison(sizing, sizing.before, sizing.after)
     title = f"{sizing.change.file.name}: {sizing.target.text}"
@@ -228,7 +228,7 @@ def _answer(sizing: Sizing) -> str:
     change, before, after = sizing.change, sizing.before, sizing.after
     assert after is not None
     if after.value == before.value:
-        return f"Nothing to change: the target is met with {change.text} as it is."
+        return f"No change needed: the present {change.text} meets the target."
     growth = after.value - before.value
     several = len(change.parts) > 1 and not change.whole
     each = f", each of {len(change.parts)}" if several else ""
@@ -282,17 +282,17 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
         rows += [("removed", label, "", "") for label in found.removed]
         rows += [("added", label, "", "") for label in found.added]
         fields = words("", 0, 0.0), words("what", 1), words(before, 2), words(after, 3)
-        yield table_of("What differs", rows, *fields)
+        yield table_of("Differences", rows, *fields)
     else:
-        yield Prose(("Nothing differs.",))
+        yield Prose(("The designs are equal.",))
     yield from blocks.warned(comparison.notes, State.FAIL)
     whole = [one for one in comparison.figures if not one.of_a_part and one.states is None]
-    yield _figures("What it does", comparison.names, whole, all_rows=True)
+    yield _figures("Results", comparison.names, whole, all_rows=True)
     parts = [one for one in comparison.figures if one.of_a_part]
     yield _figures("Pieces and instruments", comparison.names, parts)
     margins = [one for one in comparison.figures if one.states is not None]
     if margins:
-        yield _figures("Design check: what governs", comparison.names, margins, all_rows=True)
+        yield _figures("Governing checks", comparison.names, margins, all_rows=True)
 
 
 def _figures(
@@ -310,7 +310,7 @@ def _figures(
         number(names[0], 2, short="before"),
         number(names[1], 3, short="after"),
         number("change", 4),
-        note=f"The other {same} do not change." if same else "",
+        note=f"{same} other rows do not change." if same else "",
     )
 
 

@@ -1,6 +1,6 @@
 """Report of gridded records: correlation scales, sections over time, and a description."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,41 +8,26 @@ import numpy as np
 
 from calm.batch.finished import open_result
 from calm.drawing.plot import empty_figure, figure_svg
-from calm.grid.field import DOUBTFUL, GriddedQuantity
+from calm.gridding.field import GriddedQuantity
+from calm.gridding.gridded_record import COLOURS, GriddedRecord, draw_section
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED
-from calm.records.card import ReadCard
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, Report, ReportPart, Table, number, table_of
 from calm.report.provenance import report_of
 from calm.report.read_card import card_blocks
 from calm.version import __version__
 
-MOST_DRAWN = 600
-"""Maximum number of times drawn in a section; longer records are subsampled."""
 _WIDTH, _HEIGHT, _SIZE = 7.4, 2.3, 7.0  # inches, inches, points of the letters
-_COLOURS = {"temperature": "RdYlBu_r", "salinity": "viridis", "u": "PuOr_r", "v": "PuOr_r"}
 _READ = (
     "Lines are the depths of the instruments. Pale areas are flagged as doubtful: they lie beyond "
     "the instruments, or in a gap that the record does not resolve. White means no value."
 )
 
 
-def grid_report(
-    output: Path,
-    fields: Mapping[str, GriddedQuantity],
-    names: Mapping[str, str],
-    levels: Floats,
-    cards: Sequence[ReadCard] = (),
-) -> Report:
-    """Return the report: a section of each quantity, its scales, words for the methods.
-
-    Parameters
-    ----------
-    output : the gridded file
-    names : name of each quantity in the file
-    cards : contents of each file read
-    """
+def grid_report(output: Path, record: GriddedRecord) -> Report:
+    """Build the report of a gridded file: sections, scales, and text for a methods section."""
+    fields, levels, names = record.fields, record.levels, record.names
     figures: list[Figure] = []
     with open_result(output) as result:
         title = str(result.attrs["title"])
@@ -57,14 +42,12 @@ def grid_report(
         ReportPart("Sections", (*figures, Note((_READ,)))),
         ReportPart("Scales", (scales_table(fields),)),
         ReportPart("For the methods of a cruise report", (Prose(methods_text(fields, levels)),)),
-        ReportPart("Inputs", card_blocks(card.to_dict() for card in cards)),
+        ReportPart("Inputs", card_blocks(card.to_dict() for card in record.cards)),
         name=output.name,
     )
 
 
-def grid_document(
-    fields: Mapping[str, GriddedQuantity], cards: Sequence[ReadCard]
-) -> dict[str, Any]:
+def grid_document(record: GriddedRecord) -> dict[str, Any]:
     """Return the JSON object: scales of each quantity [m, s], and the cards of the files."""
     return {
         "quantities": {
@@ -74,9 +57,9 @@ def grid_document(
                 "time_scale": float(field.scales.time) if field.in_time else None,
                 "rest": float(field.scales.share),
             }
-            for name, field in fields.items()
+            for name, field in record.fields.items()
         },
-        "read": [card.to_dict() for card in cards],
+        "read": [card.to_dict() for card in record.cards],
     }
 
 
@@ -102,9 +85,9 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
         number("widened", widened),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
-        "the rest of the variance is uncorrelated. Widened: the factors that widen the bands "
-        "between instruments (the greatest one) and beyond them, found by leaving out each "
-        "instrument in turn.",
+        "the rest of the variance is uncorrelated. Widened: factors on the bands between "
+        "instruments (the largest one) and beyond them, from a test that omits each instrument in "
+        "turn.",
     )
 
 
@@ -138,26 +121,19 @@ def _section(
     name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
     """A section over time, the deviation below it."""
-    every = max(len(value) // MOST_DRAWN, 1)
-    time = field.samples.time[::every].astype("datetime64[s]").astype(object)
     drawing = empty_figure(_WIDTH, 2 * _HEIGHT)
     drawing.subplots_adjust(0.08, 0.07, 0.98, 0.96, hspace=0.25)
     upper, lower = drawing.subplots(2, 1, sharex=True)
     unit = QUANTITIES_MEASURED[name].units.replace("degree_Celsius", "°C").replace("m s-1", "m/s")
     for axes, table, colours, title in (
-        (upper, value, _COLOURS[name], name),
+        (upper, value, COLOURS[name], name),
         (lower, deviation, "magma_r", "standard deviation"),
     ):
-        shown = axes.pcolormesh(
-            time, levels, np.ma.masked_invalid(table[::every].T), cmap=colours, shading="nearest",
-            alpha=np.where(flag[::every].T == DOUBTFUL, 0.35, 1.0), rasterized=True,
-        )  # fmt: skip
-        bar = drawing.colorbar(shown, ax=axes, pad=0.01)
+        mesh = draw_section(axes, field.samples, levels, table, flag, colours)
+        bar = drawing.colorbar(mesh, ax=axes, pad=0.01)
         bar.set_label(unit if unit != "1" else "", fontsize=_SIZE)
         bar.ax.tick_params(labelsize=_SIZE)
-        axes.plot(time, field.samples.depth[::every], color="#111111", linewidth=0.3)
-        axes.set_ylim(levels[-1], levels[0])
         axes.set_title(title, fontsize=_SIZE, loc="left", pad=2)
-        axes.set_ylabel("depth [m]", fontsize=_SIZE)
+        axes.yaxis.label.set_size(_SIZE)
         axes.tick_params(labelsize=_SIZE)
     return Figure(f"{name}: value, and its standard deviation", figure_svg(drawing))

@@ -1,17 +1,17 @@
-"""Tables of the probability with which designs break a limit."""
+"""Tables of the probability with which designs exceed a limit."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import inf
 
 from calm.checks.assess import RULES
-from calm.checks.finding import Finding, by_rule
-from calm.report import blocks, check_tables
+from calm.checks.finding import AS_GIVEN, Finding, by_rule
+from calm.report import blocks
 from calm.report.blocks import number, words
-from calm.report.check_tables import place_of
+from calm.report.open_items import limit_text
 
 _NOTE = (
-    "Each rule is shown for the component that breaks its limit most often; launch, recovery and "
-    "breaks are counted in the first 64 samples. A sample without equilibrium breaks every limit."
+    "Each rule is shown for the component that exceeds its limit most often. Launch, rise and "
+    "breaks are counted in the first 64 samples. A sample without equilibrium exceeds every limit."
 )
 
 
@@ -34,18 +34,24 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
     fields = [
         words("component", lambda one: one.component or "whole line"),
-        check_tables.FIGURES[2],
-        words("where", place_of),
-        number("broken in", share, "%"),
+        words("limit", limit_text),
+        words("where", _place),
+        number("exceeded in", share, "%"),
     ]
     yield blocks.table_of(
-        "Probability of breaking a limit",
+        "Probability of exceeding a limit",
         rows,
         words("design", lambda row: row[1]),
         words("rule", lambda row: row[0].rule if row[0] else "none in any sample", 0.0),
         *((column, lambda row, show=show: row[0] and show(row[0])) for column, show in fields),
         note=_NOTE,
     )
+
+
+def _place(finding: Finding) -> str:
+    """Name the environment of a finding and its situation."""
+    changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
+    return f"{finding.environment}{changed}"
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:

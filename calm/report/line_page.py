@@ -2,15 +2,16 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from math import inf
+from typing import Any, Literal
 
 from calm.case.leg_result import LegResult
-from calm.checks.finding import Finding, State
+from calm.case.result_tables import ComponentRow, run_of
+from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
+from calm.files import Clamp, Piece
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
-from calm.report.check_tables import grouped
-from calm.report.drawing_page import run_of
 from calm.report.load_cases import (
     LOAD,
     LoadCase,
@@ -41,8 +42,8 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
     ]  # fmt: skip
     title = f"Tension and capacity, {unit}"
     aside = (
-        "by item; black: standing, grey: launch; tick: capacity, dotted: in the launch; "
-        "▲ beyond the scale; ? not known"
+        "by item; black: moored, grey: launch; tick: capacity, dotted: capacity in the launch; "
+        "▲ beyond the scale; ? unknown"
     )
     yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
     if hardware:
@@ -68,15 +69,17 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             and last.row.use == one.row.use
             and alike(last.row.label, one.row.label)
         )
-        if same and one.row.role in ("float", "line"):
+        if same and _floats(one.row):
             groups[-1].append(one)
         else:
             groups.append([one])
-    rows = [(max(group, key=_most_used), group) for group in groups]
     unit = LOAD.display_unit
 
-    def of(show: Callable[[PieceEnvelope], object]) -> Callable[[object], object]:
-        return lambda row: show(row[0])  # type: ignore[index]
+    def standing(show: _Show) -> Callable[[Any], object]:
+        return lambda group: show(_most_used(group))
+
+    def falling(show: _Show) -> Callable[[Any], object]:
+        return lambda group: show(_most_used(group, "launch"))
 
     def case(one: PieceEnvelope) -> Cell:
         return Cell(load_text(one.tension), one.case, goes_on=True)
@@ -84,32 +87,54 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
     passes = ("float", "anchor")
     return table_of(
         "The line",
-        rows,
-        number("No.", lambda row: run_of([str(one.number) for one in row[1]])),
-        words("Item", lambda row: together([one.row.label for one in row[1]])),
-        number(f"Largest tension {unit}", of(case)),
-        number(f"Least {unit}", of(
-            lambda one: None if one.row.role in passes else load_text(one.least))),
-        number("Largest tilt °", of(
-            lambda one: None if one.row.role == "anchor" else QUANTITIES["tilt"].format(one.tilt))),
-        number(f"Capa-\ncity {unit}", of(lambda one: capacity_text(one.standing))),
-        words("Use", of(lambda one: _bar(one.standing)), 0.45),
-        number("%", of(lambda one: _use(one.standing))),
-        number(f"Launch {unit}", of(lambda one: _force(one.launch_tension))),
-        number(f"Capa-\ncity {unit}", of(lambda one: capacity_text(one.launch))),
-        number("Use %", of(lambda one: _use(one.launch))),
-        number(f"Rise {unit}", of(lambda one: _force(one.rise_tension))),
-        note="Capacity: the lesser of the working load and the breaking load over its safety "
-        "factor; in the launch by the factors there. The case stands behind the tension. "
-        "≈ estimated, ? no published load, ○ accepted. Of equal pieces the one that is used most.",
-        aside="envelope of all load cases",
+        groups,
+        number("No.", lambda group: run_of([str(one.number) for one in group])),
+        words("Item", lambda group: together([one.row.label for one in group])),
+        number(f"Tension\n{unit}", standing(case)),
+        number(f"Mini-\nmum {unit}", lambda group: None if group[0].row.role in passes
+               else load_text(min(one.least for one in group))),
+        number("Tilt\n°", lambda group: None if group[0].row.role == "anchor"
+               else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
+        number(f"Capa-\ncity {unit}", standing(lambda one: capacity_text(one.standing))),
+        words("Use", standing(lambda one: _bar(one.standing)), 0.45),
+        number("%", standing(lambda one: _use(one.standing))),
+        number(f"Launch {unit}", falling(lambda one: _force(one.launch_tension))),
+        number(f"Capa-\ncity {unit}", falling(lambda one: capacity_text(one.launch))),
+        number("Use %", falling(lambda one: _use(one.launch))),
+        number(f"Rise {unit}", lambda group: _force(
+            max((one.rise_tension or 0.0 for one in group), default=None))),
+        note="Capacity is the smaller of the working load and the breaking load over its safety "
+        "factor, with the factors of the launch there. – no load is judged, ? no published load, "
+        "≈ estimated, ○ accepted. The code of the case follows the tension. Equal pieces share a "
+        "row, with the tension, capacity and use of the most used one, and the minimum, tilt and "
+        "rise of all.",
+        aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
     )  # fmt: skip
 
 
-def _most_used(one: PieceEnvelope) -> tuple[float, float]:
-    used = None if one.standing is None else one.standing.utilisation
-    return used or 0.0, one.tension
+def _floats(row: ComponentRow) -> bool:
+    """Whether a piece is a float, or a chain or cable with floats."""
+    parts: tuple[Piece | Clamp, ...] = (row.part, *row.part.clamps)
+    return any(part.component.role == "float" for part in parts)
+
+
+_Show = Callable[[PieceEnvelope], object]
+
+
+def _most_used(
+    group: Sequence[PieceEnvelope], when: Literal["standing", "launch"] = "standing"
+) -> PieceEnvelope:
+    """Select the piece with the largest utilisation in equilibrium or during launch; without one,
+    that of the largest tension.
+    """
+
+    def used(one: PieceEnvelope) -> tuple[float, float]:
+        finding = one.standing if when == "standing" else one.launch
+        share = None if finding is None else finding.utilisation
+        return share or 0.0, (one.tension if when == "standing" else one.launch_tension) or 0.0
+
+    return max(group, key=used)
 
 
 def _force(value: float | None) -> str:
@@ -133,26 +158,32 @@ def _use(finding: Finding | None) -> Cell | None:
 
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """A row of each type, with the piece that is used most."""
-    groups = grouped(loads, lambda one: one.row.use)
-    rows = [(max(group, key=_most_used), group) for group in groups]
+    """A row of each type, with the pieces that are used most in equilibrium and in the launch."""
+    groups = grouped_by(loads, lambda one: one.row.use).values()
+    rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
+    launched = any(row[1].launch_tension for row in rows)
 
-    def worst_launch(row: tuple[PieceEnvelope, list[PieceEnvelope]]) -> PieceEnvelope:
-        return max(row[1], key=lambda one: one.launch_tension or 0.0)
+    def named(one: PieceEnvelope) -> str:
+        return f"{one.number} {one.row.label}"
 
+    launch = (
+        words("Most used in the launch", lambda row: named(row[1])),
+        number(f"Launch {unit}", lambda row: _force(row[1].launch_tension)),
+        number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[1].launch)),
+        number("Use %", lambda row: _use(row[1].launch)),
+    )
     return table_of(
         "Connecting hardware",
         rows,
         words("Type", lambda row: row[0].row.part.component.name or row[0].row.use, 1.2),
-        number("Pieces", lambda row: len(row[1])),
-        words("Governing piece", lambda row: f"{row[0].number} {row[0].row.label}"),
-        number(f"Standing {unit}", lambda row: load_text(row[0].tension)),
-        number(f"Capacity {unit}", lambda row: capacity_text(row[0].standing)),
+        number("Pieces", 2),
+        words("Most used, moored", lambda row: named(row[0])),
+        number(f"Largest\ntension {unit}", lambda row: load_text(row[0].tension)),
+        number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
-        number(f"Launch {unit}", lambda row: _force(worst_launch(row).launch_tension)),
-        number("Use %", lambda row: _use(worst_launch(row).launch)),
-        aside="a row a type; the piece that governs",
+        *(launch if launched else ()),
+        aside="one row per type, for the governing pieces",
         ruled=False,
     )
 
@@ -164,7 +195,7 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     ]
     if not rows:
         return
-    anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
+    anchors = grouped_by(rows, lambda row: row[1].file.pieces[-1].label).values()
     if len(anchors) > 1 or len(rows) > 12:
         rows = [max(group, key=lambda row: row[1].anchor_load.required_weight) for group in anchors]
     checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format
@@ -200,6 +231,6 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number("Sliding use %", sliding),
         note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
         f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
-        f"(weight / {factor:g} − V). The soil is not judged.",
+        f"(weight / {factor:g} − V). Soil strength is not checked.",
         ruled=False,
     )  # fmt: skip

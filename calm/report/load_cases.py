@@ -14,16 +14,16 @@ import numpy as np
 from calm.case.leg_result import LegResult
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.checks.assessment import Assessment, estimated
-from calm.checks.finding import AS_GIVEN, OWN, Finding, State, governing
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State, governing, grouped_by
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING, case_of
 from calm.checks.strength import allowable_load
 from calm.errors import NoEquilibrium
 from calm.files.pieces import STAND_IN
-from calm.quantities import QUANTITIES, Quantity, say
+from calm.quantities import QUANTITIES, say
 
-LOAD = Quantity("load", "load", "N", "Force on paper.", 2, "", "kN")
-"""Force in print: kN to 0.01, or the unit chosen by the user."""
+LOAD = QUANTITIES["load"]
+"""Force in tables: kN to 0.01, or the unit chosen by the user."""
 
 
 def load_text(value: float | None) -> str:
@@ -234,11 +234,9 @@ def _at(figures: np.ndarray, index: int) -> float | None:
 
 def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
     """Map component labels to the governing finding of a rule."""
-    groups: dict[str, list[Finding]] = {}
-    for one in assessment.every_finding():
-        if one.rule == rule and one.component is not None:
-            groups.setdefault(one.component, []).append(one)
-    return {label: governing(group) for label, group in groups.items()}
+    found = (one for one in assessment.every_finding() if one.rule == rule)
+    groups = grouped_by(found, lambda one: one.component)
+    return {label: governing(group) for label, group in groups.items() if label is not None}
 
 
 def capacity_text(finding: Finding | None) -> str:

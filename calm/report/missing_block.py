@@ -1,55 +1,105 @@
-"""Figures that components do not give and rules need, as a block of YAML to complete."""
+"""Missing values that rules need, as a block of YAML to complete."""
 
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from textwrap import wrap
 
-from calm.checks.finding import Finding, MissingFigure
+from calm.checks.assess import RULES
+from calm.checks.finding import Finding, MissingFigure, grouped_by
 from calm.checks.missing import alternatives
-from calm.report.check_tables import grouped, named
+from calm.files.components import KINDS
+from calm.files.yaml_document import read_document
+from calm.report.check_tables import named
 
 _HEAD = """\
-# Figures that calm check needs and the components do not give. Write what you know after the
-# colons. Put the keys of a component that the mooring file defines into that definition, and the
-# other entries under `components:` of the file. A key without a value stays unknown.
+# Values that calm check needs and the components lack. Write each value with its unit after its
+# colon; a key without a value stays unknown. calm build FILE, key f, asks for the same values.
 """
 _WIDTH = 100
 
+Places = Mapping[str, Sequence[str]]
+"""Places in mooring files by component id, such as ``line 12 of m.yaml``; the places of
+`components:` itself have the key "".
+"""
 
-def missing_block(findings: Iterable[Finding]) -> str:
+
+def definition_places(paths: Iterable[Path]) -> Places:
+    """Find the definitions under `components:` of mooring files.
+
+    InputError: a file cannot be read.
+    """
+    found: dict[str, list[str]] = {}
+    for path in paths:
+        document = read_document(path)
+        own = document.data.get("components")
+        if not isinstance(own, dict):
+            continue
+        for id in ("", *own):
+            location = ("components", id) if id else ("components",)
+            line = document.problem(location, "", key=True).line
+            found.setdefault(id, []).append(f"line {line} of {path.name}")
+    return found
+
+
+def missing_block(findings: Iterable[Finding], places: Places) -> str:
     """Create the `components:` section of a mooring file with the missing keys of each component
     id.
 
-    Comments name the pieces and the rules that need a value, and its class estimate if there is
-    one. If nothing is missing, or nothing can be checked, the text is a comment only.
+    Comments name the pieces, give the place of a definition in the file, and for each key an
+    example, its meaning, the checks that need it, and its class estimate if there is one. If a file
+    has a section `components:`, the block is made for it and has no heading of its own. If nothing
+    is missing, or nothing can be checked, the text is a comment only.
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
     if not figures and any(one.rule == "equilibrium" for one in found):
-        return "# Without an equilibrium nothing is judged, and no missing figure is known.\n"
+        return "# The mooring has no equilibrium, so its missing values are unknown.\n"
     if not figures:
-        return "# No figure of a component is missing.\n"
-    lines = ["components:"]
-    for of_component in grouped(figures, lambda one: one.component_id):
+        return "# No component lacks a value.\n"
+    ids = grouped_by(figures, lambda one: one.component_id)
+    lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
+    lines += [] if "" in places else ["components:"]
+    for id, of_component in ids.items():
         labels = named(label for one in of_component for label in one.pieces)
-        id = of_component[0].component_id
         plain = id if re.fullmatch(r"[A-Za-z][\w.-]*", id) else json.dumps(id, ensure_ascii=False)
-        lines.append(f"  {plain}:  # {labels}")
-        for same in grouped(of_component, lambda one: one.quantity):
+        own = f"defined in {' and '.join(places[id])}" if id in places else ""
+        told = "; ".join(filter(None, (labels if labels != id else "", own)))
+        lines.append(f"  {plain}:{f'  # {told}' if told else ''}")
+        for same in grouped_by(of_component, lambda one: one.quantity).values():
             lines += _key(same)
     return _HEAD + "\n".join(lines) + "\n"
+
+
+def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
+    """Instructions for definitions of the file, and for components of a catalogue."""
+    defined = {id in places for id in ids}
+    below = " and ".join(places.get("", ()))
+    told = ["Copy the keys of a component that the file defines into that definition."] * (
+        True in defined
+    )
+    if False in defined:
+        told.append(
+            f"Copy the other entries to below `components:`, {below}."
+            if below
+            else "Add this section to the mooring file. It completes components of the catalogue."
+        )
+    return told
 
 
 def _key(same: Sequence[MissingFigure]) -> list[str]:
     """Lines of a key that one or several moorings lack."""
     first = same[0]
-    rules = dict.fromkeys(rule for one in same for rule in one.needed_by)
-    told = f"needed by {', '.join(rules)}"
-    if instead := alternatives(first.quantity)[1:]:
-        told = f"or {', '.join(instead)}; {told}"
-    lines = [f"    {first.quantity}:  # {told}"]
-    estimates = dict.fromkeys(str(one.class_estimate) for one in same if one.class_estimate)
-    for text in estimates:
-        lines += wrap(text, _WIDTH, initial_indent="    # ", subsequent_indent="    #   ")
+    field = KINDS[first.kind].model_fields[first.quantity]
+    assert field.examples is not None  # every quantity describes itself by an example
+    meaning = (field.description or "").partition(", e.g.")[0]
+    instead = "".join(f", or `{key}`" for key in alternatives(first.quantity)[1:])
+    rules = dict.fromkeys(RULES[rule].title.lower() for one in same for rule in one.needed_by)
+    example = next(iter(field.examples or ()), "")
+    lines = [f"    {first.quantity}:  # e.g. {example}: {meaning}{instead}"]
+    notes = [f"needed for {', '.join(rules)}"]
+    notes += dict.fromkeys(str(one.class_estimate) for one in same if one.class_estimate)
+    for text in notes:
+        lines += wrap(text, _WIDTH, initial_indent="      # ", subsequent_indent="      #   ")
     return lines

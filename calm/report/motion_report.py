@@ -30,10 +30,13 @@ _DEPTHS = "Depths measured (black), estimated (blue, 95 % band), by the currents
 _FALSE = "Times when a current is probably wrong"
 _WHOLE = "Depths of all instruments, with 95 % bands; hidden ones and those without pressure dashed"
 _ASSUMED = (
-    "Assumed beforehand: floats, weights, lengths and places as in the mooring file; the drag of "
-    "every part to 15 %, the datum to 1 % of the water depth, each sensor to 1 m."
+    "Prior assumptions: buoyancy, weights, lengths and positions as in the mooring file; an "
+    "uncertainty of 15 % in the drag of each part, 1 % of the water depth in the datum, and 1 m "
+    "per sensor."
 )
-_NOTHING = "Nothing is clearly wrong: no clock, gain, offset, drift, slipped clamp or label."
+_NOTHING = (
+    "No sensor fault was found (clock, gain, offset, drift, slipped clamp or exchanged label)."
+)
 
 
 def motion_report(
@@ -61,25 +64,25 @@ def motion_report(
     shown = [one for one in sensors if any(one is each for each in hidden_first)]
     doubts = blocks.warned(study.remarks) or (Prose((_NOTHING,)),)
     whole = Figure(_WHOLE, overview_figure([*sensors, *bare]))
-    depths = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
-    depths.append(Figure(_DEPTHS, depth_figure(shown), tall=True))
+    depths = [Figure(_DEPTHS, depth_figure(shown), tall=True)]
+    depths += [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     factors = factors_table(study.factors, study.task.common.datum)
     found = [
         sensors_table(study),
         *([held_out_table(study.held_out.values())] if study.held_out else []),
     ]
     how = Note((PLAIN if study.plain else UNKNOWN,))
-    said = (Prose(tuple(notes) or ("Nothing was left out.",)),)
+    said = (Prose(tuple(notes) or ("All input was used.",)),)
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     return report_of(
-        f"{name}: where it was",
+        f"{name}: motion of the mooring",
         f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times",
         ReportPart("The deployment", (whole, *doubts, health_table(study))),
         ReportPart("For the methods of a cruise report", (Prose(methods_text(study, series)),)),
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
-        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *said)),
         ReportPart("Depths", tuple(depths)),
+        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *said)),
         name=name,
     )
 
@@ -106,14 +109,14 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
         f"the line, the pressures of {', '.join(used.label)}, and {by} (CALM {__version__}).",
         f"Estimated for the whole record: {factors}; a datum common to all pressures of "
         f"{common.datum:+.1f} m.",
-        f"The uppermost pressure was up to {down.max():.0f} m below its least depth (median "
+        f"The knockdown of the uppermost pressure sensor was up to {down.max():.0f} m (median "
         f"{np.median(down):.0f} m, 95th percentile {np.quantile(down, 0.95):.0f} m). The standard "
         f"deviation of the depths is {np.median(wide):.1f} m in the median and "
         f"{np.quantile(wide, 0.95):.1f} m in the 95th percentile.",
     ]
     said += [
-        f"Hidden from the estimate, {one.label} was found with an rms of {one.rms:.1f} m "
-        f"(interpolated: {one.linear_rms:.1f} m)."
+        f"When withheld, {one.label} was predicted with an rms error of {one.rms:.1f} m "
+        f"(linear interpolation: {one.linear_rms:.1f} m)."
         for one in study.held_out.values()
     ]
     return (*said, *(f"{one.sentence()}." for one in study.faults(of_line=False) if one.corrected))
@@ -126,12 +129,15 @@ TITLES = {
     "length": "length of cables and chains",
 }
 
-_RMS = "rms: of the difference, less its mean in calm times, the tenth with the least knockdown."
+_RMS = (
+    "rms: rms difference after removal of the mean in calm periods (the 10 % of times with the "
+    "smallest knockdown)."
+)
 PLAIN = (
-    "Alone: computed from the currents, with nothing fitted. Estimated: with the pressures of all "
+    "Alone: computed from the currents only, without fitting. Estimated: with the pressures of all "
     f"sensors in use. {_RMS}"
 )
-UNKNOWN = f"The currents are not known: they are inferred from these pressures. {_RMS}"
+UNKNOWN = f"Without a current record, the currents are inferred from the pressures. {_RMS}"
 
 
 def motion_part(study: MotionEstimate, name: str) -> ReportPart:
@@ -153,7 +159,7 @@ _HEALTH = {
 }  # fmt: skip
 
 
-_DOUBTED = "A question mark: another cause is nearly as likely; see above."
+_DOUBTED = "“?” marks a diagnosis with an almost equally likely alternative (see above)."
 
 
 def health_table(study: MotionEstimate) -> Table:
@@ -202,7 +208,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
         for name, (value, low, high) in factors.items()
     ]  # fmt: skip
     fields = words("factor for the whole record", 0), number("value", 1), number("95 % interval", 2)
-    note = f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures."
+    note = f"A common datum of {datum:+.1f} m is applied to all depths."
     return table_of("", rows, *fields, note=note)
 
 

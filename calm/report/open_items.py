@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from math import isfinite
+from typing import Literal
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import EXAMPLE, Assessment
@@ -16,19 +17,19 @@ from calm.checks.finding import (
     State,
     conclusion_of,
     governing,
+    grouped_by,
     percent_used,
     worst_of,
 )
-from calm.quantities import QUANTITIES, Quantity
-from calm.report.blocks import OpenItem, Span
-from calm.report.check_tables import grouped, joined, named_components
-from calm.report.load_cases import LOAD
+from calm.quantities import QUANTITIES
+from calm.report.blocks import Cell, OpenItem, Span, number, words
+from calm.report.check_tables import joined, named_components
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States that count as open, in the order of the list."""
 
-_DIFFERENCES = ("planned-depth", "as-deployed")
-"""Rules whose values are differences, which their messages explain."""
+_EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
+"""Rules whose messages explain their values: differences and shares."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
@@ -37,10 +38,14 @@ def plain(text: str) -> str:
     """Format a sentence for print: keys of the file become words, and values do not break from
     their units.
     """
-    told = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
-    told = re.sub(r"\b(\d+) N\b", lambda force: LOAD.say(float(force[1])), told)
-    told = re.sub(r"(?<![\w-])-(?=\d)", "−", told)
-    return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", told)
+    text = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
+    text = re.sub(r"(?<![\w-])-(?=\d)", "−", text)
+    return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
+
+
+def without_asides(text: str) -> str:
+    """Remove sources and other long passages in brackets."""
+    return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
 
 
 def short(text: str, most: int) -> str:
@@ -48,22 +53,18 @@ def short(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
 
 
-def quantity_of(finding: Finding) -> Quantity | None:
-    """Quantity of the values of a finding, as printed; None for a rule without values."""
-    name = RULES[finding.rule].quantity
-    return LOAD if name == "tension" else QUANTITIES.get(name)
-
-
-def figure_text(finding: Finding, value: float | None) -> str:
-    """Format a value of a finding with its unit; "" if there is none."""
-    quantity = quantity_of(finding)
-    return "" if value is None or quantity is None else plain(quantity.say(value))
+def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
+    """Format the value or limit of a finding in the unit that both share; "" if it has none."""
+    value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
+    if value is None or quantity is None:
+        return ""
+    return plain(quantity.say(value, finding.value, finding.limit))
 
 
 def limit_text(finding: Finding) -> str:
     """Format the limit of a finding with ≤ or ≥."""
     sign = {"<=": "≤\u00a0", ">=": "≥\u00a0"}.get(finding.sense or "", "")
-    text = figure_text(finding, finding.limit)
+    text = figure_text(finding, "limit")
     return sign + text if text else ""
 
 
@@ -73,6 +74,14 @@ def percent_text(utilisation: float | None) -> str:
         return "–"
     percent = percent_used(utilisation)
     return ">999" if not isfinite(percent) or percent > 999.0 else f"{percent:.0f}"
+
+
+FIGURE_FIELDS = (
+    number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
+    number("Found", figure_text),
+    words("Limit", lambda one: limit_text(one) or "–", 0.0),
+)
+"""Columns of findings: utilisation, value and limit."""
 
 
 def where_text(finding: Finding) -> str:
@@ -107,7 +116,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     for state in OPEN:
         those = [one for one in every if one.state is state]
         if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
-            groups = grouped(those, cause)
+            groups = [*grouped_by(those, cause).values()]
         else:
             groups = joined(those)
         found += sorted(groups, key=lambda group: governing(group).rank)
@@ -180,9 +189,11 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     labels = list(dict.fromkeys(one.component or "" for one in group))
     of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
-        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
+        lack = "missing" if worst.missing.class_estimate is None else "estimate too low"
+        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
-        return f"{_capital(short(named_components(_once(group)), 90))}: estimated"
+        passes = "passes" if len(labels) == 1 else "pass"
+        return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
@@ -193,22 +204,25 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
 
 def _told(group: Sequence[Finding], worst: Finding) -> str:
     """Describe an open item: value, limit, and the remedy or the reason for acceptance."""
-    found, limit = figure_text(worst, worst.value), limit_text(worst)
-    where = f" ({worst.case})" if worst.case else ""
-    figures = f"{found}{where}, {limit} allowed." if limit else ""
-    if worst.sense == ">=":
-        figures = f"{found}{where}, {limit} required."
+    found, limit = figure_text(worst), figure_text(worst, "limit")
+    several = len({one.component for one in group}) > 1
+    where = ", ".join(filter(None, (worst.component if several else "", worst.case)))
+    where = f" ({where})" if where else ""
+    bound = "minimum" if worst.sense == ">=" else "limit"
+    figures = f"{found}{where}; the {bound} is {limit}." if limit else ""
     if worst.accept is not None:
         until = f", until {worst.accept.until}" if worst.accept.until else ""
-        by = worst.accept.by or "nobody"
-        figures = figures or f"{found}{where}, no figure is published." * bool(found)
+        by = worst.accept.by or "no name"
+        figures = figures or f"{found}{where}; no value is published." * bool(found)
         example = " Replace before signing." if by == EXAMPLE else ""
-        said = f"Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
-        return f"{figures} {said}" if figures else said
+        accepted = f"Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
+        return f"{figures} {accepted}" if figures else accepted
     if worst.state is State.ESTIMATED:
-        estimate = plain(re.split(r" \(", worst.message.partition(" Its ")[2])[0])
-        return f"{figures} {_capital(estimate)}. Obtain the maker’s figure."
-    if figures and worst.rule not in _DIFFERENCES:
+        titles = (
+            f"{one.quantity.replace('_', ' ')} is {one.bounds_text}" for one in worst.estimates
+        )
+        return f"{figures} Estimate: {'; '.join(titles)}. Obtain the manufacturer’s value."
+    if figures and worst.rule not in _EXPLAINED:
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
 
@@ -220,7 +234,7 @@ def advice(finding: Finding) -> str:
     if finding.accept is not None:
         return "Accepted."
     if finding.state is State.ESTIMATED:
-        return "On an estimate: obtain the maker’s figure."
+        return "Based on an estimate; obtain the manufacturer’s value."
     return plain(finding.remedy or finding.message)
 
 
@@ -257,12 +271,13 @@ def verdict_sentence(assessment: Assessment) -> str:
     said = [
         f"{_many(counts[State.FAIL], 'failure')} ({rules[State.FAIL]})"
         if counts[State.FAIL] else "no check fails",
-        f"{_many(counts[State.UNKNOWN], 'figure')} unknown" * (counts[State.UNKNOWN] > 0),
+        f"{_many(counts[State.UNKNOWN], 'unknown')} ({rules[State.UNKNOWN]})"
+        * (counts[State.UNKNOWN] > 0),
         f"{_many(counts[State.WARN], 'warning')} ({rules[State.WARN]})"
         * (counts[State.WARN] > 0),
         f"{_many(counts[State.ACCEPTED], 'accepted exception')}" * (counts[State.ACCEPTED] > 0),
-        f"{_many(counts[State.ESTIMATED], 'estimated figure')}" * (counts[State.ESTIMATED] > 0),
-        f"{_many(counts[State.NOT_JUDGED], 'check')} without data"
+        f"{_many(counts[State.ESTIMATED], 'estimated value')}" * (counts[State.ESTIMATED] > 0),
+        f"{_many(counts[State.NOT_JUDGED], 'check')} not judged"
         * (counts[State.NOT_JUDGED] > 0),
     ]  # fmt: skip
     failing = {one.rule for group in groups for one in group if one.state is State.FAIL}
@@ -272,7 +287,7 @@ def verdict_sentence(assessment: Assessment) -> str:
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
-    beyond = f" Over 100 % without failing: {', '.join(dict.fromkeys(over))}." if over else ""
+    beyond = f" Over 100\u00a0% without failure: {', '.join(dict.fromkeys(over))}." if over else ""
     return f"{_capital(', '.join(filter(None, said)))}.{beyond}"
 
 

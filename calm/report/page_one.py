@@ -2,18 +2,20 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import nan
 
 from calm.case.leg_result import LegResult
+from calm.case.result_tables import item_numbers
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding, State, governing_of_each_rule
-from calm.deck.deck_items import DeckItem, deck_items_of
+from calm.deck.deck_items import SHOWN_USE, DeckItem, deck_items_of, standing_out
 from calm.drawing.check_figures import DrawnCase, Label, elevation
 from calm.drawing.line_picture import alike, together
 from calm.drawing.schematic.deck_parts import Cells, parts_of
 from calm.drawing.schematic.shown_parts import ShownPart
-from calm.drawing.schematic.symbols import BALLS
+from calm.drawing.schematic.symbols import LINES
 from calm.quantities import QUANTITIES, Quantity, bearing_of, bearing_text
 from calm.report import blocks, provenance
 from calm.report.blocks import (
@@ -35,9 +37,8 @@ from calm.report.blocks import (
 )
 from calm.report.load_cases import LOAD, LoadCase, load_text, worst_of_each_environment
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     draft,
-    figure_text,
-    limit_text,
     open_groups,
     percent_text,
     short,
@@ -53,7 +54,6 @@ MARKS = {
     State.NOT_JUDGED: "–", State.PASS: "✓",
 }  # fmt: skip
 """Signs of the states in print."""
-_HALF = 0.4999  # of the capacity: what is used more is shown on page one
 
 MOST_REVISIONS = 3
 
@@ -61,6 +61,8 @@ TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
 _LINE = 100  # letters of the verdict
+_PLACE = 15  # letters of a label below a column of the load cases
+_TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its letters
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 
@@ -84,6 +86,11 @@ class SignedMooring:
     def standing(self) -> list[LoadCase]:
         """The cases in which it has an equilibrium."""
         return [one for one in self.cases if one.results]
+
+    @cached_property
+    def apart(self) -> frozenset[str]:
+        """Labels of connecting hardware with a row of its own."""
+        return standing_out(self.assessment.every_finding())
 
     @property
     def document(self) -> str:
@@ -126,7 +133,7 @@ def title_block(signed: SignedMooring) -> TitleBlock:
     return TitleBlock(
         "Design check of a mooring",
         signed.assessment.name,
-        " · ".join(filter(None, below)),
+        tuple(filter(None, (file.description, " · ".join(filter(None, below))))),
         (
             ("Document", field("id")), ("Rev.", field("revision")),
             ("Date", field("date") or provenance.date() or ""), ("Page", ""),
@@ -178,10 +185,13 @@ def _whole(name: str) -> Quantity:
 
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
+    unit = QUANTITIES["depth"].display_unit
     return (
-        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
-        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
-        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
+        _Figure(f"Top depth\n{unit}", lambda one: one.depth, metres, short=f"top\n{unit}"),
+        _Figure(
+            f"Knock-\ndown {unit}", lambda one: one.knockdown, depth, short=f"knock-\ndown {unit}"
+        ),
+        _Figure(f"Offset\n{unit}", lambda one: one.offset, metres, short=f"offset\n{unit}"),
         _Figure(
             f"Largest\ntension {LOAD.display_unit}",
             lambda one: one.tension,
@@ -208,10 +218,10 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
-        note = "Of each environment the case with the greatest knockdown."
+        note = "The table has the case with the largest knockdown of each environment."
     if len(cases) > MOST_CASES:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
-        note += f" {len(cases) - MOST_CASES} less severe ones are left out."
+        note += f" {len(cases) - MOST_CASES} less severe cases are omitted."
         cases = [one for one in cases if one in kept]
     return cases, note
 
@@ -221,7 +231,7 @@ def cases_table(signed: SignedMooring) -> Table:
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
-        return short(case.words, 40) if case.results else f"{case.words}: no equilibrium"
+        return short(case.words, 80) if case.results else f"{case.words}: no equilibrium"
 
     leads = []
     for figure in _figures():
@@ -236,9 +246,15 @@ def cases_table(signed: SignedMooring) -> Table:
         *(figure.field(lead[0]) for figure, lead in shown),
         note=note,
         ruled=False,
-        aside="governing figures in bold, and where they are",
+        aside="governing values in bold, their components in the last row",
     )
-    where = (Cell(detail=short(lead[1], 15)) for _, lead in shown)
+    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
+
+    def place(label: str) -> str:
+        item = numbers.get(label)
+        return label if len(label) <= _PLACE or item is None else f"item {item}"
+
+    where = (Cell(detail=short(place(lead[1]), _PLACE)) for _, lead in shown)
     row = Cell(), Cell(detail="where"), *where
     return replace(table, rows=(*table.rows, row), totals=1) if shown else table
 
@@ -259,13 +275,16 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 def governing_table(signed: SignedMooring) -> Table:
     """Tabulate the checks with the largest utilisation, with bars."""
     rows = governing_rows(signed.assessment.every_finding())
-    over, half = (sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, _HALF))
+    over, half = (
+        sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, SHOWN_USE)
+    )
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
-    note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
+    note = "✓ passes  ≈ by an estimate  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
     if rest:
-        note = f"All other checks: {percent_text(rest[0].utilisation)} % or less (page 4). {note}"
+        most = percent_text(rest[0].utilisation)
+        note = f"All other checks: {most} % or less (checks in full). {note}"
     return table_of(
         "Governing checks",
         kept,
@@ -273,7 +292,7 @@ def governing_table(signed: SignedMooring) -> Table:
         note=note,
         ruled=False,
         aside="use = demand / capacity, or required / available, rounded up; "
-        "the line in the bars is 100 %; hatched: beyond it",
+        "the bars have a line at 100 % and are hatched above it",
     )
 
 
@@ -283,9 +302,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Check", lambda one: RULES[one.rule].title, 1.15),
         words("", lambda one: Cell(bar=min(one.utilisation, 9.99), state=one.state), 1.5),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one, one.value)),
-        words("Limit", limit_text, 0.0),
+        *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), longest + 8), 1.3),
     )
 
@@ -306,8 +323,8 @@ def sign_off(signed: SignedMooring) -> SignOff:
         history.append(own)
     roles = (("Drawn", field("author")), ("Checked", field("checked")),
              ("Approved", field("approved")))  # fmt: skip
-    said = "Signatures. The last page says what no check judges: waves, snap loads, fatigue."
-    return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, said)
+    note = "Signatures. The last page lists what no check covers: waves, snap loads, fatigue."
+    return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, note)
 
 
 def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
@@ -316,7 +333,10 @@ def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
     height = TEXT_HEIGHT[paper] - _FIXED - _ROW * rows
-    items = OpenItems("Open items", tuple(signed.items) or (), _no_items(signed), "more, page 4")
+    height -= _TITLE_LINE * len(signed.assessment.file.description or "") // _TITLE_LETTERS
+    items = OpenItems(
+        "Open items", tuple(signed.items) or (), _no_items(signed), "more: checks in full"
+    )
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases
@@ -344,7 +364,7 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
     told += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
     water = first.results[0].water
     towards = f" Current towards {bearing_text(bearing_of(water.u[0], water.v[0]))} at the surface."
-    aside = f"to scale, 1 : {_round(scale * 72.0 / 0.0254)}, beside it the line, not to scale"
+    aside = f"left to scale, 1 : {_round(scale * 72.0 / 0.0254)}; right not to scale"
     note = f"{', '.join(told)}.{towards} Depths in m."
     return Figure("The mooring", svg, aside=aside, note=note)
 
@@ -364,13 +384,13 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
             tags.setdefault(label, tag)
     found: list[tuple[bool, Label]] = []
     for result in case.results:
-        items = deck_items_of(result)
+        items = deck_items_of(result, signed.apart)
         own = {one.label: one for one in items}
         for part in drawn_parts(result, items, lambda *_: ()):
             if part.junction:
                 continue
             first = own[part.labels[0]]
-            cable = part.cable is not None and not part.clamped
+            cable = part.sign.symbol in LINES
             tag = next((tags[label] for label in part.labels if label in tags), "")
             label = part.rows[0].label
             if cable:
@@ -382,9 +402,12 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
     if len(found) > MOST_LABELS:
         found = [one for one in found if not one[0]]
     kept = [label for _, label in found]
-    if len(kept) > MOST_LABELS:  # ends, and every so many of a string
-        step = (len(kept) - 1) / (MOST_LABELS - 1)
-        kept = [kept[round(number * step)] for number in range(MOST_LABELS)]
+    if len(kept) > MOST_LABELS:  # ends and open items, and every so many of a string
+        others = [one for one in kept[1:-1] if not one.tag]
+        step = max(MOST_LABELS - len(kept) + len(others), 0) / max(len(others), 1)
+        chosen = {id(one) for at, one in enumerate(others) if int((at + 1) * step) > int(at * step)}
+        ends = (kept[0], kept[-1])
+        kept = [one for one in kept if one.tag or one in ends or id(one) in chosen]
     return kept
 
 
@@ -396,19 +419,13 @@ def afloat(result: LegResult) -> bool:
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """Parts of a leg as drawn: glass floats by the number of balls, runs of names shortened."""
-    roles = {one.label: one.role for one in items}
+    """Parts of a leg as drawn, with runs of names shortened."""
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
         first, _, last = row.label.partition(" – ")
         if last and not part.junction and alike(first, last):
             part = replace(part, rows=(replace(row, label=together([first, last])),))
-        sign = part.floats or part.sign
-        if sign.symbol in BALLS:
-            count = sum(roles[label] == "float" for label in part.labels)
-            sign = replace(sign, count=sign.count * max(count, 1))
-            part = replace(part, sign=sign, floats=None, cable=None)
         found.append(part)
     return tuple(found)
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from calm.checks.finding import Finding, State
+from calm.checks.finding import State
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile, Position
 from calm.physics.line import Water
@@ -101,45 +101,33 @@ def canonical(value: Any) -> str:
     )  # fmt: skip
 
 
-_BESIDE = (
-    "obstacles in the beams of a current profiler, such as its own line or float",
-    "growth where no `fouling` is given", "the soil below the anchor", "trawls, ice and ships",
-    "terminations and splices", "batteries and memory", "magnetic steel beside a compass",
+_ALSO_EXCLUDED = (
+    "obstructions in ADCP beams, such as the line or its floats",
+    "biofouling unless `fouling` is set", "soil strength", "trawls, ice and ships",
+    "terminations and splices", "batteries and memory", "magnetic steel near compasses",
 )  # fmt: skip
 
 UNSEEN = (
-    "A static calculation does not cover waves and the tensions they cause; snap loads on a line "
-    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
-    "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
-    "No margin in this report includes them. They decide the life of surface moorings in harsh "
-    "weather, and no factor on a static tension is a substitute for analysing them.",
-    f"Nor does it judge {'; '.join(_BESIDE)}.",
+    "Not covered by a static calculation: waves and the tensions they cause; snap loads; fatigue "
+    "due to waves and vortices; creep, corrosion and wear; transients at the end of the anchor "
+    "launch; hauling and lifting during recovery.",
+    "No margin in this report includes these effects. In harsh weather they determine the life of "
+    "a surface mooring, and a safety factor on static tension does not replace their analysis.",
+    f"Also excluded: {'; '.join(_ALSO_EXCLUDED)}.",
 )
 """Exclusions printed in every report."""
 
-BY_WAVES = ("waves", "fatigue by waves")
+BY_WAVES = ("waves", "fatigue due to waves")
 """Effects that are checked if environments have `waves:`."""
 
 UNJUDGED = (
-    *BY_WAVES, "snap loads", "fatigue by vortices", "creep, corrosion and wear",
-    "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
+    *BY_WAVES, "snap loads", "fatigue due to vortices", "creep, corrosion and wear",
+    "transients of the launch", "hauling and lifting during recovery", *_ALSO_EXCLUDED,
 )  # fmt: skip
 """Effects that no rule checks, for the JSON of a design check."""
 
-NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
+NOT_JUDGED = ReportPart("Not covered by this check", (Prose(UNSEEN, State.UNKNOWN),))
 """The part of every report that says so."""
-
-
-def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
-    """Exclusions printed next to the findings of a design check."""
-    if not any(each.rule == "wave-slack" for each in findings):
-        return UNSEEN
-    static, no_margin, beside = UNSEEN
-    waves = "waves where no `waves:` are given, and linear tensions in them do not cover"
-    static = static.replace("waves and the tensions they cause;", waves).replace(
-        "by waves and ", ""
-    )
-    return static, no_margin.replace("static tension", "tension"), beside
 
 
 _MOST_LEVELS = 40
@@ -164,7 +152,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
         words("environment", 0),
         quantity("depth", 1, "water depth"),
         number("density", 2, "kg/m³"),
-        quantity("speed", 3, "greatest current"),
+        quantity("speed", 3, "strongest current"),
         quantity("depth", 4, "at depth"),
         number("levels", 5),
     )

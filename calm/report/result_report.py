@@ -7,6 +7,7 @@ from typing import Any
 from calm.case import Result
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
+from calm.checks.finding import DEFAULT_ENVIRONMENT
 from calm.checks.posture import reaches_the_surface
 from calm.drawing.line_drawing import line_drawing
 from calm.drawing.schematic import schematic_svg
@@ -17,7 +18,14 @@ from calm.report import blocks
 from calm.report.blocks import Block, Field, Figure, ReportPart, Table, number, table_of, words
 from calm.report.check_tables import limits_table
 from calm.report.provenance import NOT_JUDGED, document_part, inputs_part, report_of
-from calm.report.sheet import leg_title, net_part, quality_of, summary_of, table_of_line, title_of
+from calm.report.sheet import (
+    accuracy_text,
+    leg_title,
+    net_part,
+    summary_of,
+    table_of_line,
+    title_of,
+)
 
 
 def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.Report:
@@ -25,18 +33,17 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
     file = result.file
     limits: tuple[ReportPart, ...] = ()
     if result.several:
-        net = net_part(result)
+        net = net_part(result, verbose=False)
         title, said = net.title, net.blocks
-        line: tuple[Block, ...] = tuple(
+        table: tuple[Block, ...] = ()
+        schematics = tuple(
             Figure(f"Schematic of leg {leg_title(leg)}", schematic_svg(leg.file, leg), tall=True)
             for leg in result.legs
         )
     else:
-        title, said = title_of(result.leg), (*summary_of(result.leg), quality_of(result.leg))
-        line = (
-            Figure("Schematic", schematic_svg(file, result), tall=True),
-            table_of_line(result, "Table of the line", places=True),
-        )
+        title, said = title_of(result.leg), summary_of(result.leg)
+        table = (table_of_line(result, "Table of the line", places=True),)
+        schematics = (Figure("Schematic", schematic_svg(file, result), tall=True),)
     if not (result.several or result.towed):  # these have no margins in their tables
         keys = limits_used(result.file, reaches_the_surface(result.leg.leg))
         limits = (ReportPart("Limits", (limits_table(keys),)),)
@@ -46,13 +53,14 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
         result.name,
         title.removeprefix(f"{result.name}: "),
         *document_part(file),
-        ReportPart("Result", (*described, *said)),
-        ReportPart("The line", line),
+        ReportPart("Result", (*described, *said, blocks.Note((accuracy_text(result.legs),)))),
+        *([ReportPart("The line", table)] if table else []),
         ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
+        ReportPart("", schematics),
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *limits,
         NOT_JUDGED,
-        inputs_part([(file.environment.name or "own", file, result.water)]),
+        inputs_part([(file.environment.name or DEFAULT_ENVIRONMENT, file, result.water)]),
     )
 
 
@@ -100,8 +108,8 @@ def _ends(uncertain: Uncertain) -> Table:
         ("depth of the top", QUANTITIES["depth"], uncertain.depth_top[:, 0]),
         ("knockdown", QUANTITIES["knockdown"], uncertain.knockdown[:, 0]),
         ("excursion of the top", QUANTITIES["offset"], uncertain.offset[:, 0]),
-        ("pull on the anchor", QUANTITIES["tension"], uncertain.anchor_tension),
-        ("weight needed", QUANTITIES["required_weight"], uncertain.required_weight),
+        ("anchor load", QUANTITIES["tension"], uncertain.anchor_tension),
+        ("anchor weight required", QUANTITIES["required_weight"], uncertain.required_weight),
     ]
     return table_of(
         "",

@@ -16,8 +16,8 @@ from calm.waves.measured import COMPARED, MeasuredBand
 from calm.waves.pieces_in_sea import MooringInSea, PieceInWaves, PieceLoads
 
 _NOTE = (
-    "Tension at the upper end: mean, standard deviation, most probable greatest and least. "
-    "Tz: mean time between upward crossings of the mean. Heave and tilt: standard deviations. "
+    "Tension at the upper end: mean, standard deviation, most probable maximum and minimum. "
+    "Tz: mean period of upward crossings through the mean. Heave and tilt: standard deviations. "
     "!: the piece goes slack."
 )
 _SEAS = (

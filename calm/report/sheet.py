@@ -12,7 +12,7 @@ from calm.case.columns import Output, ResultColumn, columns_of, shown_in
 from calm.case.design import AnyResult, Result
 from calm.case.leg_result import LegResult
 from calm.case.profilers import ProfilerTravel
-from calm.case.result_tables import ClampRow, ComponentRow, rows_down, table_columns
+from calm.case.result_tables import ClampRow, ComponentRow, item_numbers, rows_down, table_columns
 from calm.case.strumming import StrummingBand
 from calm.checks.finding import State, percent_used
 from calm.checks.posture import reaches_the_surface
@@ -35,8 +35,8 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-_NOTE = "at the upper end of a part. Tension: the largest in it."
-_MARKS = {State.WARN: "~ near a limit.", State.FAIL: "! beyond a limit."}
+_NOTE = "are at the upper end of a part, tension is its maximum."
+_MARKS = {State.WARN: "~ close to a limit.", State.FAIL: "! limit exceeded."}
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
 
@@ -85,14 +85,28 @@ def quality_of(result: LegResult) -> Prose:
     good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
     if result.towed:
         end = "tow point"
-    pull = "" if good.anchor is None else f", at the {end} {good.anchor:.2g} N"
+    load = "" if good.anchor is None else f", {good.anchor:.2g} N in the load at the {end}"
     return Prose(
         (
-            f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}.",
-            f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-            f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
-            f"{result.closure:.1g}.",
+            f"Numerical error: {good.depth:.2g} m in depth, {good.tension:.2g} N in tension{load}.",
+            f"{result.status.capitalize()} after {result.iterations} integrations over "
+            f"{result.segments} segments; error in position at the {end} {abs(result.miss):.1g} m, "
+            f"relative imbalance of forces {result.closure:.1g}.",
         )
+    )
+
+
+def accuracy_text(results: Sequence[LegResult]) -> str:
+    """Describe the numerical error of some results, rounded up, and that of their inputs."""
+    depth = max(one.accuracy.depth for one in results)
+    share = max(
+        100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
+        for one in results
+    )
+    return (
+        f"The numerical error of the solution is below {math.ceil(10.0 * depth) / 10.0:.1f} m in "
+        f"depth and {max(math.ceil(10.0 * share) / 10.0, 0.1):.1f} % of the tension. Inputs are "
+        "less certain: the current to about 10 %, the drag of a cable to about 20 %."
     )
 
 
@@ -102,12 +116,12 @@ def _travel(profiler: ProfilerTravel) -> str:
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
     )
-    said = f"{profiler.label} travels from {upper} to {lower}; its wire leans most at {worst}"
+    text = f"{profiler.label} travels from {upper} to {lower}; largest wire angle at {worst}"
     if profiler.time is not None:
-        said += f"; a profile takes {duration(profiler.time)}"
+        text += f"; a profile takes {duration(profiler.time)}"
     if profiler.profiles is not None:
-        said += f", its batteries last for {profiler.profiles}"
-    return said
+        text += f", and the batteries last for {profiler.profiles} profiles"
+    return text
 
 
 def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
@@ -116,8 +130,8 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
         told = [", ".join(filter(None, ("at the surface", off)))]
-        told.append(f"{top.used_buoyancy:.1%} of its buoyancy used, {say('reserve', top.reserve)} "
-                    "in reserve")  # fmt: skip
+        told.append(f"{100 * top.used_buoyancy:.1f} % of its buoyancy in use, reserve buoyancy "
+                    f"{say('reserve', top.reserve)}")  # fmt: skip
     else:
         deep, down = say("depth", top.depth), say("knockdown", top.knockdown)
         told = [", ".join(filter(None, (f"{deep} deep", f"knockdown {down}", off)))]
@@ -157,9 +171,9 @@ def _anchor_text(result: LegResult) -> str:
     return (
         f"{say('required_weight', anchor.weight)} in water, "
         f"{say('required_weight', anchor.required_weight)} required{share}{beyond}\n"
-        f"pulled {say('vertical', anchor.vertical)} up and "
-        f"{say('horizontal', anchor.horizontal)} sideways, {say('angle', anchor.angle)} from the "
-        "vertical"
+        f"load {say('vertical', anchor.vertical)} vertical, "
+        f"{say('horizontal', anchor.horizontal)} horizontal, {say('angle', anchor.angle)} from "
+        "the vertical"
     )
 
 
@@ -174,10 +188,10 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     vertical = f"{say('vertical', abs(point.vertical))} {'down' if point.vertical >= 0.0 else 'up'}"
     yield (
         "Tow point",
-        f"pulled by {at_ship}: {vertical}, {say('horizontal', point.horizontal)} back",
+        f"load {at_ship} ({vertical}, {say('horizontal', point.horizontal)} astern)",
     )
     told = f"{_level(result, body.depth)}, layback {say('layback', body.layback)}"
-    yield "Body", "\n".join((f"{told}; pulled by {at_body}", *_strumming(result)))
+    yield "Body", "\n".join((f"{told}; tension {at_body}", *_strumming(result)))
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
@@ -235,14 +249,15 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     figures = [one for one in table_columns(output) if planned or one.name != "planned_depth"]
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
-    for number, (piece, clamps) in enumerate(rows_down(result)):
+    numbers = item_numbers(result)
+    for piece, clamps in rows_down(result):
         if piece.index in heads:
             rows.append((Cell(heads[piece.index], strong=True),))
         label, factor = (
             Cell(piece.label, strong=piece.role == "instrument"),
             safety_state(result, piece),
         )
-        rows.append((Cell(str(number)), label, *_cells(result, figures, piece, factor)))
+        rows.append((Cell(numbers[piece.label]), label, *_cells(result, figures, piece, factor)))
         for clamp in clamps:
             cells = [*_cells(result, figures, clamp)]
             if places:
@@ -252,11 +267,11 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
                 cells[at] = Cell(place_text(clamp.part.at))
             strong = clamp.part.component.role == "instrument"
             label = Cell(clamp.label, indented=True, strong=strong)
-            rows.append((Cell(), label, *cells))
+            rows.append((Cell(numbers[clamp.label]), label, *cells))
     columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
     marked = {cell.state for row in rows for cell in row if cell.mark}
     legend = " ".join(text for state, text in _MARKS.items() if state in marked)
-    note = "\n".join(filter(None, (f"{of_an_end}: {_NOTE}", legend)))
+    note = "\n".join(filter(None, (f"{of_an_end} {_NOTE}", legend)))
     table = Table(title, tuple(columns), tuple(rows), note, dense=True)
     return table.without_empty_columns()
 
@@ -352,8 +367,8 @@ def _ends(result: Result) -> Iterator[Table | Prose]:
             head = words("", "name") if title == "Nodes" else words("leg")
             yield blocks.table_of(title, rows, head, *_fields(rows))
     afloat = [
-        f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
-        f"{say('reserve', leg.top.reserve)} in reserve"
+        f"{leg.name}: float at the surface, {100 * leg.top.used_buoyancy:.1f} % of its buoyancy in "
+        f"use, reserve buoyancy {say('reserve', leg.top.reserve)}"
         for leg in result.legs
         if leg.type == "surface"
     ]
@@ -375,8 +390,9 @@ def _convergence(result: Result) -> str:
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (
-        f"{result.status.capitalize()} in {result.iterations} marches of its legs, "
-        f"{result.segments} segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N; "
-        f"ends missed by {result.miss:.1g} m, nodes in balance to {left:.1g} N, forces closed to "
+        f"{result.status.capitalize()} after {result.iterations} integrations of the legs over "
+        f"{result.segments} segments. Numerical error: {accuracy.depth:.2g} m in depth, "
+        f"{accuracy.tension:.2g} N in tension; {result.miss:.1g} m in the position of the ends, "
+        f"{left:.1g} N in the balance of the nodes; relative imbalance of forces "
         f"{result.closure:.1g}."
     )

@@ -98,11 +98,12 @@ def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
     """The whole matrices (..., n b, n b)."""
     *many, count, size, _ = diagonal.shape
     matrix = np.zeros((*many, count, size, count, size), diagonal.dtype)
-    blocks = np.moveaxis(matrix, -2, -3)  # (..., row, column, b, b)
-    at = np.arange(count)
-    blocks[..., at, at, :, :] = diagonal
-    blocks[..., at[:-1], at[1:], :, :] = upper
-    blocks[..., at[1:], at[:-1], :, :] = lower
+    for blocks, at in (
+        (diagonal, matrix),
+        (upper, matrix[..., :-1, :, 1:, :]),
+        (lower, matrix[..., 1:, :, :-1, :]),
+    ):
+        np.einsum("...iaib->...iab", at)[...] = blocks  # a view
     return matrix.reshape(*many, count * size, count * size)
 
 

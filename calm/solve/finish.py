@@ -222,8 +222,8 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         )
     if ending == solution.RISES:
         return Status.ABOVE_SURFACE.because(
-            "A buoyant part of the line would rise above the surface: "
-            "more of it than the floats listed one below the other."
+            "Buoyant parts of the line, other than the consecutive floats at its top, would "
+            "rise above the surface."
         )
     if ending == solution.DRAGGED_DOWN:
         return Status.GROUNDED.because("The current drags the whole line down to the seabed.")

@@ -113,7 +113,7 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
     closure = float(np.linalg.norm(loads_of(solution).sum(axis=0))) / rising.weight
     if not closure <= LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(
-            f"The loads on the moving line do not cancel: they are {closure:.1e} off."
+            f"The loads on the moving line do not balance (relative error {closure:.1e})."
         )
     return FreeMotion(place.velocity, replace(solution, closure=closure), _tangles(solution))
 
@@ -130,8 +130,8 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
 
 
 SHORTEST_LOOP = 2.0
-"""Shortest loop of a line that may tangle [m]; a shorter one is a shackle that leans on the float
-below it."""
+"""Shortest loop of a line that may tangle [m], a default of CALM; a shorter one is a shackle that
+leans on the float below it."""
 
 
 def looped(

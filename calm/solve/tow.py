@@ -261,7 +261,6 @@ def _upwards(water: Water, depth: float, low: float, span: float, shallowest: fl
 
 
 def _root(rough: _Marches, upper: float, high: float, depth: float, low: float) -> float:
-    """Find the root of the miss between two depths."""
     span = rough.span
     x, left, slope = bracketed_root(
         rough.miss, None, upper, high, depth, low, ROUGHLY * span, NARROW_JUMP * span

@@ -19,13 +19,13 @@ from calm.physics.compiled import cache_folder, is_cached
 from calm.physics.line import Line
 from calm.solve.solution import Settings
 
-WARM = 60
+LOAD_FROM = 60
 """Number of lines for which loading compiled code from the cache pays."""
-COLD = 1200
+COMPILE_FROM = 1200
 """Number of lines, announced by `expect_many`, for which compiling pays."""
 UNANNOUNCED = 250
 """Number of solved lines, beyond those announced, after which many more are expected."""
-AS_MANY = 8
+TYPICAL_PARTS = 8
 """Number of pieces and clamps of an ordinary line. The work of a line is in proportion to it."""
 
 
@@ -57,12 +57,12 @@ class _Pace:
             self.compiled = self.child.poll() == 0
             return
         work = max(self.announced, self.work)
-        if work >= max(WARM, 2.0 * self.asked_at):
+        if work >= max(LOAD_FROM, 2.0 * self.asked_at):
             self.asked_at = work
             self.compiled = is_cached(self.solver.value)
         if self.compiled or parent_process() is not None:
             return
-        if self.announced >= COLD or self.solved - self.announced >= UNANNOUNCED:
+        if self.announced >= COMPILE_FROM or self.solved - self.announced >= UNANNOUNCED:
             self.child = _compile_ahead(self.solver)
 
 
@@ -87,12 +87,12 @@ def runs_compiled(
         return os.environ.get("CALM_COMPILED") == "always" and _has_numba()
     if line is not None:
         pieces = len(line.length) + len(line.clamp_piece)
-        count_lines(1.0, solver, max(pieces / AS_MANY, 1.0))
+        count_lines(1.0, solver, max(pieces / TYPICAL_PARTS, 1.0))
     return _paces[solver].compiled
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are solved next; their work is in ordinary lines."""
+    """Count lines that are solved next; `work` is relative to that of a typical line."""
     pace = _paces[solver]
     pace.solved += lines
     pace.work += lines if work is None else work

@@ -26,10 +26,10 @@ from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 
-_AUTOSAVED_AFTER = 0.3  # seconds
-_LOOKED_AT_DISK = 2.0  # seconds between two checks of the file
-_HELD_AT_MOST = 3.0  # seconds that a frame waits for an unresponsive terminal
-_MOST_ROUNDS = 50  # a widget that keeps sending itself messages is not waited for
+_AUTOSAVE_DELAY = 0.3  # seconds
+_DISK_INTERVAL = 2.0  # seconds between two checks of the file
+_MAX_HOLD = 3.0  # seconds that a frame waits for an unresponsive terminal
+_MAX_WAITS = 50  # a widget that keeps sending itself messages is not waited for
 _COLOURLESS = NoColor()
 
 
@@ -80,7 +80,7 @@ class BuildApp(App[int]):
         self.session = session
         self.workspace = workspace.Workspace(session, self.tell, self._edited)
         self.judging = workspace.Judging(self, self.workspace, self._show_views)
-        self.saving = saving.Saving(self, self.workspace, self.taken_over, self.leave)
+        self.saving = saving.Saving(self, self.workspace, self.show_replaced_draft, self.leave)
         self.builder = builder.BuilderScreen(self.workspace)
         self.not_kept = ""
         self._painted, self._pace = Painted(), Pace()
@@ -92,7 +92,7 @@ class BuildApp(App[int]):
         self._lost: str | None = None
         self._waiting: deque[events.Event] = deque()
         self.has_keys_waiting = False
-        self._rounds = 0
+        self._waits = 0
 
         for theme in (DARK, LIGHT):
             self.register_theme(theme)
@@ -112,13 +112,12 @@ class BuildApp(App[int]):
             await self._press()
 
     async def _press(self) -> None:
-        """Handle the oldest event in the queue."""
         self.has_keys_waiting = bool(self._waiting)
         if self.has_keys_waiting:
             before = self._listeners()
             await super().on_event(self._waiting.popleft())
-            self._rounds = 0
-            self._go_round(before)
+            self._waits = 0
+            self._wait_for_listeners(before)
 
     def _listeners(self) -> list[MessagePump]:
         """Return the widgets that a key may affect: the focused widget, its ancestors, the screen.
@@ -130,18 +129,18 @@ class BuildApp(App[int]):
         lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
         return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
-    def _go_round(self, listeners: list[MessagePump]) -> None:
+    def _wait_for_listeners(self, listeners: list[MessagePump]) -> None:
         """Wait for all listeners in turn; removed widgets are skipped."""
         while listeners:
             first, *others = listeners
-            if first.call_later(self._go_round, others):
+            if first.call_later(self._wait_for_listeners, others):
                 return
             listeners = others
-        self._rounds += 1
+        self._waits += 1
         now = self._listeners()
         is_busy = any(each.message_queue_size for each in now)
-        if self._rounds < 2 or (is_busy and self._rounds < _MOST_ROUNDS):
-            self._go_round(now)
+        if self._waits < 2 or (is_busy and self._waits < _MAX_WAITS):
+            self._wait_for_listeners(now)
         elif self._waiting:
             self.call_after_refresh(self._press)
         else:
@@ -157,18 +156,18 @@ class BuildApp(App[int]):
         """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
-        self.set_interval(_LOOKED_AT_DISK, self.saving.look_at_disk)
+        self.set_interval(_DISK_INTERVAL, self.saving.check_external_change)
 
     def _begin(self) -> None:
         """Read the catalogue, solve the line and report, once the line is on the screen."""
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
-            self.saving.offer(self._offered, partial(self.mend, as_judged=True))
+            self.saving.offer(self._offered, partial(self.open_text_if_invalid, as_judged=True))
         else:
-            self.mend()
+            self.open_text_if_invalid()
         is_unsaved = self.session.file.is_open_elsewhere()
-        others = self.saving.presence.say(self.session.file.path)
+        others = self.saving.presence.announce(self.session.file.path)
         if is_unsaved or others:
             what = "with unsaved work" if is_unsaved else "in another builder"
             who = f" (process {others[0]})" if others else ""
@@ -192,7 +191,7 @@ class BuildApp(App[int]):
             super()._display(screen, renderable)
         elif self._pace.holds(time.monotonic()):
             if self._late is None:
-                self._late = self.set_timer(_HELD_AT_MOST, self.on_cursor_position)
+                self._late = self.set_timer(_MAX_HOLD, self.on_cursor_position)
         else:
             super()._display(screen, self._painted.update(renderable))
             driver = self._driver
@@ -228,7 +227,7 @@ class BuildApp(App[int]):
         """Whether no value is being typed any more; an invalid value is reported."""
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
-    def taken_over(self, message: str) -> None:
+    def show_replaced_draft(self, message: str) -> None:
         """Update all screens after the draft was replaced by another text."""
         for screen in self.draft_screens():
             screen.replaced()
@@ -274,14 +273,14 @@ class BuildApp(App[int]):
         self._tell_lost_environment()
         self.judging.after_an_edit()
         if self._autosaving is None:
-            self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
+            self._autosaving = self.set_timer(_AUTOSAVE_DELAY, self._autosave)
 
     def _show_views(self, *, is_first: bool = False) -> None:
         if self.is_running:  # else the screens are being taken apart
             for screen in self.draft_screens():
                 if screen.is_mounted and screen.is_attached:  # mounted, and not being removed
                     screen.show_view()
-            self.mend(as_judged=is_first)
+            self.open_text_if_invalid(as_judged=is_first)
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
@@ -289,7 +288,7 @@ class BuildApp(App[int]):
             message = f"There is no environment {self._lost} now; the default environment is used"
             self.tell(message)
 
-    def mend(self, *, as_judged: bool = False) -> None:
+    def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
         """Open the text if the draft cannot be parsed or, `as_judged`, has mistakes."""
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
@@ -347,15 +346,15 @@ class BuildApp(App[int]):
 
     def on_unmount(self) -> None:
         """Keep unsaved work, even after a failure or a closed page."""
-        self.saving.presence.say(None)
-        self.keep_at_the_end()
+        self.saving.presence.announce(None)
+        self.save_copy_on_exit()
 
     def take_typed(self) -> None:
         """Accept a valid value that is being typed, without questions."""
         if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
             self.screen.settle()
 
-    def keep_at_the_end(self) -> None:
+    def save_copy_on_exit(self) -> None:
         """Keep unsaved work unless the user has quit; set `not_kept` if this fails."""
         if not self._is_left:
             self.not_kept = self.keep()

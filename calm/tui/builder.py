@@ -19,8 +19,8 @@ from calm.tui.key_table import bindings, hints
 from calm.tui.mooring_sheet import (
     PENDING,
     figures_sheet,
-    hung_at,
     missing_figures,
+    part_of_row,
     settings,
     sheet_of,
     with_figures,
@@ -59,7 +59,7 @@ class BuilderScreen(ComparingScreen):
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
             place = "catalogue"
-        self.query_one(KeyBar).show_keys(hints(place), beside=place == "catalogue")
+        self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
         """Suspend to the shell; undo while a value is typed, or without a shell."""
@@ -109,7 +109,7 @@ class BuilderScreen(ComparingScreen):
 
         def take(texts: dict[str, str]) -> None:
             source = texts.pop("source", "")
-            figures = {asked: text for asked, text in texts.items() if text}
+            figures = {key: text for key, text in texts.items() if text}
             if figures:
                 count = f"{len(figures)} value{'s' * (len(figures) != 1)} filled in"
                 self.line.attempt(
@@ -130,7 +130,7 @@ class BuilderScreen(ComparingScreen):
         """Begin an empty line with a mooring."""
         session = self.session
         if session.draft.items:
-            self.tell("There is a line already; a new file can begin with a mooring")
+            self.tell("The line is not empty; templates are for new files")
             return
 
         def begin(kind: Template) -> None:
@@ -139,7 +139,7 @@ class BuilderScreen(ComparingScreen):
         answers = numbered(
             (f"{kind}: {meaning}", partial(begin, kind)) for kind, meaning in TEMPLATES.items()
         )
-        text = "Each has an equilibrium as given: adapt depth, current and pieces."
+        text = "Each template has an equilibrium. Adapt depth, current and pieces."
         choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
@@ -228,7 +228,6 @@ class BuilderScreen(ComparingScreen):
         self.app.push_screen(TextScreen(self.workspace, line), self._back)
 
     def _back(self, _: None) -> None:
-        """Update the line, which another screen may have changed."""
         self.show_draft()
         self.tell("")
         self.workspace.edited()
@@ -236,8 +235,8 @@ class BuilderScreen(ComparingScreen):
     def action_sheet(self, name: str) -> None:
         """Edit a group of keys of the whole file on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
-        hung = hung_at(None if view is None else view.file, self.line.table.spot)
-        sheet, label, changed = sheet_of(name, session.draft, hung)
+        part = part_of_row(None if view is None else view.file, self.line.table.spot)
+        sheet, label, changed = sheet_of(name, session.draft, part)
 
         def take(texts: dict[str, str]) -> None:
             self.line.attempt(lambda: session.do(changed(session.draft, texts), label))

@@ -16,11 +16,12 @@ from textual.widgets import Input, Static
 from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
+from calm.files.editing import Value
 from calm.files.editing.user_state import Remembered
 from calm.tui import dialogs, key_table, theme
-from calm.tui.checking import distance, length
+from calm.tui.checking import distance, length, length_values
 from calm.tui.field import ScrolledEntry
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
 from calm.tui.workspace import Workspace
 
@@ -130,7 +131,7 @@ class ComponentList(TableCells, can_focus=False):
 Purpose = Literal["below", "above", "clamp", "replace"]
 """Purpose of the search."""
 
-_WHAT_FOR = {
+_TITLES = {
     "below": "Add below",
     "above": "Add above",
     "clamp": "Clamp on",
@@ -167,7 +168,7 @@ class CataloguePane(Vertical):
     def __init__(
         self,
         workspace: Workspace,
-        take: Callable[[Purpose, dict[str, str]], object],
+        take: Callable[[Purpose, dict[str, Value]], object],
         close: Callable[[], object],
     ) -> None:
         super().__init__(id="catalogue")
@@ -200,7 +201,6 @@ class CataloguePane(Vertical):
                 self._search_again()
 
     def _search_again(self) -> None:
-        """Repeat the search, keeping the cursor on the same component."""
         chosen = self.listing.chosen
         self._search()
         ids = [each.id for each in self.listing.rows]
@@ -225,7 +225,7 @@ class CataloguePane(Vertical):
     def retitle(self, target: str) -> None:
         """Show the row next to which the component will be added."""
         self._target = target
-        text = f"{_WHAT_FOR[self.purpose]} {target}" if target else "The top of the line"
+        text = f"{_TITLES[self.purpose]} {target}" if target else "The top of the line"
         if self._by is not None:
             text += f"   sorted by {self._by}"
         self.query_one("#catalogue-title", Static).update(text, layout=False)
@@ -295,26 +295,27 @@ class CataloguePane(Vertical):
             return
         if self.purpose == "clamp":
             place = "e.g. 2 m"
-            self._ask(chosen, Asked("at", "From the top", "", distance(), place))
+            self._ask(chosen, FormField("at", "From the top", "", distance(), place))
         elif chosen.kind in FLEXIBLE_KINDS and self.purpose != "replace":
             check = length(towed=self.workspace.session.draft.is_tow)
-            self._ask(chosen, Asked("length", "Length", "", check, "e.g. 480 m, or fit 105 m"))
+            self._ask(chosen, FormField("length", "Length", "", check, "e.g. 480 m, or fit 105 m"))
         else:
             self._give({"use": chosen.id})
 
-    def _give(self, values: dict[str, str]) -> None:
-        self.remembered.take(values["use"])
+    def _give(self, values: dict[str, Value]) -> None:
+        self.remembered.take(str(values["use"]))
         self._take(self.purpose, values)
         self.search.action_select_all()
 
-    def _ask(self, chosen: Listed, asked: Asked) -> None:
-        """Ask for the length or the position, and for a label."""
-
+    def _ask(self, chosen: Listed, form_field: FormField) -> None:
         def take(texts: dict[str, str]) -> None:
-            self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
+            long, towed = texts.pop("length", ""), self.workspace.session.draft.is_tow
+            keys = length_values(long, towed=towed) if long else {}
+            given = {"use": chosen.id, **keys, **texts}
+            self._give({key: value for key, value in given.items() if value})
 
-        label = Asked("label", "Label", placeholder="optional")
-        dialogs.enter(self.app, chosen.id, "", [asked, label], take)
+        label = FormField("label", "Label", placeholder="optional")
+        dialogs.enter(self.app, chosen.id, "", [form_field, label], take)
 
     def action_close(self) -> None:
         """Close the catalogue."""

@@ -13,7 +13,7 @@ from calm.errors import CalmError
 from calm.files.editing import Draft
 from calm.tui import checking, line_screen
 from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.mooring_sheet import PENDING
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _MOST_LINES = 24
 _MOST_OFFERS = 9
-_PAPERS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
+_DOCUMENTS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 """Command that writes each document, and its option for the folder."""
 
 
@@ -40,7 +40,7 @@ class ComparingScreen(line_screen.LineScreen):
         if not self.settle():
             return
         if not self.session.changed:
-            self.pictures.put_beside(None)
+            self.pictures.overlay(None)
             self.tell("There are no changes since the file was saved")
             return
         view = self.workspace.judged("Checks are still running; try again in a moment")
@@ -60,7 +60,7 @@ class ComparingScreen(line_screen.LineScreen):
             now = self.workspace.view
             shape = getattr(before.result, "shape", None)  # a net has one for each leg
             if shape is not None and now and type(before.result) is type(now.result):
-                self.pictures.put_beside(shape)
+                self.pictures.overlay(shape)
             answers = [Answer("b", "back to the line")]
             choose(self.app, Question("Compared with the saved file", "\n".join(lines), answers))
 
@@ -112,12 +112,14 @@ class ComparingScreen(line_screen.LineScreen):
 
         row = self.line.table.row
         label = "top float" if row is None else row.texts.get("label") or row.texts["component"]
-        asked = [
-            Asked("target", "Target", "knockdown(top) <= 20 m", checking.needed("a target")),
-            Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")),
+        fields = [
+            FormField("target", "Target", "knockdown(top) <= 20 m", checking.needed("a target")),
+            FormField(
+                "change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")
+            ),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        enter(self.app, "A target to meet", text, asked, take)
+        enter(self.app, "A target to meet", text, fields, take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Compute a change in a thread, and ask for confirmation, showing its effects."""
@@ -152,7 +154,7 @@ class ComparingScreen(line_screen.LineScreen):
 
     # reports and sheets
 
-    def action_papers(self) -> None:
+    def action_documents(self) -> None:
         """Show the bill of material, or write the report or deck sheets of the saved file."""
         if not self.settle():
             return
@@ -161,7 +163,7 @@ class ComparingScreen(line_screen.LineScreen):
         if result is None or result.towed:
             self.tell("Reports and sheets require a mooring with an equilibrium")
             return
-        report, deck = (partial(self._ask_where, what) for what in _PAPERS)
+        report, deck = (partial(self._ask_where, what) for what in _DOCUMENTS)
 
         def bill() -> None:
             self.app.push_screen(LongText(_bill(result), wide=True))
@@ -174,8 +176,8 @@ class ComparingScreen(line_screen.LineScreen):
         choose(self.app, Question("Documents", "", answers))
 
     def _ask_where(self, what: str) -> None:
-        if self.workspace.papers_elsewhere:
-            self.tell(self.workspace.papers_elsewhere)
+        if self.workspace.documents_elsewhere:
+            self.tell(self.workspace.documents_elsewhere)
             return
         path = self.session.file.path
         if path is None or self.session.changed:
@@ -183,13 +185,13 @@ class ComparingScreen(line_screen.LineScreen):
             return
 
         folder = path.with_name(f"{path.stem}-{what}")
-        asked = [Asked("folder", "Folder", str(folder), checking.needed("a folder"))]
+        fields = [FormField("folder", "Folder", str(folder), checking.needed("a folder"))]
         write = partial(self._write, what, path)
-        enter(self.app, "Output folder", "", asked, write)
+        enter(self.app, "Output folder", "", fields, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
         """Run the command in a thread, and show its last message."""
-        folder, (command, option) = Path(texts["folder"]).expanduser(), _PAPERS[what]
+        folder, (command, option) = Path(texts["folder"]).expanduser(), _DOCUMENTS[what]
         words = [sys.executable, "-m", "calm", command, str(path), option, str(folder)]
         words += [word for each in self.session.catalogs for word in ("--catalog", str(each))]
 
@@ -197,12 +199,12 @@ class ComparingScreen(line_screen.LineScreen):
             done = subprocess.run(
                 words, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
             )
-            said = [line for line in done.stderr.splitlines() if line.strip()]
-            message = said[-1] if said else f"written to {folder}"
+            lines = [line for line in done.stderr.splitlines() if line.strip()]
+            message = lines[-1] if lines else f"written to {folder}"
             self.call_later(self.workspace.tell, message, wrong=done.returncode > 1)
 
         self.tell(f"Writing {folder} …")
-        self.run_worker(work, thread=True, group="papers", exit_on_error=False)
+        self.run_worker(work, thread=True, group="documents", exit_on_error=False)
 
 
 def changed_lines(before: str, after: str) -> list[str]:

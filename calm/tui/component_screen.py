@@ -14,7 +14,7 @@ from calm.files.definition import Definition
 from calm.tui import dialogs, key_table
 from calm.tui.checking import Check, Reading
 from calm.tui.field import Cycle, Field, all_settled
-from calm.tui.forms import Asked, filled, form_of, values_of
+from calm.tui.forms import FormField, filled, form_of, values_of
 from calm.tui.screen import KeyBar, TitleBar
 
 Defined = tuple[str, dict[str, str]]
@@ -39,10 +39,9 @@ class ComponentScreen(dialogs.Form[Defined]):
         & #kind-fields { height: auto; }
         & .above { text-style: bold; text-wrap: nowrap; text-overflow: ellipsis; }
         & #outcome { width: 2fr; padding: 1 1 0 1; border-left: vkey $panel; }
-        & Field > .field-title { width: 20; }
+        & Field > Input { margin-left: 20; }
     }
     ComponentScreen.-narrow #outcome { width: 28; }
-    ComponentScreen.-narrow Field > .field-title { width: 20; }
     ComponentScreen.-narrow Field > Input { width: 16; }
     """
 
@@ -64,7 +63,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
                 if not self._begun:
-                    asked = Asked(
+                    form_field = FormField(
                         "id",
                         "id",
                         "",
@@ -72,7 +71,7 @@ class ComponentScreen(dialogs.Form[Defined]):
                         "e.g. sphere-own-1250",
                         "lower-case letters, digits and hyphens",
                     )
-                    yield Field(asked, id="id")
+                    yield Field(form_field, id="id")
                     yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
                 yield Vertical(id="kind-fields")
             with VerticalScroll(id="outcome", can_focus=False):
@@ -100,7 +99,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         await self._show_fields()
 
     def _given(self) -> Defined:
-        """Return the id and the typed texts; an empty text deletes a key."""
         texts = self.texts
         id = texts.pop("id", self._component)
         return id, texts if self._begun else {"kind": self._kind, **texts}
@@ -127,7 +125,7 @@ class ComponentScreen(dialogs.Form[Defined]):
 
         id, values = self._all()
         component, problems = defined(id or "component", values)
-        here = next((each.asked for each in self.fields if each.input.has_focus), None)
+        here = next((each.form_field for each in self.fields if each.input.has_focus), None)
         parts: list[RenderableType] = [Text(f"{here.takes}\n", "dim")] if here else []
         if id in self._listed - self._own:
             note = f"~ {id} exists in the catalogue; this definition overrides it in this file"
@@ -157,16 +155,16 @@ class ComponentScreen(dialogs.Form[Defined]):
 _FIRST = ("name", "manufacturer", "role")
 
 
-def form_fields(kind: str) -> list[Asked]:
+def form_fields(kind: str) -> list[FormField]:
     """Return the fields of a kind: names, required keys, keys of this kind, common keys."""
-    asked = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
+    fields = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
 
-    def rank(each: Asked) -> tuple[int, ...]:
+    def rank(each: FormField) -> tuple[int, ...]:
         is_common = each.key.partition(".")[0] in Definition.model_fields
         first = _FIRST.index(each.key) if each.key in _FIRST else len(_FIRST)
         return first, not each.is_needed or is_common, is_common
 
-    return sorted(asked, key=rank)
+    return sorted(fields, key=rank)
 
 
 def id_check(own: Collection[str]) -> Check:

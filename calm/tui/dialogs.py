@@ -19,7 +19,7 @@ from textual.widgets import Static
 from calm.tui import key_table
 from calm.tui.checking import Reading
 from calm.tui.field import Field, Part, all_settled
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.table_field import TableField
 
 _FRAME = """
@@ -58,11 +58,11 @@ def enter(
     app: App[Any],
     title: str,
     text: str,
-    asked: Sequence[Asked],
+    fields: Sequence[FormField],
     take: Callable[[dict[str, str]], object],
 ) -> None:
     """Ask for texts on an `InputSheet`, and pass them to `take`."""
-    ask(app, InputSheet(title, text, asked), take)
+    ask(app, InputSheet(title, text, fields), take)
 
 
 @dataclass(frozen=True)
@@ -172,9 +172,9 @@ class Form(Screen[T | None]):
         """Entered texts by key."""
         return {part.key: part.text for part in self.all_parts}
 
-    def parts_of(self, asked: Iterable[Asked]) -> Iterator[Widget]:
+    def parts_of(self, fields: Iterable[FormField]) -> Iterator[Widget]:
         """Yield the widgets of the fields, under the names of their groups."""
-        for each in asked:
+        for each in fields:
             if each.above:
                 yield Static(each.above, classes="above", markup=False)
             if each.columns:
@@ -217,20 +217,18 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     BINDINGS = key_table.bindings("sheet")
     DEFAULT_CSS = (
         "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
-        " & .field-note { display: none; }"
         " & .above { text-style: bold; margin-top: 1; text-wrap: nowrap;"
         " text-overflow: ellipsis; } & TableField { margin-left: 2; }"
         " &.-wide > Vertical { width: 110; }"
         " & #asked { height: auto; scrollbar-size-vertical: 1; }"
-        " &.-wide .field-note { display: block; } &.-wide Field > Input { width: 24; }"
-        " &.-wide .field-title { width: 22; }"
+        " &.-wide Field > Input { width: 24; margin-left: 22; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
         "& #sheet-note.-wrong { color: $text-error; } }"
     )
 
-    def __init__(self, title: str, text: str, asked: Sequence[Asked]) -> None:
-        super().__init__(classes="-wide" if any(each.takes for each in asked) else None)
-        self._title, self._text, self._asked = title, text, asked
+    def __init__(self, title: str, text: str, fields: Sequence[FormField]) -> None:
+        super().__init__(classes="-wide" if any(each.takes for each in fields) else None)
+        self._title, self._text, self._form_fields = title, text, fields
 
     def compose(self) -> ComposeResult:
         """Yield the title, the fields and the keys."""
@@ -239,7 +237,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
                 yield Static(self._title, classes="title", markup=False)
                 if self._text:
                     yield Static(self._text, classes="text", markup=False)
-                yield from self.parts_of(self._asked)
+                yield from self.parts_of(self._form_fields)
             yield Static(id="sheet-note", markup=False)
             yield Static(
                 "[b]Enter[/b] next, then done   [b]Ctrl+S[/b] done   [b]Esc[/b] go back",
@@ -260,7 +258,6 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
     @on(DescendantFocus)
     def _note(self) -> None:
-        """Show the full description of the focused field."""
         for field in self.fields:
             if field.input.has_focus:
                 reading = field.reading if field.input.value else Reading("")

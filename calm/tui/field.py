@@ -10,14 +10,15 @@ from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal
+from textual.content import Content
 from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import Reactive
 from textual.widget import Widget
-from textual.widgets import Input, Static
+from textual.widgets import Input
 
 from calm.tui.checking import Reading
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.key_table import bindings
 
 
@@ -72,6 +73,9 @@ def all_settled(fields: Iterable[Part]) -> bool:
 class Field(Horizontal):
     """A name, an input and a note.
 
+    Only the input is a widget of its own: each of the dozens in a form takes time to start. The
+    field writes the name into the margin of the input, and the note behind the input.
+
     The field posts `Committed` when the user leaves it, by Enter or focus, with a valid text that
     differs from the initial text. An invalid text stays, marked, and is not committed.
     """
@@ -79,16 +83,10 @@ class Field(Horizontal):
     SCOPED_CSS = False  # the width of the screen counts
     DEFAULT_CSS = """
     Field {
-        height: 1; width: 1fr;
-        & > .field-title { width: 16; color: $text-muted; }
-        & > Input { width: 24; background: $surface; }
+        height: 1; width: 1fr; color: $text-muted;
+        & > Input { width: 24; margin-left: 16; background: $surface; }
         & > Input:focus { background: $surface; background-tint: $foreground 8%; }
-        & > .field-note {
-            width: 1fr; padding-left: 1; color: $text-muted;
-            text-wrap: nowrap; text-overflow: ellipsis;
-        }
         &.-wrong > Input { text-style: underline; background: $error-muted; }
-        &.-wrong > .field-note { color: $text-error; }
     }
     """
 
@@ -112,19 +110,32 @@ class Field(Horizontal):
         field: Field
         reading: Reading
 
-    def __init__(self, asked: Asked, *, id: str | None = None) -> None:
+    def __init__(self, form_field: FormField, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self.key, self.check, self.asked = asked.key, asked.check, asked
-        self._note = asked.takes
-        self.begun = self._shown = asked.text  # initial text, and text last filled in
-        self.input = ScrolledEntry(asked.text, placeholder=asked.placeholder, compact=True)
-        self._told = Static(asked.takes, classes="field-note", markup=False)
+        self.key, self.check, self.form_field = form_field.key, form_field.check, form_field
+        self._note = self._shown_note = form_field.takes
+        self.begun = self._shown = form_field.text  # initial text, and text last filled in
+        self.input = ScrolledEntry(
+            form_field.text, placeholder=form_field.placeholder, compact=True
+        )
 
     def compose(self) -> ComposeResult:
-        """Yield the name, the input and the note."""
-        yield Static(self.asked.title, classes="field-title", markup=False)
+        """Yield the input."""
         yield self.input
-        yield self._told
+
+    def render(self) -> Content:
+        """Render the name and the note, as far as there is room."""
+        before, width = self.input.styles.margin.left, self.input.outer_size.width + 1
+        title = Content(self.form_field.title).truncate(before, ellipsis=True, pad=True)
+        room = max(self.content_size.width - before - width, 0)
+        note = Content(self._shown_note).truncate(room, ellipsis=True)
+        style = "$text-error" if self.has_class("-wrong") else ""
+        return Content.assemble(title, " " * width, (note.plain, style))
+
+    def notify_style_update(self) -> None:
+        """Render again: the input may have another margin and width."""
+        super().notify_style_update()
+        self.refresh()
 
     @property
     def is_typing(self) -> bool:
@@ -150,9 +161,9 @@ class Field(Horizontal):
 
     def tell(self, note: str) -> None:
         """Show another note unless the text is invalid; "" shows the description of the field."""
-        self._note = note or self.asked.takes
+        self._note = note or self.form_field.takes
         if not self.has_class("-wrong"):
-            self._told.update(self._note, layout=False)
+            self._show_note(self._note)
 
     def note(self, reading: Reading) -> str:
         """Return the error or completion of the typed text, else the description of the field."""
@@ -160,7 +171,12 @@ class Field(Horizontal):
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
-        self._told.update(self.note(reading), layout=False)
+        self._show_note(self.note(reading))
+
+    def _show_note(self, note: str) -> None:
+        if note != self._shown_note:
+            self._shown_note = note
+            self.refresh()
 
     @on(Input.Changed)
     def _judge(self, event: Input.Changed) -> None:

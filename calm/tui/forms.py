@@ -35,7 +35,7 @@ class FormColumn:
 
 
 @dataclass(frozen=True)
-class Asked:
+class FormField:
     """A form field: a text that the user enters.
 
     Attributes
@@ -58,7 +58,7 @@ class Asked:
     is_needed: bool = False
 
 
-def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[Asked]:
+def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[FormField]:
     """Return the fields of a model: required keys first, keys of nested models last.
 
     Parameters
@@ -67,12 +67,12 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
     needed : whether the model is required; otherwise its required keys may be blank
     """
     model.model_rebuild()  # resolves forward references
-    own: list[Asked] = []
-    inner: list[Asked] = []
+    own: list[FormField] = []
+    inner: list[FormField] = []
     for name, field in model.model_fields.items():
         inside = model_in(field.annotation)
         if inside is None:
-            own.append(_asked(model, name, at, needed=needed))
+            own.append(_form_field(model, name, at, needed=needed))
         else:
             first, *rest = form_of(inside, f"{at}{name}.", needed=needed and field.is_required())
             inner += [replace(first, above=first.above or name.replace("_", " ")), *rest]
@@ -85,7 +85,7 @@ def model_in(annotation: Any) -> type[BaseModel] | None:
     return members[0] if len(members) == 1 and _is_model(members[0]) else None
 
 
-def _asked(model: type[BaseModel], name: str, at: str, *, needed: bool) -> Asked:
+def _form_field(model: type[BaseModel], name: str, at: str, *, needed: bool) -> FormField:
     field = model.model_fields[name]
     members, is_needed = _members(field.annotation), field.is_required()
     found, words = quantity_of(field), _words(members)
@@ -99,7 +99,7 @@ def _asked(model: type[BaseModel], name: str, at: str, *, needed: bool) -> Asked
         check = anything  # its meaning depends on another key; all keys are checked together
     example = text_of(_as_texts(field.examples[0])) if field.examples else ""
     takes = _EXAMPLE.sub("", field.description or "")  # the example is the placeholder of the field
-    return Asked(
+    return FormField(
         f"{at}{name}",
         name.replace("_", " ") + " *" * (is_needed and needed),
         check=check,
@@ -215,7 +215,7 @@ def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
     return [value for _, value in cells]
 
 
-def filled(asked: Iterable[Asked], values: Any) -> list[Asked]:
+def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
     """Return the fields filled with the texts of the file."""
 
     def at(key: str) -> Any:
@@ -224,7 +224,7 @@ def filled(asked: Iterable[Asked], values: Any) -> list[Asked]:
             found = found.get(step) if isinstance(found, dict) else None
         return found
 
-    return [replace(each, text=text_of(at(each.key))) for each in asked]
+    return [replace(each, text=text_of(at(each.key))) for each in fields]
 
 
 def values_of(texts: Mapping[str, str]) -> dict[str, Any]:

@@ -63,20 +63,20 @@ edit_column('label') | n | label |  | Edit the label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit the count.
 screen.change_component | O | change component |  | Edit the component of the row in a form, if the
   file defines it.
-equipment | N | serial number |  | Serial number, calibration, sampling, battery, termination and
-  planned depth of the row.
+equipment | N | serial number |  | Edit serial number, calibration, sampling, battery, termination
+  and planned depth of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | Go to the next match.
 find_next(-1) | less_than_sign | find previous |  | Go to the previous match.
 weakest | percent_sign | weakest |  | Go to the piece with the highest use of strength.
-column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
-  or of all rows with the component under the cursor; a list can be pasted.
+column | number_sign | fill column |  | Fill in serial numbers, lengths, labels or codes of the
+  marked rows, or of all rows with the component under the cursor; a list can be pasted.
 repeat | plus | repeat |  | Add several copies of the piece, or of the marked pieces.
 next_finding | f8,g | next finding |  | Go to the next row with a finding of the most serious state;
   the last line of the screen shows the finding.
 why | y | why |  | Show all findings of this row, with remedies.
 search('replace') | r | replace |  | Replace the component.
-move_cursor(-1) | up | up | - | To the row above.
+move_cursor(-1) | up | up | - | Go to the row above.
 move_cursor(1) | down | down | - | Go to the row below.
 move_page(-1) | pageup | page up | - | Go a page up.
 move_page(1) | pagedown | page down | - | Go a page down.
@@ -87,8 +87,8 @@ move_column(1) | right | right | - | Go to the column on the right.
 screen.back | escape | back | - | Return to the line of the verdict that led here.
 [anywhere] On the main screen
 undo | u | undo | 3 | Undo the last change; repeat to undo earlier changes.
-suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; undo while a value is edited,
-  and in a browser.
+suspend | ctrl+z | suspend |  | Suspend to the shell (`fg` returns); undo while a value is edited
+  or in a browser.
 redo | U,ctrl+y | redo |  | Redo the last undone change.
 water | w | water | 4 | Edit depth, density, current and wind of the environments.
 next_environment | e | environment |  | Show the line in the next environment.
@@ -114,7 +114,7 @@ sheet('tow') | T | tow |  | Edit speed and course of a tow; turns a mooring into
 settings | comma | settings |  | Edit solver, limits of the check, uncertainty and units of output.
 begin | b | begin |  | Start an empty line from a template: deep, shelf, ADCP, taut or slack surface
   mooring, or tow.
-papers | f9 | documents |  | Show the bill of material; write the report of the check or the deck
+documents | f9 | documents |  | Show the bill of material; write the report of the check or the deck
   sheets.
 history | h | history |  | Show the history of changes, and go back to an earlier state.
 text | t | text |  | Edit the file as text, with its mistakes.

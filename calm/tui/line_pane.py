@@ -11,13 +11,13 @@ from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import Then
 from calm.tui.checking import count
 from calm.tui.dialogs import Answer, Question, ask, choose, enter
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.key_table import bindings
 from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
 from calm.tui.line_table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.mooring_sheet import equipment_changes, equipment_sheet
-from calm.tui.names import Named, namings
-from calm.tui.verdict_text import Saying, why
+from calm.tui.names import Named, references_to
+from calm.tui.verdict_text import VerdictLine, why
 from calm.tui.workspace import Workspace
 
 _MIXED = "Pieces and clamps of other pieces are marked; mark only pieces or only clamps"
@@ -76,7 +76,6 @@ class LinePane(LineSearch):
         return is_made
 
     def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
-        """Show the edited draft and have it judged."""
         self.show_draft(spot)
         self.workspace.tell("; ".join([*filter(None, [message]), *self.session.followed]))
         self.workspace.edited()
@@ -91,9 +90,9 @@ class LinePane(LineSearch):
         """Go a page up or down."""
         self.table.cursor += by * max(self.table.size.height - 2, 1)
 
-    def action_move_to_end(self, way: int) -> None:
+    def action_move_to_end(self, direction: int) -> None:
         """Go to the top or the bottom."""
-        self.table.cursor = 0 if way < 0 else len(self.table.rows) - 1
+        self.table.cursor = 0 if direction < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
         """Toggle the mark of the row, or extend the marks and move on."""
@@ -123,8 +122,7 @@ class LinePane(LineSearch):
                 return
         self.workspace.tell("There are no findings")
 
-    def _found_of(self, spot: Place) -> list[Saying]:
-        """Return the current findings of a row, the most severe first."""
+    def _found_of(self, spot: Place) -> list[VerdictLine]:
         view = self.workspace.view
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
@@ -196,13 +194,13 @@ class LinePane(LineSearch):
             self.attempt(lambda: self.session.duplicate(chosen, times=int(texts["count"])))
 
         if chosen:
-            asked = [Asked("count", "Copies below", check=count)]
-            enter(self.app, "Repeat", "", asked, take)
+            fields = [FormField("count", "Copies below", check=count)]
+            enter(self.app, "Repeat", "", fields, take)
 
     def action_duplicate(self) -> None:
         """Duplicate the chosen rows."""
         chosen = self._chosen_of_a_kind()
-        named = [each for spot in chosen for each in namings(self.session.draft, spot)]
+        named = [each for spot in chosen for each in references_to(self.session.draft, spot)]
 
         def duplicate(also: Sequence[Named] = ()) -> None:
             self.attempt(lambda: self.session.duplicate(chosen, also))

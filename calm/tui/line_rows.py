@@ -17,13 +17,13 @@ from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.dialogs import InputSheet
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.line_table import EDITABLE, TableRow
 from calm.tui.mooring_sheet import (
     RELEASES,
     entered,
+    entry_text,
     equipment_changes,
-    said,
     serial_of_equipment,
     texts_of_equipment,
 )
@@ -115,7 +115,7 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
         "label": values.get("label", ""),
         "count": values.get("count", ""),
         "length": f"at {values.get('at', '?')}" if spot.is_clamp else _length(values, found),
-        **_told(found),
+        **_summary_texts(found),
     }
     states = [row.state for row in found if row.state is not None]
     gravest = worst_state(states) if states else None
@@ -123,13 +123,12 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
 
 
 def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
-    """Return the written length, or the computed length of a `fit`."""
     if values.get("length") == "fit" and found and found[0].length is not None:
         return f"fit: {QUANTITIES['length'].say(found[0].length)}"
     return length_text(values)
 
 
-def _told(found: Sequence[FoundRow]) -> dict[str, str]:
+def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
     """Return the texts of an item: the governing value of its pieces in each column."""
     texts = {}
     for one in table_columns(Output.BUILDER):
@@ -146,7 +145,6 @@ def _told(found: Sequence[FoundRow]) -> dict[str, str]:
 
 
 _NO_COUNT = "Clamps cannot have a count; duplicate the clamp instead"
-_NO_SERIAL = "is an assembly: only its parts have serial numbers"
 _NO_LENGTH = "The component determines the length"
 
 
@@ -169,8 +167,6 @@ class LineCell:
     def refused(self) -> str:
         """Reason why the value cannot be edited, or ""."""
         listed = self.listed
-        if self.column == "serial" and listed is not None and listed.kind == "assembly":
-            return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
         is_rigid = listed is not None and listed.kind not in components.FLEXIBLE_KINDS
@@ -272,16 +268,20 @@ class ColumnFilling:
         self._session, self._column = workspace.session, column
         held = "serial" if column == "codes" else column  # codes belong to serial numbers
         self._cells = {str(i): LineCell(workspace, spot, held) for i, spot in enumerate(spots)}
-        self._asked = [each for key in self._cells if (each := self._ask(key)) is not None]
+        self._form_fields = [
+            each for key in self._cells if (each := self._form_field(key)) is not None
+        ]
 
     @property
     def sheet(self) -> ColumnSheet | None:
         """Sheet for the values, or None if no row can have such a value."""
-        return ColumnSheet(_TITLES[self._column], "", self._asked) if self._asked else None
+        return (
+            ColumnSheet(_TITLES[self._column], "", self._form_fields) if self._form_fields else None
+        )
 
     def write(self, texts: Mapping[str, str]) -> None:
         """Write the changed values in one step."""
-        begun, draft = {each.key: each.text for each in self._asked}, self._session.draft
+        begun, draft = {each.key: each.text for each in self._form_fields}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"
         if self._column == "codes":
@@ -292,13 +292,13 @@ class ColumnFilling:
             rows = {cell.spot: cell.values_of(text) for cell, text in new.items()}
             self._session.put(rows, label)
 
-    def _ask(self, key: str) -> Asked | None:
+    def _form_field(self, key: str) -> FormField | None:
         cell = self._cells[key]
         values = self._session.item(cell.spot).values
         title = values.get("label") or values.get("use", "")
         if self._column != "codes":
-            return None if cell.refused else Asked(key, title, cell.text, cell.check)
+            return None if cell.refused else FormField(key, title, cell.text, cell.check)
         if cell.listed is None or cell.listed.role != "release" or not cell.text:
             return None
-        codes = said(self._session.draft, RELEASES, ("serial", cell.text), "codes")
-        return Asked(key, title, codes)
+        codes = entry_text(self._session.draft, RELEASES, ("serial", cell.text), "codes")
+        return FormField(key, title, codes)

@@ -7,6 +7,7 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 
 from calm.files import Place
+from calm.files.editing import Value
 from calm.tui import line_pane, line_table, pictures, screen
 from calm.tui.catalogue_pane import CataloguePane, Purpose
 from calm.tui.verdict_pane import VerdictPane, state_word
@@ -74,22 +75,22 @@ class LineScreen(screen.DraftScreen):
     def show_draft(self) -> None:
         """Show the current draft."""
         self.line.show_draft()
-        self._show_beside()
+        self._show_side_panes()
         self.show_title()
 
     def show_view(self) -> None:
         """Show the last view; values of an earlier draft are dimmed."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
-        self._show_beside()
+        self._show_side_panes()
         self.show_title()
 
     def show_catalogue(self) -> None:
         """Use the catalogue that was loaded."""
         self.line.show_rows()
-        self._show_beside()
+        self._show_side_panes()
 
-    def _show_beside(self) -> None:
+    def _show_side_panes(self) -> None:
         """Show catalogue, picture and verdict of the last view, dimmed if out of date."""
         self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh
@@ -142,7 +143,6 @@ class LineScreen(screen.DraftScreen):
         self.catalogue.open(purpose, self._target(purpose), self._role(purpose), clampable=is_clamp)
 
     def _role(self, purpose: Purpose) -> str:
-        """Return the likely role of a new component, such as a float on top or an anchor."""
         spot, index, items = self.line.table.spot, self.workspace.index, self.session.draft.items
         if spot is None or (purpose == "above" and spot == Place(0)):
             return "" if self.session.draft.is_tow else "float"
@@ -163,8 +163,8 @@ class LineScreen(screen.DraftScreen):
         values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
         return values.get("label") or values.get("use", "")
 
-    def _take_component(self, purpose: Purpose, values: dict[str, str]) -> None:
-        spot, session, use = self.line.table.spot, self.session, values["use"]
+    def _take_component(self, purpose: Purpose, values: dict[str, Value]) -> None:
+        spot, session, use = self.line.table.spot, self.session, str(values["use"])
         if purpose == "replace" and spot is not None:
             kept: list[str] = []
             if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):

@@ -188,9 +188,9 @@ EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
 _WORDS = ("leg", "component", "label")
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "use": 5,
            "planned_depth": 7}  # fmt: skip
-_USUAL_WIDTH = 9
-_LEAST_TEXT, _WANTED_TEXT = 9, 12
-_MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH, _MOST_LEG = 30, 40, 13, 10
+_DEFAULT_WIDTH = 9
+_MIN_TEXT, _PREFERRED_TEXT = 9, 12
+_MAX_COMPONENT, _MAX_LABEL, _MAX_LENGTH, _MAX_LEG = 30, 40, 13, 10
 LEAD = 4
 """Cells before the first column: cursor, mark or state, sign, a blank."""
 
@@ -211,8 +211,8 @@ class TableRow:
 
 def layout_for(
     width: int,
-    component: int = _MOST_COMPONENT,
-    label: int = _MOST_LABEL,
+    component: int = _MAX_COMPONENT,
+    label: int = _MAX_LABEL,
     length: int = 0,
     leg: int = 0,
     *,
@@ -235,20 +235,20 @@ def layout_for(
         figures.pop("planned_depth")
     heads |= figures | {"use": "use"}
     shown = list(heads)[0 if leg else 1 :]
-    fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
-    fixed["leg"] = min(max(leg, 3), _MOST_LEG)
+    fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MAX_LENGTH)}
+    fixed["leg"] = min(max(leg, 3), _MAX_LEG)
     for name, head in figures.items():
-        fixed[name] = max(_WIDTHS.get(name, _USUAL_WIDTH), len(head))
+        fixed[name] = max(_WIDTHS.get(name, _DEFAULT_WIDTH), len(head))
     others = [name for name in figures if name not in _WIDTHS]
     for name in (*others, "use", "planned_depth", "tilt", "count", "tension", "depth"):
-        if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
+        if _text_room(shown, width, fixed) >= 2 * _PREFERRED_TEXT:
             break
         if name in shown:
             shown.remove(name)
-    room = max(_text_room(shown, width, fixed), 2 * _LEAST_TEXT)
-    component = min(max(component, _LEAST_TEXT), _MOST_COMPONENT)
-    component = min(component, room - min(max(label, _LEAST_TEXT), room // 2))
-    widths = fixed | {"component": component, "label": min(room - component, _MOST_LABEL)}
+    room = max(_text_room(shown, width, fixed), 2 * _MIN_TEXT)
+    component = min(max(component, _MIN_TEXT), _MAX_COMPONENT)
+    component = min(component, room - min(max(label, _MIN_TEXT), room // 2))
+    widths = fixed | {"component": component, "label": min(room - component, _MAX_LABEL)}
     columns, start = [], LEAD
     for name in shown:
         tail = _TAIL if name == "component" else 0  # the end of an id is its size
@@ -259,7 +259,6 @@ def layout_for(
 
 
 def _heading(figure: ResultColumn) -> str:
-    """Return the heading of a result column, with its unit."""
     if figure.quantity is None:
         return figure.name
     return f"{figure.quantity.heading} {figure.quantity.display_unit}".rstrip()
@@ -285,8 +284,8 @@ class LineSearch(cell_editor.EditableTable):
             self.action_find_next(1)
 
         takes = "id, label, serial, maker"
-        asked = [forms.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
-        dialogs.enter(self.app, "Find in the line", "", asked, take)
+        fields = [forms.FormField("words", "Words", self.words, checking.needed("a word"), takes)]
+        dialogs.enter(self.app, "Find in the line", "", fields, take)
 
     def action_find_next(self, by: int) -> None:
         """Go to the next or previous row that contains all words (id, label, serial, maker)."""
@@ -294,7 +293,9 @@ class LineSearch(cell_editor.EditableTable):
         if not wanted:
             self.workspace.tell("/ finds words in the line first")
             return
-        self._to(by, lambda row: all(word in self._said(row) for word in wanted), self.words)
+        self._to(
+            by, lambda row: all(word in self._searched_text(row) for word in wanted), self.words
+        )
 
     def action_weakest(self) -> None:
         """Go to the row with the highest use of strength."""
@@ -328,7 +329,7 @@ class LineSearch(cell_editor.EditableTable):
         self.table.cursor = number
         self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
-    def _said(self, row: TableRow) -> str:
+    def _searched_text(self, row: TableRow) -> str:
         """Return the searchable text of a row, including its catalogue entry."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None

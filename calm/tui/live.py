@@ -49,7 +49,7 @@ class View:
     rows : results in the order of the file, clamps below their piece
     complete : whether these are all findings of `calm check`, see `judge_fully`; true for a tow,
         which has no findings
-    stands : results in each environment, once they are judged
+    cases : results in each environment, once they are judged
     elsewhere : mistakes in other environments
     memory : previous solutions, for the next text
     """
@@ -67,7 +67,7 @@ class View:
     environments: tuple[str, ...] = ()
     rows: tuple[FoundRow, ...] = ()
     complete: bool = False
-    stands: tuple[MooringInEnvironment, ...] = ()
+    cases: tuple[MooringInEnvironment, ...] = ()
     elsewhere: tuple[Problem, ...] = ()
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
@@ -142,7 +142,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
-        view, findings=findings, tighter=tighter, rows=rows, stands=assessment.stands,
+        view, findings=findings, tighter=tighter, rows=rows, cases=assessment.stands,
         elsewhere=tuple(problems), complete=True,
     )  # fmt: skip
 
@@ -182,13 +182,13 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     except InputError as error:
         return _wrong(view, error.problems)
     show_in(file.units)
-    view = replace(view, file=file, missing=tuple(_lacking(file)))
+    view = replace(view, file=file, missing=tuple(_missing_parts(file)))
     if "no float" in view.missing:
         return replace(view, rows=tuple(rows_of(file, None)))
     return _solved(view, file)
 
 
-def _lacking(file: MooringFile) -> Iterator[str]:
+def _missing_parts(file: MooringFile) -> Iterator[str]:
     """Yield missing parts without which a mooring has no equilibrium; none for a tow."""
     if file.tow is not None or file.legs:
         return
@@ -269,9 +269,9 @@ def rows_of(
             row, figures = solved.get(part.place), {}
             if row is not None:
                 length = row.cut_length if isinstance(row, ComponentRow) else None
-                told = {one.name: one.value(row, file) for one in columns}
+                values = {one.name: one.value(row, file) for one in columns}
                 figures = {
-                    name: one for name, one in told.items() if one is not None and one == one
+                    name: one for name, one in values.items() if one is not None and one == one
                 }
             gravest = max(own, key=lambda each: each.state.severity, default=None)
             yield FoundRow(

@@ -18,7 +18,7 @@ from calm.files.yaml_document import Location
 from calm.tui.checking import Reading
 from calm.tui.component_screen import form_fields
 from calm.tui.dialogs import InputSheet
-from calm.tui.forms import Asked, filled, form_of, model_in, written
+from calm.tui.forms import FormField, filled, form_of, model_in, written
 from calm.tui.session import location
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def settings() -> list[str]:
     return [name for name, each in fields if name not in known and model_in(each.annotation)]
 
 
-def sheet_of(name: str, draft: Draft, hung: Piece | Clamp | None) -> Sheet:
+def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
     """Return a sheet of `SHEETS` or of a section of `settings`, filled from the file.
 
     Parameters
@@ -64,46 +64,48 @@ def sheet_of(name: str, draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """
     fields = MooringKeys.model_fields
     title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
-    asked: list[Asked] = []
+    form_fields: list[FormField] = []
     for key in keys:
         model = model_in(fields[key].annotation)
-        asked += form_of(model, f"{key}.", needed=name == "tow") if model else _top_level(key)
+        form_fields += form_of(model, f"{key}.", needed=name == "tow") if model else _top_level(key)
     about = _ABOUT.get(name, "" if name in SHEETS else fields[name].description or "")
     if name == "tow" and draft.is_tow:
         about = ""
     if name == "deployed":
-        return _deployed_sheet(draft, hung, asked)
-    return InputSheet(title, about, filled(asked, draft.value(()))), title.lower(), written
+        return _deployed_sheet(draft, part, form_fields)
+    return InputSheet(title, about, filled(form_fields, draft.value(()))), title.lower(), written
 
 
-def _top_level(key: str) -> list[Asked]:
+def _top_level(key: str) -> list[FormField]:
     return [each for each in form_of(MooringKeys, needed=False) if each.key == key]
 
 
-def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
+def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
     """Return the piece or clamp of a row; None if the row has several, or is unknown."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
 
-def _deployed_sheet(draft: Draft, hung: Piece | Clamp | None, asked: list[Asked]) -> Sheet:
+def _deployed_sheet(
+    draft: Draft, part: Piece | Clamp | None, form_fields: list[FormField]
+) -> Sheet:
     """Return the sheet *As deployed*, with the keys of the row's part, else of all parts."""
-    if hung is None:
-        sheet = InputSheet("As deployed", _COMPARED, filled(asked, draft.value(())))
+    if part is None:
+        sheet = InputSheet("As deployed", _COMPARED, filled(form_fields, draft.value(())))
         return sheet, "the deployment", written
-    is_release = hung.component.role == "release"
+    is_release = part.component.role == "release"
     without = {"deployed.items"} if is_release else {"deployed.items", "releases"}
-    whole = filled([each for each in asked if each.key not in without], draft.value(()))
+    whole = filled([each for each in form_fields if each.key not in without], draft.value(()))
     own = [
-        replace(each, text=said(draft, _ITEMS, ("label", hung.label), each.key))
+        replace(each, text=entry_text(draft, _ITEMS, ("label", part.label), each.key))
         for each in form_of(DeployedItem)
-        if each.key != "label" and (each.key != "length" or isinstance(hung.component, Flexible))
+        if each.key != "label" and (each.key != "length" or isinstance(part.component, Flexible))
     ]
     row = [replace(each, key=f"{_ROW}{each.key}") for each in own]
-    row[0] = replace(row[0], above=hung.label)
+    row[0] = replace(row[0], above=part.label)
     every = sorted([*whole, *row], key=lambda each: bool(each.columns))  # tables come last
     sheet = InputSheet("As deployed", _COMPARED, every)
-    return sheet, "the deployment", partial(_deployed, hung.label)
+    return sheet, "the deployment", partial(_deployed, part.label)
 
 
 _ROW = "row: "
@@ -126,13 +128,13 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     label : label of the row
     values : keys of the row in the file
     """
-    asked = [
+    form_fields = [
         replace(each, text=texts_of_equipment(values, each.key))
         for each in form_of(Equipment)
         if not (is_clamp and each.key == "termination")
     ]
-    asked[0] = replace(asked[0], check=serial_of_equipment)
-    return InputSheet(label, _SEVERAL, asked)
+    form_fields[0] = replace(form_fields[0], check=serial_of_equipment)
+    return InputSheet(label, _SEVERAL, form_fields)
 
 
 def equipment_changes(
@@ -142,7 +144,7 @@ def equipment_changes(
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
         if new != texts_of_equipment(values, key):
-            several = key == "serial" and "," in new and "count" in values
+            several = key == "serial" and "," in new
             changed[key] = [one.strip() for one in new.split(",")] if several else new or None
     return changed
 
@@ -154,14 +156,14 @@ def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check a serial number, or one for each of a count."""
+    """Check a serial number, or one for each of a count or of a pair."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
     return Reading(", ".join(numbers))
 
 
-def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
+def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
     """Return the plain text of an entry under a key, else "".
 
     Parameters
@@ -180,7 +182,9 @@ def entered(
 
     An entry that has only its identifying key left is deleted.
     """
-    changed = {key: text for key, text in texts.items() if text != said(draft, rows, called, key)}
+    changed = {
+        key: text for key, text in texts.items() if text != entry_text(draft, rows, called, key)
+    }
     index = _index(draft, rows, called)
     if index is None:
         given = dict([called]) | changed
@@ -211,7 +215,7 @@ def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> Input
     ----------
     complete : whether all rules have been judged; otherwise more values may be needed
     """
-    asked: list[Asked] = []
+    form_fields: list[FormField] = []
     notes = [] if complete else [PENDING]
     elsewhere = [f"{each.called}: {_ELSEWHERE}" for each in missing if not each.fields]
     for each in missing:
@@ -219,11 +223,11 @@ def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> Input
             above = "" if number else each.called
             key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
             takes = each.estimates.get(figure.key, figure.takes)
-            asked.append(replace(figure, key=key, title=title, above=above, takes=takes))
-    asked.append(Asked("source", "source", takes=_SOURCE, above="Source of these values"))
+            form_fields.append(replace(figure, key=key, title=title, above=above, takes=takes))
+    form_fields.append(FormField("source", "source", takes=_SOURCE, above="Source of these values"))
     count = len(missing)
     title = f"Missing values of {count} component{'s' * (count != 1)}; all are optional"
-    return InputSheet(title, "\n".join([*elsewhere, *notes]), asked)
+    return InputSheet(title, "\n".join([*elsewhere, *notes]), form_fields)
 
 
 @dataclass
@@ -254,7 +258,7 @@ class Missing:
         return self.use if labels == self.use else f"{self.use}: {labels}"
 
     @property
-    def fields(self) -> list[Asked]:
+    def fields(self) -> list[FormField]:
         """Fields of the component form that can supply the missing values."""
         return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
 

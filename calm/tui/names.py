@@ -83,25 +83,25 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
         if place in moved
     }
     known, all_now = ([*chain.from_iterable(each.values())] for each in (old, new))
-    told = []
+    messages = []
     for each in names:
-        meant = set(check_limits.matching(each.text, known))
-        wanted = {renamed[label] for label in meant if label in renamed}
-        if not meant or (set(check_limits.matching(each.text, all_now)) >= wanted and wanted):
+        matched = set(check_limits.matching(each.text, known))
+        wanted = {renamed[label] for label in matched if label in renamed}
+        if not matched or (set(check_limits.matching(each.text, all_now)) >= wanted and wanted):
             continue
-        text = _called(each.text, wanted, renamed, all_now)
+        text = _new_reference(each.text, wanted, renamed, all_now)
         try:
             if text is None:
                 raise LookupError
             after = after.put_at(each.location, text)
         except (CalmError, LookupError):
-            told.append(f"{each.where} still refers to `{each.text}`, which no longer exists")
+            messages.append(f"{each.where} still refers to `{each.text}`, which no longer exists")
         else:
-            told.append(f"{each.where} now refers to {text}")
-    return after, list(dict.fromkeys(told))
+            messages.append(f"{each.where} now refers to {text}")
+    return after, list(dict.fromkeys(messages))
 
 
-def _called(
+def _new_reference(
     text: str, wanted: set[str], renamed: Mapping[str, str], labels: Iterable[str]
 ) -> str | None:
     """Return the text that matches the new labels, or None."""
@@ -116,12 +116,12 @@ def _called(
     return None
 
 
-def namings(draft: Draft, place: Place) -> list[Named]:
+def references_to(draft: Draft, place: Place) -> list[Named]:
     """Return the references to this row alone, which could also mean a copy of the row."""
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 
-def widened(draft: Draft, named: Iterable[Named]) -> Draft:
+def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
     """Extend acceptances of a piece to all pieces with the same base name."""
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):
@@ -129,7 +129,7 @@ def widened(draft: Draft, named: Iterable[Named]) -> Draft:
     return draft
 
 
-class Standing:
+class EnvironmentChoice:
     """The current environment of a line: the default, a named one, or an environment file.
 
     Parameters

@@ -25,8 +25,8 @@ Tab = Literal["elevation", "plan", "tension", "schematic"]
 TABS: tuple[Tab, ...] = ("elevation", "plan", "tension", "schematic")
 
 _LEAST = (20, 6)
-_LEAST_BESIDE = 52
-_BESIDE, _MOST_BESIDE = 3, 26
+_MIN_WIDTH_FOR_CURRENT = 52
+_CURRENT_SHARE, _MAX_CURRENT_WIDTH = 3, 26
 
 
 class Picture(scrolled.DrawnRows, can_focus=True):
@@ -44,13 +44,13 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         super().__init__()
         self.tab: Tab = "elevation"
         self._view: View | None = None
-        self._beside: Sequence[Shape] = ()
+        self._overlays: Sequence[Shape] = ()
 
-    def show(self, view: View | None, tab: Tab, beside: Sequence[Shape] = ()) -> None:
+    def show(self, view: View | None, tab: Tab, overlays: Sequence[Shape] = ()) -> None:
         """Draw the line of a view, with other shapes for comparison."""
         if tab != self.tab:
             self.scroll_to(0, 0, animate=False)
-        self._view, self.tab, self._beside = view, tab, beside
+        self._view, self.tab, self._overlays = view, tab, overlays
         self.draw_again()
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
@@ -72,7 +72,7 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
-            return plan(result, *size, self._beside)
+            return plan(result, *size, self._overlays)
         lines = result.legs
         if self.tab == "tension":
             rows = size.height // len(lines)
@@ -87,14 +87,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
     def _elevation(self, result: Result, size: Size) -> list[Text]:
         from calm.drawing.sketch import current_profile, elevation
 
-        if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
-            return elevation(result, *size, self._beside)
-        beside = min(size.width // _BESIDE, _MOST_BESIDE)
-        line = elevation(result, size.width - beside - 1, size.height, self._beside)
-        profile = current_profile(result.water, beside, size.height)
+        if size.width < _MIN_WIDTH_FOR_CURRENT or result.file.environment.depth is None:
+            return elevation(result, *size, self._overlays)
+        current_width = min(size.width // _CURRENT_SHARE, _MAX_CURRENT_WIDTH)
+        line = elevation(result, size.width - current_width - 1, size.height, self._overlays)
+        profile = current_profile(result.water, current_width, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
-            left.truncate(size.width - beside, pad=True)
+            left.truncate(size.width - current_width, pad=True)
             rows.append(left.append_text(right))
         return rows
 
@@ -142,7 +142,7 @@ class Pictures(Vertical):
         self._view, self._note = view, note
         self._show()
 
-    def put_beside(self, saved: Shape | None) -> None:
+    def overlay(self, saved: Shape | None) -> None:
         """Draw the saved line for comparison; None removes it."""
         self._saved = saved
         self._show()

@@ -16,7 +16,7 @@ from calm.files import editing, read_mooring
 from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question, Then, choose, enter
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
 
@@ -40,13 +40,13 @@ class Saving:
         self,
         app: App[Any],
         workspace: Workspace,
-        taken_over: Callable[[str], object],
+        show_replaced_draft: Callable[[str], object],
         leave: Callable[[], object],
     ) -> None:
-        self._taken_over, self._leave = taken_over, leave
+        self._taken_over, self._leave = show_replaced_draft, leave
         self._app, self._workspace, self._session = app, workspace, workspace.session
         self.presence = Presence()
-        self._told: tuple[object] | None = None  # state on the disk that was reported last
+        self._reported: tuple[object] | None = None  # state on the disk that was reported last
 
     def save(self, then: Then | None = None) -> None:
         """Save, asking for a file name if needed, and call `then` afterwards."""
@@ -66,11 +66,11 @@ class Saving:
             folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
-        self.presence.say(self._session.file.path)
+        self.presence.announce(self._session.file.path)
         wrong = self._mistake()
         but = "; ".join(filter(None, [lost, wrong]))
-        told = f"{self._session.name} saved" + (f", but {but}" if but else "")
-        self._workspace.tell(told, wrong=bool(wrong))
+        message = f"{self._session.name} saved" + (f", but {but}" if but else "")
+        self._workspace.tell(message, wrong=bool(wrong))
         self._workspace.edited()  # relative names may now refer to other files
         if then is not None and not wrong:
             then()
@@ -85,8 +85,8 @@ class Saving:
             found = [each for each in error.problems if not each.lacks]
             if found:
                 place = place_of(found[0], path)
-                said = ", ".join(filter(None, [place, found[0].message]))
-                return f"the file cannot be opened: {said}"
+                mistake = ", ".join(filter(None, [place, found[0].message]))
+                return f"the file cannot be opened: {mistake}"
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
@@ -102,10 +102,12 @@ class Saving:
             else:
                 self._write(lambda: self._session.save_as(chosen), then)
 
-        begun = str(begin or path or "")
-        asked = [Asked("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")]
+        initial = str(begin or path or "")
+        fields = [
+            FormField("path", "File", initial, _is_writable, placeholder="e.g. iroise-2026.yaml")
+        ]
         text = f"Relative to {Path.cwd()}."
-        enter(self._app, "Save as", text, asked, take)
+        enter(self._app, "Save as", text, fields, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
         """Ask before overwriting another file, a protected file, or a file changed on the disk."""
@@ -125,7 +127,7 @@ class Saving:
         text = f"{path}{' (write-protected)' if protected else ''}"
         if is_changed and stamp is not None:
             theirs = "load the file from the disk; undo restores your line"
-            answers.append(Answer("t", theirs, self._take_theirs))
+            answers.append(Answer("t", theirs, self._reload))
             title = f"{path.name} was changed by another program"
             text = "The file on the disk differs from your line. "
             text += f"It was written {moment(stamp[0] / 1e9)}."
@@ -133,27 +135,27 @@ class Saving:
 
     # the file on the disk
 
-    def look_at_disk(self) -> None:
+    def check_external_change(self) -> None:
         """Reload the file if another program changed it; warn if that would lose unsaved work."""
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
             return  # try again later: a question is open, or the application is ending
         if not session.file.changed_on_disk():
-            self._told = None
+            self._reported = None
             return
         now = (session.file.stamp,)
-        is_new, self._told = now != self._told, now
+        is_new, self._reported = now != self._reported, now
         if now[0] is None:
             if is_new:
                 session.history.saved("")
                 self._workspace.tell(_GONE, wrong=True)
                 self._workspace.edited()  # keep the draft like every change
         elif not (session.changed or screen.is_typing):
-            self._take_theirs(quietly=not is_new)
+            self._reload(quietly=not is_new)
         elif is_new:
             self._workspace.tell(_CHANGED, wrong=True)
 
-    def _take_theirs(self, *, quietly: bool = False) -> None:
+    def _reload(self, *, quietly: bool = False) -> None:
         try:
             text = self._session.file.read()
         except (CalmError, OSError) as error:
@@ -195,10 +197,12 @@ class Saving:
 
         def ask_again() -> None:
             yes = [Answer("y", "discard permanently", throw_away)]
-            told = f"It was kept {moment(kept.at)}."
+            kept_text = f"It was kept {moment(kept.at)}."
             choose(
                 app,
-                Question("Discard the work?", told, yes, back=partial(self.offer, kept, go_on)),
+                Question(
+                    "Discard the work?", kept_text, yes, back=partial(self.offer, kept, go_on)
+                ),
             )
 
         answers = [
@@ -212,7 +216,7 @@ class Saving:
 
     def quit(self) -> None:
         """Leave; unsaved work is asked about."""
-        self.look_at_disk()
+        self.check_external_change()
         if not self._session.changed:
             self._leave()
             return
@@ -229,8 +233,8 @@ class Saving:
         ]
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
-        told = "was deleted from the disk" if is_gone else "has unsaved changes"
-        choose(self._app, Question("Not saved", f"{name} {told}.", answers))
+        condition = "was deleted from the disk" if is_gone else "has unsaved changes"
+        choose(self._app, Question("Not saved", f"{name} {condition}.", answers))
 
 
 def chosen_path(text: str) -> Path:

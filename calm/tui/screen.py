@@ -115,21 +115,21 @@ class TitleBar(Widget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._said = "", "", False
+        self._texts = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
         """Show other texts; the right one is dimmed if `old`."""
-        if (left, right, old) != self._said:
-            self._said = left, right, old
+        if (left, right, old) != self._texts:
+            self._texts = left, right, old
             self.refresh()
 
     def render(self) -> Text:
         """Render both texts; the left one is truncated if necessary."""
         width = self.content_size.width
-        said, verdict, old = self._said
+        text, verdict, old = self._texts
         right = Text(verdict, style="dim" if old else "", no_wrap=True)
         right.truncate(max(width * 2 // 3, 1), overflow="ellipsis")
-        left = Text(said, no_wrap=True)
+        left = Text(text, no_wrap=True)
         left.truncate(max(width - cell_len(right.plain) - 1, 0), overflow="ellipsis", pad=True)
         return Text(" ").join([left, right])
 
@@ -150,22 +150,23 @@ class KeyBar(Static):
     def __init__(self) -> None:
         super().__init__()
         self._actions: list[Action] = []
-        self._told = ""
-        self._beside = False
+        self._message = ""
+        self._beside_message = False
 
-    def show_keys(self, actions: Iterable[Action], *, beside: bool = False) -> None:
-        """Show other keys; `beside` a message, which gets the rest of the line, unless it is of a
-        mistake.
+    def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
+        """Show other keys.
+
+        With `beside_message` the keys stay next to a message, unless it reports a mistake.
         """
-        if ((chosen := list(actions)), beside) != (self._actions, self._beside):
-            self._actions, self._beside = chosen, beside
+        if ((chosen := list(actions)), beside_message) != (self._actions, self._beside_message):
+            self._actions, self._beside_message = chosen, beside_message
             self._show()
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
         """Show a message; an empty one shows the keys again."""
-        if (text, wrong) == (self._told, self.has_class("-wrong")):
+        if (text, wrong) == (self._message, self.has_class("-wrong")):
             return
-        self._told = text
+        self._message = text
         self.set_class(bool(text) and wrong, "-wrong")
         self.set_class(bool(text) and not wrong, "-told")
         self._show()
@@ -177,16 +178,16 @@ class KeyBar(Static):
     def _show(self) -> None:
         width = self.content_size.width or 78
         keys = Content(_GAP).join(self._keys(width))
-        if self._told:
-            beside = self._beside and not self.has_class("-wrong")
-            room = max(width - keys.cell_length - len(_GAP), 0) if beside else width
-            text = Text(self._told)
+        if self._message:
+            beside_message = self._beside_message and not self.has_class("-wrong")
+            room = max(width - keys.cell_length - len(_GAP), 0) if beside_message else width
+            text = Text(self._message)
             text.truncate(room, overflow="ellipsis")
-            keys = Content.assemble(keys, _GAP, text.plain) if beside else Content(text.plain)
+            message = Content(text.plain)
+            keys = Content.assemble(keys, _GAP, message) if beside_message else message
         self.update(keys, layout=False)
 
     def _keys(self, width: int) -> list[Content]:
-        """The keys for which there is room."""
         parts, used = [], 0
         for action in self._actions:
             pressed = action.keys.split(",")[0]

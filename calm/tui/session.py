@@ -10,7 +10,7 @@ from typing import Any
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
 from calm.files.yaml_document import Location
-from calm.tui.names import Named, Standing, followed, widened
+from calm.tui.names import EnvironmentChoice, Named, followed, with_extended_acceptances
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that are independent of its component."""
@@ -23,7 +23,7 @@ class Session:
     ----------
     file : the file on the disk
     text : its text
-    environment : see `Standing`
+    environment : see `EnvironmentChoice`
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Session:
         self._are_clamps = False  # whether the clipboard contains clamps
         self.followed: list[str] = []
         self.added: frozenset[Place] = frozenset()
-        self.standing = Standing(self.history, environment)
+        self.standing = EnvironmentChoice(self.history, environment)
         self.after_save: Callable[[Path, str], object] | None = None
 
     @property
@@ -106,16 +106,18 @@ class Session:
             self.added = frozenset()
 
     def _edit(
-        self, draft: Draft, label: str, *, gone: Iterable[Place] = (), new: Iterable[Place] = ()
+        self, draft: Draft, label: str, *, removed: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
         """Make a draft the current state, given its `gone` and `new` rows; update references."""
-        gone, new, then = list(gone), set(new), _rows_of(draft, 0, len(draft.items))
+        removed, new, then = list(removed), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
-            [spot for spot in self.spots() if spot not in gone],
+            [spot for spot in self.spots() if spot not in removed],
             [spot for spot in then if spot not in new],
             strict=False,
         )
-        moved = dict(pairs) | (dict(zip(gone, sorted(new), strict=False)) if gone and new else {})
+        moved = dict(pairs) | (
+            dict(zip(removed, sorted(new), strict=False)) if removed and new else {}
+        )
         draft, self.followed = followed(self.draft, draft, moved)
         self.do(draft, label)
         self.added = frozenset(new.difference(moved.values()))
@@ -126,14 +128,14 @@ class Session:
             self.history.undo()
         self.do(Draft(text), label)
 
-    def insert(self, spot: Place | None, values: Mapping[str, str], *, below: bool) -> Place:
+    def insert(self, spot: Place | None, values: Mapping[str, Value], *, below: bool) -> Place:
         """Add a piece next to a row, or at the top of an empty line."""
         index = 0 if spot is None else spot.item + below
         draft = self.draft.insert(index, dict(values), above=not below)
         self._edit(draft, f"add {values['use']}", new=_rows_of(draft, index, 1))
         return Place(index)
 
-    def clamp(self, spot: Place, values: Mapping[str, str]) -> Place:
+    def clamp(self, spot: Place, values: Mapping[str, Value]) -> Place:
         """Add a clamp to the piece of a row, below its other clamps."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
@@ -150,7 +152,7 @@ class Session:
                 draft = draft.put(index, key, value, rows)
         self._edit(draft, label)
 
-    def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
+    def replace(self, spot: Place, values: Mapping[str, Value]) -> list[str]:
         """Replace the component of a row; return the remaining overrides of the old component."""
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
@@ -168,12 +170,12 @@ class Session:
         rows = self.spots()
         first = rows.index(chosen[0])
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
-        gone = [spot for spot in rows if spot in chosen or spot.item in pieces]
+        removed = [spot for spot in rows if spot in chosen or spot.item in pieces]
         draft = self.draft
         for spot in reversed(chosen):
             if spot.is_clamp:
                 draft = draft.delete([spot.clamp], clamps_of(spot.item))
-        self._edit(draft.delete(pieces), f"delete {self._called(chosen)}", gone=gone)
+        self._edit(draft.delete(pieces), f"delete {self._called(chosen)}", removed=removed)
         left = self.spots()
         return left[min(first, len(left) - 1)] if left else None
 
@@ -191,7 +193,7 @@ class Session:
         label = f"duplicate {self._called(chosen)}"
         if items:
             copies = self.draft.copy(items) * times
-            draft = widened(self.draft.paste(items[-1] + 1, copies), also)
+            draft = with_extended_acceptances(self.draft.paste(items[-1] + 1, copies), also)
             self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(copies)))
             return Place(items[-1] + 1)
         last, clamps = chosen[-1], self._clamps(chosen) * times
@@ -227,8 +229,8 @@ class Session:
             return Place(spot.item + by, clamp=spot.clamp)
 
         pieces = {spot.item for spot in moved if not spot.is_clamp}
-        gone = [spot for spot in self.spots() if spot in moved or spot.item in pieces]
-        self._edit(draft, f"move {self._called(moved)}", gone=gone, new=map(there, gone))
+        removed = [spot for spot in self.spots() if spot in moved or spot.item in pieces]
+        self._edit(draft, f"move {self._called(moved)}", removed=removed, new=map(there, removed))
         return tuple(map(there, moved))
 
     def copy(self, spots: Iterable[Place]) -> int:
@@ -258,7 +260,6 @@ class Session:
         return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
-        """Return the text of clamps, which may be on different pieces."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
 
@@ -306,7 +307,6 @@ class Session:
 
 
 def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
-    """Return the rows of consecutive items."""
     return [
         Place(number, clamp=clamp)
         for number in range(first, first + count)

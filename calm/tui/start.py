@@ -50,7 +50,7 @@ def open_session(
         text = Draft.empty().text
     session = Session(file, text, environment=environment, catalogs=catalogs)
     _refuse_other_files(session)
-    return session, file.left_behind()
+    return session, file.recoverable_work()
 
 
 def _refuse_other_files(session: Session) -> None:
@@ -110,7 +110,7 @@ def end(app: BuildApp, number: int, _frame: object) -> None:
     try:
         app.take_typed()
     finally:  # whatever the state of the screen
-        app.keep_at_the_end()
+        app.save_copy_on_exit()
     signal.signal(number, signal.SIG_DFL)
     if not (app.is_running and os.isatty(0)):
         os.kill(os.getpid(), number)

@@ -12,7 +12,7 @@ from textual import events, on
 from calm.records.delimited import NoTableError, copied_table
 from calm.tui import cell_editor, key_table, theme
 from calm.tui.checking import Reading
-from calm.tui.forms import Asked, FormColumn, Rows, rows_of, text_of_rows
+from calm.tui.forms import FormColumn, FormField, Rows, rows_of, text_of_rows
 from calm.tui.scrolled import TableCells, TableColumn
 
 _WIDTH = 14
@@ -201,7 +201,7 @@ class Grid(cell_editor.EditableTable):
             return
         at = cells.cursor + below if rows else 0
         at = min(at, len(rows) - 1) if self.ends_at(at) else at
-        self.change((*rows[:at], self.new_row(at), *rows[at:]), "a row more")
+        self.change((*rows[:at], self.new_row(at), *rows[at:]), "add a row")
         cells.cursor, cells.column = at, 0
         self._new = at
         self._edit()
@@ -210,7 +210,7 @@ class Grid(cell_editor.EditableTable):
         """Delete the row."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
-            self.change((*rows[:here], *rows[here + 1 :]), "a row less")
+            self.change((*rows[:here], *rows[here + 1 :]), "delete a row")
 
     # typed text
 
@@ -238,7 +238,7 @@ class Grid(cell_editor.EditableTable):
     def abandoned(self) -> None:
         """Delete an added row that was not filled."""
         if self._before is not None:
-            self.change(self._before, "a row less")
+            self.change(self._before, "delete a row")
             self.cells.cursor -= 1
         self._new, self._before = -1, None
 
@@ -273,12 +273,12 @@ class Grid(cell_editor.EditableTable):
 class TableField(Grid):
     """Table in a form."""
 
-    def __init__(self, asked: Asked, tell: Callable[..., object]) -> None:
+    def __init__(self, form_field: FormField, tell: Callable[..., object]) -> None:
         super().__init__(tell, lambda *_: None)
-        self.key, self.begun, self.asked = asked.key, asked.text, asked
-        rows = rows_of(asked.text, asked.columns)
+        self.key, self.begun, self.form_field = form_field.key, form_field.text, form_field
+        rows = rows_of(form_field.text, form_field.columns)
         self._shown = rows or ()
-        self.show(asked.columns if rows is not None else (), self._shown)
+        self.show(form_field.columns if rows is not None else (), self._shown)
 
     @property
     def text(self) -> str:

@@ -11,7 +11,7 @@ from textual.widgets import Static, TextArea
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
 from calm.tui import dialogs, forms, key_table, screen
-from calm.tui.workspace import Workspace, is_elsewhere, mistakes, said
+from calm.tui.workspace import Workspace, is_elsewhere, mistakes, problem_text
 
 _INDENT = 2
 _LINE_BREAK = re.compile(r"\r\n?|\n")
@@ -27,9 +27,9 @@ class YamlArea(TextArea):
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
-    def action_end(self, way: int) -> None:
+    def action_end(self, direction: int) -> None:
         """Go to the beginning or the end of the text."""
-        self.move_cursor(self.document.end if way > 0 else (0, 0))
+        self.move_cursor(self.document.end if direction > 0 else (0, 0))
 
     def undo(self) -> None:
         """Undo the last typing."""
@@ -67,7 +67,7 @@ class TextScreen(screen.DraftScreen):
 
     def __init__(self, workspace: Workspace, line: int = 1) -> None:
         super().__init__(workspace)
-        self._line, self._sought = line, ""
+        self._line, self._search_text = line, ""
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
@@ -96,7 +96,7 @@ class TextScreen(screen.DraftScreen):
         view, draft = self.workspace.view, self.session.draft
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
-        lines = [said(each, self.workspace.path) for each in self._problems]
+        lines = [problem_text(each, self.workspace.path) for each in self._problems]
         if not lines and known and view is not None:
             good = Content.from_markup("[$text-success]✓[/] The text is valid.")
             lines = [Content(f"? {each}") for each in view.missing] or [good]
@@ -151,20 +151,20 @@ class TextScreen(screen.DraftScreen):
 
         Without words, repeat the last search.
         """
-        self._sought = words or self._sought
-        if not self._sought:
+        self._search_text = words or self._search_text
+        if not self._search_text:
             self.workspace.tell("Press Ctrl+F to enter search words")
             return
-        area, sought = self.text_area, self._sought.lower()
+        area, search_text = self.text_area, self._search_text.lower()
         lines, (row, column) = area.document.lines, area.selection.end
         for number in range(len(lines) + 1):
             here = (row + number) % len(lines)
-            start = lines[here].lower().find(sought, 0 if number else column)
+            start = lines[here].lower().find(search_text, 0 if number else column)
             if start >= 0:
                 area.move_cursor((here, start), center=True)
-                area.move_cursor((here, start + len(sought)), select=True)
+                area.move_cursor((here, start + len(search_text)), select=True)
                 return
-        self.workspace.tell(f"{self._sought}: not found", wrong=True)
+        self.workspace.tell(f"{self._search_text}: not found", wrong=True)
 
     def action_next_problem(self) -> None:
         """Put the cursor on the next mistake."""
@@ -180,9 +180,9 @@ class TextScreen(screen.DraftScreen):
 
     def action_find(self) -> None:
         """Ask for search words, and go to the first match."""
-        asked = [forms.Asked("words", "Find", placeholder="a label, a key, a number")]
+        fields = [forms.FormField("words", "Find", placeholder="a label, a key, a number")]
         text, app = "F3 goes to the next match.", self.app
-        dialogs.enter(app, "Find in the text", text, asked, lambda it: self.find(it["words"]))
+        dialogs.enter(app, "Find in the text", text, fields, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
         """Go to the next match."""

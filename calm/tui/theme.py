@@ -17,7 +17,6 @@ from calm.checks.finding import State
 
 
 def _bars(ground: str, bar: str, lit: str) -> dict[str, str]:
-    """Return the colours of unobtrusive scroll bars."""
     grounds = ("background", "background-hover", "background-active", "corner-color")
     bars = {"scrollbar": bar, "scrollbar-hover": lit, "scrollbar-active": lit}
     return bars | {f"scrollbar-{each}": ground for each in grounds}
@@ -156,7 +155,6 @@ def _apart(style: Style, ground: Ink) -> Style:
 
 
 def _is_legible(ink: ColorTriplet, on: ColorTriplet) -> bool:
-    """Whether a colour is legible, in true colour and in 256 colours."""
     pair = map(Ink.from_triplet, (ink, on))
     few = (each.downgrade(ColorSystem.EIGHT_BIT).get_truecolor() for each in pair)
     return min(contrast(ink, on), contrast(*few)) >= _LEAST_CONTRAST

@@ -15,7 +15,7 @@ from textual.strip import Strip
 
 from calm.checks.finding import State
 from calm.tui import key_table, scrolled, theme
-from calm.tui.verdict_text import Saying, headline, sayings
+from calm.tui.verdict_text import VerdictLine, headline, verdict_lines
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -46,14 +46,14 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
     def __init__(self, go_to: Callable[..., object]) -> None:
         super().__init__(id="verdict-pane")
         self._go_to = go_to
-        self._said: list[Saying] = []
+        self._lines: list[VerdictLine] = []
         self._chosen = 0
 
     def say(self, view: View | None, note: str = "") -> None:
         """Show the verdict of a view, and a note below."""
         parts = [*_parts(view, note)]
-        self._said, self._texts = [each for each, _ in parts], [text for _, text in parts]
-        self._chosen = min(self._chosen, len(self._said) - 1)
+        self._lines, self._texts = [each for each, _ in parts], [text for _, text in parts]
+        self._chosen = min(self._chosen, len(self._lines) - 1)
         before = len(self._numbers)
         self.draw_again()
         self.drawn()
@@ -80,7 +80,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
     def action_move(self, by: int) -> None:
         """Go to the next line that leads to a row, or scroll."""
         number = self._chosen + by
-        while 0 <= number < len(self._said) and not self._is_a_way(number):
+        while 0 <= number < len(self._lines) and not self._is_a_way(number):
             number += by
         if self._is_a_way(number):
             self._chosen = number
@@ -92,9 +92,9 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
     def action_go(self) -> None:
         """Go to the row of the selected line."""
         if self._is_a_way(self._chosen):
-            said = self._said[self._chosen]
-            text = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
-            self._go_to(said.places, text)
+            line = self._lines[self._chosen]
+            text = f"{line.sign} {line.heading}: ".replace(" : ", " ") + line.text
+            self._go_to(line.places, text)
 
     def action_leave(self) -> None:
         """Go back to the line."""
@@ -109,33 +109,32 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.action_go()
 
     def _is_a_way(self, number: int) -> bool:
-        return 0 <= number < len(self._said) and bool(self._said[number].places)
+        return 0 <= number < len(self._lines) and bool(self._lines[number].places)
 
     def _follow(self) -> None:
-        """Scroll to the selected line."""
         own = [at for at, number in enumerate(self._numbers) if number == self._chosen]
         top, height = self.scroll_offset.y, max(self.scrollable_content_region.height, 1)
         if own and not top <= own[0] <= own[-1] < top + height:
             self.scroll_to(y=min(own[0], max(own[-1] - height + 1, 0)), animate=False)
 
 
-def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableType]]:
+def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, RenderableType]]:
     """Yield the lines of the verdict with their rendering."""
     head = headline(view)
     style = "dim" if head.state is None else theme.LOOKS[head.state]
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
-    for saying in sayings(view):
+    for line in verdict_lines(view):
         table = Table.grid(padding=(0, 1, 0, 0), expand=True)
         table.add_column(width=1)
         table.add_column(overflow="fold", ratio=1)
-        look = theme.LOOKS[saying.state] if saying.state else ""
-        grave = saying.state in (State.FAIL, State.WARN)
-        heading = (f"{saying.heading}  " if saying.heading else "", look if grave else "dim")
-        told = Text.assemble(heading, (saying.text, "dim" if saying.faint else ""))
-        table.add_row(Text(saying.sign, "" if saying.pending else look), told)
-        yield saying, table
+        look = theme.LOOKS[line.state] if line.state else ""
+        grave = line.state in (State.FAIL, State.WARN)
+        heading = (f"{line.heading}  " if line.heading else "", look if grave else "dim")
+        text = Text.assemble(heading, (line.text, "dim" if line.faint else ""))
+        table.add_row(Text(line.sign, "" if line.pending else look), text)
+        yield line, table
     if note:
-        yield Saying(note), Text(note, style="dim italic")
+        yield VerdictLine(note), Text(note, style="dim italic")
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:

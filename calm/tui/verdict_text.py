@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, grouped_by
 from calm.quantities import say
 from calm.tui.theme import ELLIPSIS
 from calm.tui.workspace import mistakes, place_of
@@ -22,7 +22,7 @@ _MOST_PROBLEMS = 6
 
 
 @dataclass(frozen=True)
-class Saying:
+class VerdictLine:
     """A line of the verdict with its sign, heading, text and state.
 
     `pending` marks a state that may still change; `places` are the rows concerned.
@@ -43,64 +43,63 @@ class Saying:
         return " " if self.state is None else self.state.sign
 
 
-def headline(view: View | None) -> Saying:
+def headline(view: View | None) -> VerdictLine:
     """Return the verdict in a few words."""
     if view is None:
-        return Saying(ELLIPSIS, faint=True)
+        return VerdictLine(ELLIPSIS, faint=True)
     if view.problems:
-        return Saying(mistakes(view.problems, view.path), state=State.FAIL)
+        return VerdictLine(mistakes(view.problems, view.path), state=State.FAIL)
     if view.missing:
-        return Saying(f"incomplete: {view.missing[0]}", state=State.UNKNOWN)
+        return VerdictLine(f"incomplete: {view.missing[0]}", state=State.UNKNOWN)
     if view.failure is not None:
-        return Saying(f"no equilibrium: {view.failure.status}", state=State.FAIL)
+        return VerdictLine(f"no equilibrium: {view.failure.status}", state=State.FAIL)
     if view.elsewhere:
-        return Saying("invalid environments", state=State.FAIL)
-    said = _judged((*view.findings, *view.tighter), view)
+        return VerdictLine("invalid environments", state=State.FAIL)
+    verdict = _judged((*view.findings, *view.tighter), view)
     if view.complete:
-        return said
-    outcome = said.text if said.state in (State.FAIL, State.WARN) else "nothing fails"
-    return Saying(f"{outcome} so far", pending=True)
+        return verdict
+    outcome = verdict.text if verdict.state in (State.FAIL, State.WARN) else "nothing fails"
+    return VerdictLine(f"{outcome} so far", pending=True)
 
 
-def _judged(findings: Sequence[Finding], view: View) -> Saying:
-    """Return the verdict in the wording of `calm check`."""
+def _judged(findings: Sequence[Finding], view: View) -> VerdictLine:
     from calm.files.pieces import parts_of
     from calm.report.open_items import verdict_of
 
     if not findings:
-        return Saying("solved")
+        return VerdictLine("solved")
     pieces = () if view.file is None else view.file.pieces
-    said = verdict_of(findings, {part.label: part.use for part in parts_of(pieces)})
-    return Saying(said.text, state=said.state)
+    verdict = verdict_of(findings, {part.label: part.use for part in parts_of(pieces)})
+    return VerdictLine(verdict.text, state=verdict.state)
 
 
-def sayings(view: View | None) -> Iterator[Saying]:
+def verdict_lines(view: View | None) -> Iterator[VerdictLine]:
     """Yield all lines of the verdict, the most severe first."""
     if view is None:
         return
     if view.problems:
         for problem in view.problems[:_MOST_PROBLEMS]:
-            yield Saying(problem.message, place_of(problem, view.path), State.FAIL)
+            yield VerdictLine(problem.message, place_of(problem, view.path), State.FAIL)
         if (more := len(view.problems) - _MOST_PROBLEMS) > 0:
-            yield Saying(f"and {more} more", faint=True)
-        yield Saying("t shows the text with its mistakes", faint=True)
+            yield VerdictLine(f"and {more} more", faint=True)
+        yield VerdictLine("t shows the text with its mistakes", faint=True)
         return
     for text in view.missing:
-        yield Saying(text, heading="Missing", state=State.UNKNOWN)
+        yield VerdictLine(text, heading="Missing", state=State.UNKNOWN)
     if view.failure is not None:
-        yield Saying(view.failure.message, state=State.FAIL)
-        yield Saying(view.failure.advice, faint=True)
+        yield VerdictLine(view.failure.message, state=State.FAIL)
+        yield VerdictLine(view.failure.advice, faint=True)
     findings = [_placed(each, view) for each in view.findings]
     tighter = [_placed(each, view) for each in view.tighter]
     yield from _figures(view.result, [*findings, *tighter], pending=not view.complete)
     for problem in view.elsewhere:
-        yield Saying(problem.message, place_of(problem, view.path), State.FAIL)
-    if len(view.stands) > 1:
-        yield from (_stand(stand, view) for stand in view.stands)
+        yield VerdictLine(problem.message, place_of(problem, view.path), State.FAIL)
+    if len(view.cases) > 1:
+        yield from (_environment_line(case, view) for case in view.cases)
     yield from _found(findings, tighter, pending=not view.complete)
     if view.result is not None:
         for text in view.result.warnings:
-            yield Saying(text, state=State.WARN)
+            yield VerdictLine(text, state=State.WARN)
 
 
 def _placed(finding: Finding, view: View) -> Finding:
@@ -116,21 +115,22 @@ def _environment(name: str) -> str:
     return "default environment" if name == OWN else name
 
 
-def _stand(stand: MooringInEnvironment, view: View) -> Saying:
-    """Return the verdict of one environment in one line."""
-    said = _judged((*stand.findings, *stand.tighter, *stand.lacking), view)
-    result = stand.result
+def _environment_line(case: MooringInEnvironment, view: View) -> VerdictLine:
+    verdict = _judged((*case.findings, *case.tighter, *case.lacking), view)
+    result = case.result
     figures = ""
     if result is not None and result.type != "surface":
         figures = f"top at {say('depth', result.top.depth)}, "
     elif result is not None:
         figures = f"{say('reserve', result.top.reserve)} in reserve, "
-    return Saying(f"{figures}{said.text}", f"In {_environment(stand.environment)}", said.state)
+    return VerdictLine(
+        f"{figures}{verdict.text}", f"In {_environment(case.environment)}", verdict.state
+    )
 
 
 def _figures(
     result: Result | None, findings: Sequence[Finding], *, pending: bool
-) -> Iterator[Saying]:
+) -> Iterator[VerdictLine]:
     """Yield values at the ends of the line; the solver is imported already if there is a result."""
     if result is None:
         return
@@ -141,19 +141,21 @@ def _figures(
     else:
         point, body = result.tow_point, result.body
         pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
-        yield Saying(pull, "Tow point")
+        yield VerdictLine(pull, "Tow point")
         behind = f"{say('depth', body.depth)} deep, {say('layback', body.layback)} behind"
-        yield Saying(behind, "Body")
+        yield VerdictLine(behind, "Body")
 
 
-def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
+def _mooring(
+    result: LegResult, findings: Sequence[Finding], pending: bool
+) -> Iterator[VerdictLine]:
     """Yield anchor and top values as given; judged values show their most severe finding."""
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
 
     anchor, top = result.anchor_load, result.top
     pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
-    yield Saying(pull, heading="Anchor")
+    yield VerdictLine(pull, heading="Anchor")
     yield _holds(result, _worst(findings, anchor_weight), pending)
     if result.type == "surface":
         used = f"{top.used_buoyancy:.0%} of the float's buoyancy in use"
@@ -170,19 +172,23 @@ def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> I
         text = f"{say('knockdown', top.knockdown)}, {depth}"
         yield _figure(text, "Knockdown", worst)
     if anchor.grounded_length > 0.0:
-        yield Saying(f"{say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
+        yield VerdictLine(
+            f"{say('grounded_length', anchor.grounded_length)} of line", heading="Lies"
+        )
 
 
-def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
+def _holds(result: LegResult, worst: Finding | None, pending: bool) -> VerdictLine:
     """Return required and actual anchor weight; without an anchor, only the required weight."""
     if worst is None:
-        return Saying(
+        return VerdictLine(
             f"needs {say('required_weight', result.anchor_load.required_weight)} in water"
         )
     needs = f"needs {say('required_weight', worst.limit)}{_situation(worst)}"
     has = f"has {say('required_weight', worst.value)} in water"
     unsure = pending and worst.state is State.PASS
-    return Saying(f"{needs}, {has}", state=worst.state, pending=unsure, places=_places([worst]))
+    return VerdictLine(
+        f"{needs}, {has}", state=worst.state, pending=unsure, places=_places([worst])
+    )
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
@@ -200,48 +206,47 @@ def _situation(finding: Finding) -> str:
     return "" if finding.situation == AS_GIVEN else f" ({finding.situation})"
 
 
-def _figure(text: str, heading: str, worst: Finding | None) -> Saying:
+def _figure(text: str, heading: str, worst: Finding | None) -> VerdictLine:
     """Return a value with the state of its finding if that is a failure or warning."""
     state = worst.state if worst is not None and _graver(worst) else None
-    return Saying(text, heading, state, places=_places([worst]))
+    return VerdictLine(text, heading, state, places=_places([worst]))
 
 
-def _net(result: Result) -> Iterator[Saying]:
-    """Yield the loads on anchors and held ends of a net, and the depths of its nodes."""
+def _net(result: Result) -> Iterator[VerdictLine]:
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
-        said = "" if needs is None else f", needs {say('required_weight', needs)} in water"
+        needed = "" if needs is None else f", needs {say('required_weight', needs)} in water"
         heading = f"{'Held end' if needs is None else 'Anchor'} of {end.leg}"
-        yield Saying(f"{say('tension', end.tension)}{said}", heading)
+        yield VerdictLine(f"{say('tension', end.tension)}{needed}", heading)
     for node in result.nodes:
-        yield Saying(f"{say('depth', node.depth)} deep", f"Node {node.name}")
+        yield VerdictLine(f"{say('depth', node.depth)} deep", f"Node {node.name}")
 
 
 def _found(
     findings: Sequence[Finding], tighter: Sequence[Finding], *, pending: bool
-) -> Iterator[Saying]:
+) -> Iterator[VerdictLine]:
     """Yield failures and warnings with reason and remedy, and summaries of unknowns and passes.
 
     A rule passes if every component passes; with a missing value its state is unknown.
     """
     from calm.checks.finding import governing
-    from calm.report.check_tables import grouped, named, named_components
+    from calm.report.check_tables import named, named_components
 
     governs = {(one.rule, one.place, one.state): one for one in (*findings, *tighter)}
-    told_of = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
-    for finding in sorted(told_of, key=lambda each: each.rank):
+    listed = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
+    for finding in sorted(listed, key=lambda each: each.rank):
         if _graver(finding):
-            yield _told(finding)
+            yield _finding_line(finding)
     unknown = [each for each in findings if each.state is State.UNKNOWN]
     for one in unknown:
         if (figure := one.missing) is not None:
             needed = ", ".join(figure.needed_by)
             text = f"{figure.quantity} of {named(figure.pieces)}, needed by {needed}"
             heading = f"Missing value of {figure.component_id}"
-            yield Saying(text, heading, State.UNKNOWN, places=_places([one]))
-    for own in grouped((each for each in unknown if each.missing is None), _title):
+            yield VerdictLine(text, heading, State.UNKNOWN, places=_places([one]))
+    for own in grouped_by((each for each in unknown if each.missing is None), _title).values():
         text = f"unknown for {named_components(own)}"
-        yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
+        yield VerdictLine(text, _title(own[0]), State.UNKNOWN, places=_places(own))
     met = (State.PASS, State.NOT_JUDGED)
     other = {_title(each) for each in findings if each.state not in met}
     for state, heading in (
@@ -252,30 +257,31 @@ def _found(
         those = [one for one in (*findings, *tighter) if one.state is state]
         passes = state is State.PASS
         rules = [
-            each for each in grouped(those, _title) if not passes or _title(each[0]) not in other
+            each
+            for each in grouped_by(those, _title).values()
+            if not passes or _title(each[0]) not in other
         ]
         if rules:
             leads = sorted(map(governing, rules), key=lambda one: -(one.utilisation or 0.0))
             text = ", ".join(map(_used, leads))
-            yield Saying(text, heading, state, pending=pending and passes)
+            yield VerdictLine(text, heading, state, pending=pending and passes)
 
 
 def _used(finding: Finding) -> str:
-    """Return the title of a rule with the use of its finding in percent."""
     from calm.report.open_items import percent_text
 
     used = finding.utilisation
     return _title(finding) if used is None else f"{_title(finding)} {percent_text(used)} %"
 
 
-def why(view: View, row: Place) -> list[Saying]:
+def why(view: View, row: Place) -> list[VerdictLine]:
     """Return all findings of a row with their remedies, the most severe first."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if row in _places([each])]
-    return [_told(each) for each in sorted(own, key=lambda each: each.rank)]
+    return [_finding_line(each) for each in sorted(own, key=lambda each: each.rank)]
 
 
-def _told(finding: Finding) -> Saying:
+def _finding_line(finding: Finding) -> VerdictLine:
     from calm.checks.assess import RULES
     from calm.report.open_items import percent_text
 
@@ -285,11 +291,10 @@ def _told(finding: Finding) -> Saying:
         limit = say(RULES[finding.rule].quantity, finding.limit)
         text = f"{percent_text(finding.utilisation)} % of {sign} {limit}. {text}"
     heading = f"{_title(finding)}{_situation(finding)}"
-    return Saying(text, heading, finding.state, places=_places([finding]))
+    return VerdictLine(text, heading, finding.state, places=_places([finding]))
 
 
 def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
-    """Return the rows concerned by findings, each once."""
     found = (place.row for each in findings if each is not None for place in each.places)
     return tuple(dict.fromkeys(found))
 

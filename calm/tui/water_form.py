@@ -27,7 +27,7 @@ from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui import key_table, water_tables
 from calm.tui.checking import quantity
 from calm.tui.field import Cycle, Field
-from calm.tui.forms import Asked, FormColumn, form_of, rows_in, text_of, value_of
+from calm.tui.forms import FormColumn, FormField, form_of, rows_in, text_of, value_of
 from calm.tui.table_field import Grid
 from calm.units import QuantityError, QuantityRange
 
@@ -207,7 +207,7 @@ def _read(kind: QuantityRange, text: str) -> float | None:
         return None
 
 
-_TAKE_IT = "Enter accepts"
+_ACCEPT_HINT = "Enter accepts"
 
 
 class FormChoice(Cycle):
@@ -249,7 +249,7 @@ class FormChoice(Cycle):
     def _press(self, event: events.Click) -> None:
         """Show the next form by mouse, or accept by a press on the hint."""
         event.prevent_default()
-        if self.word != self._given and event.x >= self.render().cell_len - len(_TAKE_IT):
+        if self.word != self._given and event.x >= self.render().cell_len - len(_ACCEPT_HINT):
             self.action_take()
         else:
             self.action_turn(1)
@@ -261,7 +261,7 @@ class FormChoice(Cycle):
     @property
     def hint(self) -> str:
         """Hint how to accept the form shown, if it is not the current form."""
-        return _TAKE_IT if self.word != self._given else super().hint
+        return _ACCEPT_HINT if self.word != self._given else super().hint
 
 
 class ProfileGrid(Grid):
@@ -345,10 +345,10 @@ _FIRST = ("depth", "density", "current", "wind")
 
 def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
     """Yield the widgets of an environment form; their ids are the paths of their keys."""
-    asked = form_of(TowEnvironmentKeys if towed else EnvironmentKeys, needed=False)
-    asked = [each for each in asked if each.key != "fluid" or towed]
-    groups = {each.key.partition(".")[0]: [] for each in asked}  # type: dict[str, list[Asked]]
-    for each in asked:
+    fields = form_of(TowEnvironmentKeys if towed else EnvironmentKeys, needed=False)
+    fields = [each for each in fields if each.key != "fluid" or towed]
+    groups = {each.key.partition(".")[0]: [] for each in fields}  # type: dict[str, list[FormField]]
+    for each in fields:
         groups[each.key.partition(".")[0]].append(each)
     for key in (*_FIRST, *(key for key in groups if key not in _FIRST)):
         if key == "density":
@@ -362,21 +362,19 @@ def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[W
             yield from _fields(groups[key])
 
 
-def _density(asked: Asked, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """Yield the widgets of density, temperature and salinity, each a constant or a table."""
+def _density(form_field: FormField, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
     of_sea_water = {each.key: each for each in form_of(SeaWaterKeys, "density.")}
     for place, (kind, _, _) in _CONSTANTS.items():
         id, is_inner = "-".join(place), len(place) > 1
         forms = PROFILE_FORMS if is_inner else DENSITY_FORMS
-        one = of_sea_water[".".join(place)] if is_inner else asked
+        one = of_sea_water[".".join(place)] if is_inner else form_field
         yield FormChoice(f"  {place[1]}" if is_inner else "density", forms, id=id)
         yield Field(replace(one, title="", check=quantity(kind, optional=not is_inner)), id=id)
         yield grid(id=f"{id}-table")
 
 
-def _fields(asked: Iterable[Asked]) -> Iterator[Widget]:
-    """Yield fields; fields of a nested model are indented below its name."""
-    for each in asked:
+def _fields(fields: Iterable[FormField]) -> Iterator[Widget]:
+    for each in fields:
         if each.above:
             yield Static(each.above, classes="above", markup=False)
         indent = "  " * each.key.count(".")

@@ -19,7 +19,7 @@ from calm.files.environment import CurrentFile
 from calm.records.delimited import CopiedTable
 from calm.tui import cell_editor, checking, dialogs, key_table, pictures, screen, verdict_pane
 from calm.tui.field import Field
-from calm.tui.forms import Asked, Rows
+from calm.tui.forms import FormField, Rows
 from calm.tui.table_field import GridCells
 from calm.tui.water_form import (
     DENSITY_FORMS,
@@ -40,7 +40,7 @@ from calm.tui.water_tables import (
     previewed,
     rows_in,
 )
-from calm.tui.workspace import Workspace, said
+from calm.tui.workspace import Workspace, problem_text
 
 _ELSEWHERE = (
     "The line is solved in {0}, which profile and verdict refer to. Below is the default "
@@ -61,10 +61,9 @@ class WaterScreen(screen.DraftScreen):
         & .gone { display: none; }
         & .above { color: $text-muted; }
         & Grid { margin-left: 24; }
-        & Field > .field-title { width: 24; }
-        & Field > Input { width: 20; }
+        & Field > Input { width: 20; margin-left: 24; }
         &.-narrow Grid { margin-left: 0; }
-        &.-narrow Field > .field-title { width: 20; }
+        &.-narrow Field > Input { margin-left: 20; }
     }
     """
 
@@ -118,10 +117,9 @@ class WaterScreen(screen.DraftScreen):
         self.show_title()
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
-        """Show mistakes, and a note if an environment file is in use."""
         file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
-        notes += [said(each, path) for each in problems]
+        notes += [problem_text(each, path) for each in problems]
         shown = self.query_one("#water-notes", Static)
         shown.set_class(not notes, "gone")
         shown.update(Content("\n").join(notes))
@@ -147,9 +145,9 @@ class WaterScreen(screen.DraftScreen):
             field.set_class(not self._is_shown(place, "constant"), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
-            is_lacking = field.asked.is_needed and len(place) > 1 and water.value(*place[:-1])
+            is_lacking = field.form_field.is_needed and len(place) > 1 and water.value(*place[:-1])
             lacks = is_lacking and not water.text(*place)
-            note = f"is needed: {field.asked.takes}" if lacks else ""
+            note = f"is needed: {field.form_field.takes}" if lacks else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
         for grid in self.query(ProfileGrid):
             place = _place(grid)
@@ -170,7 +168,7 @@ class WaterScreen(screen.DraftScreen):
     def replaced(self) -> None:
         """Show another draft; discard typed text and values of replaced forms."""
         self._left.clear()
-        self.drop_typing()
+        self.discard_typing()
         self.show_draft()
 
     # changes
@@ -212,7 +210,7 @@ class WaterScreen(screen.DraftScreen):
             self._take(field, reading.text)
         return True
 
-    def drop_typing(self) -> None:
+    def discard_typing(self) -> None:
         """Discard typed text that is not in the draft."""
         for field in self.query(Field):
             field.reset(field.begun)
@@ -225,7 +223,7 @@ class WaterScreen(screen.DraftScreen):
 
     def _take(self, field: Field, text: str) -> None:
         place = _place(field)
-        is_needed = field.asked.is_needed
+        is_needed = field.form_field.is_needed
         self.change(lambda water: water.put(place, text, is_needed=is_needed), f"the {place[0]}")
 
     @on(Field.Entered)
@@ -259,8 +257,8 @@ class WaterScreen(screen.DraftScreen):
             text += " The pasted table has no headings: check the columns below."
         first = "   ".join(copied.rows[0])
         text += f" Its first row is  {first}"
-        asked = Asked("columns", "Columns", ", ".join(headings), check)
-        dialogs.enter(self.app, "Paste a table", text, [asked], take)
+        form_field = FormField("columns", "Columns", ", ".join(headings), check)
+        dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
         """Use a table pasted outside the tables of the form as the current, in any form."""
@@ -319,7 +317,7 @@ class WaterScreen(screen.DraftScreen):
     def action_next_environment(self) -> None:
         """Show the next environment, and solve the line in it."""
         if self.settle():
-            self._stand_in(self.session.standing.next_environment)
+            self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
         """Add a named environment with the current of the one shown."""
@@ -333,16 +331,16 @@ class WaterScreen(screen.DraftScreen):
             current = known or water.begun(("current",), "uniform")
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
-                told = "" if known else "Filled with a typical current; replace it with your own"
-                self._stand_in(name)
-                self.workspace.tell(told)
+                note = "" if known else "Filled with a typical current; replace it with your own"
+                self._environment_file_in_use(name)
+                self.workspace.tell(note)
 
         if self.settle():
-            asked = [
-                Asked("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
+            fields = [
+                FormField("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
             ]
             text = "It contains only values that differ from the default environment."
-            dialogs.enter(self.app, "New environment", text, asked, take)
+            dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
         """Delete the named environment from the file."""
@@ -350,13 +348,13 @@ class WaterScreen(screen.DraftScreen):
         if name is None:
             self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
             return
-        self.drop_typing()
+        self.discard_typing()
         if self.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}"):
-            self._stand_in(None)
+            self._environment_file_in_use(None)
 
-    def _stand_in(self, name: str | None) -> None:
+    def _environment_file_in_use(self, name: str | None) -> None:
         before, self.session.standing.environment = self.environment_file, name
-        self.drop_typing()
+        self.discard_typing()
         self.show_draft()
         self.workspace.tell(f"The line is no longer solved in {before}" if before else "")
         self.workspace.edited()
@@ -428,7 +426,7 @@ class WaterScreen(screen.DraftScreen):
         if self.settle():
             super().action_undo()
         else:
-            self.drop_typing()
+            self.discard_typing()
             self.show_draft()
 
     def action_back(self) -> None:
@@ -438,6 +436,5 @@ class WaterScreen(screen.DraftScreen):
 
 
 def _place(part: DOMNode | None) -> Place:
-    """Return the path of the key that a widget of the form edits."""
     name = part.id if part else None
     return tuple((name or "").removesuffix("-form").removesuffix("-table").split("-"))

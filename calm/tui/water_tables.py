@@ -36,9 +36,9 @@ _POWER = 1 / 7
 
 PRESETS: Mapping[str, Callable[[float], float]] = {
     "uniform, 0.5 m/s": lambda share: 0.5,
-    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed":
+    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the seabed":
         lambda share: (1.0 - share) ** _POWER,
-    "linear shear, 0.8 m/s at the surface to nothing at the bed":
+    "linear shear, 0.8 m/s at the surface to zero at the seabed":
         lambda share: 0.8 * (1.0 - share),
     "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
         lambda share: 0.05 + 1.15 * exp(-share / 0.2),
@@ -58,9 +58,9 @@ def import_sheet(folder: Path) -> InputSheet:
         f"CSV or CF NetCDF, relative to {folder}. `refer` keeps the file's "
         "name in the mooring file; `copy` writes its profile as a table.",
         [
-            forms.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-            forms.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-            forms.Asked("how", "refer or copy", "refer", one_of(("refer", "copy"))),
+            forms.FormField("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            forms.FormField("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            forms.FormField("how", "refer or copy", "refer", one_of(("refer", "copy"))),
         ],
     )
 
@@ -97,9 +97,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     if any(table.w):
         return _SPEEDS, [[*map(_written, level)] for level in levels]
     flows = [[*map(_written, level[:3])] for level in levels]
-    ways = [[*map(_written, (deep, *speed_and_direction(u, v)))] for deep, u, v, _ in levels]
-    signs = [len("".join(chain.from_iterable(rows))) for rows in (flows, ways)]
-    return (_SPEEDS[:3], flows) if signs[0] < signs[1] else (CURRENT_COLUMNS, ways)
+    tables = [[*map(_written, (deep, *speed_and_direction(u, v)))] for deep, u, v, _ in levels]
+    signs = [len("".join(chain.from_iterable(rows))) for rows in (flows, tables)]
+    return (_SPEEDS[:3], flows) if signs[0] < signs[1] else (CURRENT_COLUMNS, tables)
 
 
 def _written(value: float) -> str:
@@ -186,7 +186,7 @@ def previewed(columns: Sequence[str], rows: Rows) -> str:
 def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
     if len(row) != len(columns):
         many = f"{len(row)} value{'s' * (len(row) != 1)}"
-        raise NoRows(f"row {number} has {many}, and the table {len(columns)} columns")
+        raise NoRows(f"row {number} has {many}; the table has {len(columns)} columns")
     readings = [check_of(column)(value) for column, value in zip(columns, row, strict=True)]
     for value, reading in zip(row, readings, strict=True):
         if not reading.is_good:
@@ -202,8 +202,8 @@ def _by_name(
 
     def report(location: Sequence[str | int], message: str) -> Problem:
         of_a_row = location[0] == "rows" and len(location) > 1
-        said = f"row {int(location[1]) + 1}: {message}" if of_a_row else message
-        problems.append((not of_a_row, said))
+        text = f"row {int(location[1]) + 1}: {message}" if of_a_row else message
+        problems.append((not of_a_row, text))
         return Problem("", 0, 0, message)
 
     names = {heading(column)[0] for column in columns}
@@ -224,7 +224,7 @@ def _by_name(
     if isinstance(table, profile_tables.DepthTable):
         return {"depth": table.depth, next(iter(names - {"depth"})): table.value}
     if "w" not in names and any(table.w):
-        raise UnknownColumns("the current has an upward speed `w`, but the table no column `w`")
+        raise UnknownColumns("the current has an upward speed `w`, but the table has no column `w`")
     flows = [speed_and_direction(*uv) for uv in zip(table.u, table.v, strict=True)]
     return {
         "depth": table.depth,

@@ -34,7 +34,7 @@ def place_of(problem: Problem, path: Path) -> str:
     return f"{name}, {place}" if place else str(name)
 
 
-def said(problem: Problem, path: Path) -> Content:
+def problem_text(problem: Problem, path: Path) -> Content:
     """Return a mistake with its sign and its position."""
     parts = filter(None, (place_of(problem, path), problem.message))
     return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")
@@ -68,7 +68,7 @@ class Workspace:
     view : last view of the file; None before the first
     good : last view with an equilibrium
     is_late : whether the view has been out of date for some time
-    papers_elsewhere : how to get reports and sheets if the builder cannot run commands
+    documents_elsewhere : how to get reports and sheets if the builder cannot run commands
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Workspace:
         self.view: View | None = None
         self.good: View | None = None
         self.is_late = False
-        self.papers_elsewhere = ""
+        self.documents_elsewhere = ""
         self._catalogue: Catalogue | None = None
         self._defined: Any = None
 
@@ -136,8 +136,8 @@ class Workspace:
         return True, spot if isinstance(spot, Place) else None
 
 
-_DIMMED_AFTER = 0.3  # seconds; faster solutions cause no dimming
-_FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and breaks are judged
+_DIM_DELAY = 0.3  # seconds; faster solutions cause no dimming
+_FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and breaks are judged
 
 
 class Judging:
@@ -170,7 +170,7 @@ class Judging:
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
-            self._dimming = self._app.set_timer(_DIMMED_AFTER, self.dim)
+            self._dimming = self._app.set_timer(_DIM_DELAY, self.dim)
 
     def dim(self) -> None:
         """Dim values that are still of an earlier draft."""
@@ -219,12 +219,11 @@ class Judging:
         if self._is_wanted:
             self.ask()
         elif (is_late or not fully) and not (self._is_judging or self._fully):
-            self._fully = self._app.set_timer(_FULLY_AFTER, self.ask_fully)
+            self._fully = self._app.set_timer(_FULL_CHECK_DELAY, self.ask_fully)
         if not is_late:
             self._show(is_first=is_first)
 
     def _fail(self, reason: str) -> None:
-        """Report an internal error; later drafts are still judged."""
         self._workspace.tell(f"internal error ({reason}); please report it", wrong=True)
         self._is_judging, self._checked = False, None
         if self._is_wanted:

@@ -322,7 +322,7 @@ def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexe
     return np.asarray(1j * waves.omega[:, None, None] * accelerated)
 
 
-TOGETHER = 16
+FREQUENCIES_AT_ONCE = 16
 """Number of frequencies solved at once: their matrices fit into the processor's cache."""
 
 
@@ -375,8 +375,8 @@ def _by_blocks(
     """Solve by NumPy alone, which takes twice as long as `_by_bands`."""
     held, masses, between = undamped
     beside, motion = between.astype(complex), np.empty_like(push)
-    for first in range(0, len(omega), TOGETHER):
-        part = slice(first, first + TOGETHER)
+    for first in range(0, len(omega), FREQUENCIES_AT_ONCE):
+        part = slice(first, first + FREQUENCIES_AT_ONCE)
         rate = omega[part, None, None, None]
         diagonal = held - rate**2 * masses + 1j * rate * damping
         if top is not None:

@@ -20,6 +20,7 @@ _SECTIONS = {
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],
     "Motion": ["calm.estimate_motion", "calm.MotionEstimate"],
+    "Gridded records": ["calm.grid", "calm.GriddedRecord"],
     "Errors": [
         "calm.CalmError", "calm.InputError", "calm.UsageError", "calm.NoEquilibrium",
         "calm.errors.Problem",

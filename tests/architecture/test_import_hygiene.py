@@ -68,7 +68,7 @@ def test_reading_files_loads_no_heavy_library() -> None:
         ["run", "lines/deep-current-meters.yaml"],
         ["run", "lines/deep-current-meters.yaml", "--json", "-"],
         ["catalog", "list"],
-        ["catalog", "search", "sphere"],
+        ["catalog", "list", "sphere"],
     ],
     ids=" ".join,
 )

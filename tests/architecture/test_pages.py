@@ -80,6 +80,7 @@ def test_a_file_is_written_and_edited(page):
         ("```sh\nfalse\n```\n", "ends with 1, not 0"),
         ("<!-- exit: 3 -->\n```sh\ntrue\n```\n", "ends with 0, not 3"),
         ("<!-- file: a -->\n```text\nx\n```\n<!-- edit: a -->\n```diff\n-y\n+z\n```\n", "a has 0"),
+        ("```sh\ntrue\n```\n\n```text\n\n```\n", "a command prints nothing; leave out the block"),
         ("![none](pictures/none.svg)\n", "no command makes the picture none.svg"),
     ],
 )

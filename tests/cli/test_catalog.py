@@ -90,7 +90,7 @@ def test_one_thing_by_several_sources_is_shown_with_the_one_to_use(calm):
     assert rows["sbe37-clamp"].startswith("sbe37-clamp -22.69 N 0.1643 m²")
     assert rows["least"] == "least -29.42 N 0.039 m²"
     assert rows["most"] == "most -22.69 N 0.1643 m²"
-    assert "(use sbe37)" in " ".join(calm("catalog", "search", "sbe37-clamp").out.split())
+    assert "(use sbe37)" in " ".join(calm("catalog", "list", "sbe37-clamp").out.split())
     (found,) = json.loads(calm("catalog", "show", "sbe37-clamp", "--json").out)
     assert found["prefer"] == "sbe37"
     assert found["same_thing"] == ["sbe37", "sbe37-clamp", "sbe37-lpo"]
@@ -111,25 +111,25 @@ def test_unknown_ids_are_told_at_once_with_the_nearest(calm):
 
 
 def test_search_wants_every_word(calm):
-    found = json.loads(calm("catalog", "search", "STEEL", "sphere", "--json").out)
+    found = json.loads(calm("catalog", "list", "STEEL", "sphere", "--json").out)
     assert "sphere-steel-1250" in {component["id"] for component in found}
-    assert calm("catalog", "search", "steel", "sphere").code == 0
+    assert calm("catalog", "list", "steel", "sphere").code == 0
 
 
 def test_outlines_are_found_after_complete_entries_and_say_what_they_lack(calm):
-    found = json.loads(calm("catalog", "search", "mmp", "--json").out)
+    found = json.loads(calm("catalog", "list", "mmp", "--json").out)
     assert [(each["id"], each["mass"], each["derived"]) for each in found] == [
         ("mmp-mclane", 70.0, None)
     ]
     assert found[0]["length"] is None and found[0]["buoyancy"] == 0.0
-    assert "(without length, drag area)" in " ".join(calm("catalog", "search", "mmp").out.split())
-    ids = [each["id"] for each in json.loads(calm("catalog", "search", "smp", "--json").out)]
+    assert "(without length, drag area)" in " ".join(calm("catalog", "list", "mmp").out.split())
+    ids = [each["id"] for each in json.loads(calm("catalog", "list", "smp", "--json").out)]
     assert ids[:2] == ["sbe37-smp-frame", "sbe37-smp-plastic"]
 
 
 def test_list_with_words_searches_within_a_kind(calm):
     listed = json.loads(calm("catalog", "list", "wire", "--json").out)
-    assert listed == json.loads(calm("catalog", "search", "wire", "--json").out)
+    assert listed == json.loads(calm("catalog", "list", "wire", "--json").out)
     cables = json.loads(calm("catalog", "list", "wire", "--kind", "cable", "--json").out)
     assert cables == [each for each in listed if each["kind"] == "cable"]
     assert 0 < len(cables) < len(listed)
@@ -151,28 +151,45 @@ def test_an_unknown_id_suggests_its_grade_and_size(calm, written, meant):
 
 def test_search_takes_a_bare_fraction_for_inches_and_drops_a_word_that_nothing_has(calm):
     ids = [
-        each["id"] for each in json.loads(calm("catalog", "search", "3/4", "shackle", "--json").out)
+        each["id"] for each in json.loads(calm("catalog", "list", "3/4", "shackle", "--json").out)
     ]
     assert ids[0] == "shackle-19" and "shackle-anchor-19" in ids[:3]
-    done = calm("catalog", "search", "rbr", "quartet")
-    assert "with `rbr` alone" in done.err and "rbr-duet-uwa" in done.out
+    done = calm("catalog", "list", "rbr", "quartet")
+    assert "none has `quartet`" in done.err and "rbr-duet-uwa" in done.out
+
+
+@pytest.mark.parametrize(
+    ("words", "first", "says"),
+    [
+        (["upward", "adcp"], "adcp-workhorse", "these have most of them"),
+        (["single", "point", "current", "meter"], "current-meter-cdms", "none has `point`"),
+        (["wyre"], "wire-jacketed-8", "searched for `wire`"),
+    ],
+)
+def test_the_components_with_most_words_are_found(calm, words, first, says):
+    done = calm("catalog", "list", *words, "--json")
+    assert json.loads(done.out)[0]["id"] == first
+    assert says in done.err
+
+
+def test_search_is_called_list(calm):
+    done = calm("catalog", "search", "wire")
+    assert done.code == 2 and 'Did you mean "list"?' in done.err
 
 
 def test_search_without_a_find(calm):
-    done = calm("catalog", "search", "unobtainium")
+    done = calm("catalog", "list", "unobtainium")
     assert (done.code, done.out) == (0, "")
     assert "unobtainium" in done.err
-    assert json.loads(calm("catalog", "search", "unobtainium", "--json").out) == []
+    assert json.loads(calm("catalog", "list", "unobtainium", "--json").out) == []
 
 
 def test_shipped_catalogue_has_no_finding_and_lists_what_it_lacks(calm):
     done = calm("catalog", "check")
     assert done.code == 0
     lines = dict(line.split(": ", 1) for line in done.out.splitlines())
-    assert (
-        lines["vacm"] == "gives no mass, working load, breaking load, depth rating, greatest tilt"
-    )
-    assert lines["rcm11"].endswith("searched for and not found: working load, breaking load")
+    assert lines["vacm"] == "lacks mass, working load, breaking load, depth rating, greatest tilt"
+    assert lines["rcm11"].endswith("not published: mass, working load, breaking load")
     assert "shackle-13" not in lines
     assert "findings: 0" in done.err
     assert "lack figures" in done.err
@@ -184,7 +201,7 @@ def test_what_is_missing_as_json(calm, mine):
         {
             "id": "good",
             "finding": False,
-            "message": "gives no mass, working load, breaking load, depth rating, greatest tilt",
+            "message": "lacks mass, working load, breaking load, depth rating, greatest tilt",
             "missing": ["mass", "working_load", "breaking_load", "depth_rating", "max_tilt"],
             "searched": [],
         }
@@ -195,7 +212,7 @@ def test_finding_gives_exit_code_1(calm, mine):
     file = mine("bad: {kind: sphere, diameter: 1 m, buoyancy: 9 kN, source: me}")
     done = calm("catalog", "check", file)
     assert done.code == 1
-    assert done.out.startswith("bad: lifts 9000 N")
+    assert done.out.startswith("bad: has a buoyancy of 9.00 kN")
     findings = json.loads(calm("catalog", "check", file, "--json").out)
     assert [finding["id"] for finding in findings if finding["finding"]] == ["bad"]
     assert {finding["id"] for finding in findings if not finding["finding"]} == {"good", "bad"}
@@ -219,15 +236,15 @@ def test_catalogue_of_ones_own_is_listed_last(calm, tmp_path):
 
 
 def test_search_says_how_it_read_a_misspelt_word(calm):
-    done = calm("catalog", "search", "releese", "ar861", "--json")
+    done = calm("catalog", "list", "releese", "ar861", "--json")
     assert done.err == "no component matches `releese ar861`; searched for `release ar861`\n"
     assert "release-ar861" in [each["id"] for each in json.loads(done.out)]
 
 
 def test_search_keeps_limits_and_puts_what_is_used_first(calm):
-    found = json.loads(calm("catalog", "search", "wire", "breaking>40kN", "--json").out)
+    found = json.loads(calm("catalog", "list", "wire", "breaking>40kN", "--json").out)
     assert found and all(each["breaking_load"] > 40e3 for each in found)
-    shackles = json.loads(calm("catalog", "search", "bow shackle", "--json").out)
+    shackles = json.loads(calm("catalog", "list", "bow shackle", "--json").out)
     uses = Counter(
         id
         for file in shipped_folder("lines").glob("*.yaml")
@@ -244,7 +261,7 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
     monkeypatch.setenv("CALM_CATALOG_DIR", str(folder / "own"))
     done = calm("catalog", "add", "our-glass", *GLASS)
     assert done.code == 0
-    assert "gives no mass, working load, breaking load, depth rating" in done.err
+    assert "lacks mass, working load, breaking load, depth rating" in done.err
     (shown,) = json.loads(calm("catalog", "show", "our-glass", "--json").out)
     assert (shown["diameter"], shown["buoyancy"], shown["source"]) == (0.432, 250, "tank: 2026")
     assert calm("catalog", "add", "our-ball", *GLASS).code == 0
@@ -265,9 +282,9 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
         (
             "glass",
             (*GLASS[:3], "buoyancy=2500 N"),
-            "lifts 2500 N; water of its size weighs 424.3 N",
+            "has a buoyancy of 2.50 kN; water of its size weighs 424 N",
         ),
-        ("glass", GLASS[:4], "does not say where its figures come from (`source`)"),
+        ("glass", GLASS[:4], "has no `source` for its values"),
     ],
 )
 def test_add_refuses_and_writes_nothing(calm, folder, id, figures, said):

@@ -118,7 +118,7 @@ def test_a_component_is_a_label_or_a_pattern_of_labels(calm, accepting, componen
         ("{rule: tilt}", "17:7", "`reason` is missing"),
         ("{reason: x}", "17:7", "`rule` is missing"),
         ("{rule: tilt, reason: ' '}", "17:28", "`reason` is blank"),
-        ("{rule: tilt, reason: x, until: 2027-02-30}", "17:38", "not a day of the calendar"),
+        ("{rule: tilt, reason: x, until: 2027-02-30}", "17:38", "not a date"),
         ("{rule: tilt, reason: x, until: 30.6.2027}", "17:38", "write it as 2027-06-30"),
         ("{rule: tilt, reason: x, untill: 2027-06-30}", "17:31", "did you mean `until`?"),
         ("{rule: tilt, reason: x, date: 2027-06-30, until: 2027-06-29}", "17:7", "before its"),
@@ -165,7 +165,7 @@ def test_an_accept_counts_through_its_last_day(calm, accepting, until, counts):
     file = accepting(f"{{rule: strength, component: top float, reason: a test, until: {until}}}")
     done, _, states = checked(calm, file)
     assert states["strength", "top float"] == ["accepted" if counts else "unknown"]
-    ended = f"line 17: `accept` for strength of top float ended on {until}: it no longer counts"
+    ended = f"line 17: `accept` for strength of top float expired on {until}"
     assert (ended in done.err) is not counts
 
 
@@ -176,7 +176,7 @@ def test_an_accept_of_a_day_to_come_does_not_count_yet(calm, accepting, date, co
     done, _, states = checked(calm, accepting(f"{own}{date}}}", f"{needless}{date}}}"))
     assert states["strength", "top float"] == ["accepted" if counts else "unknown"]
     for label in ("top float", "rope"):
-        told = f"of {label} is dated {date}, in the future: it does not count yet" in done.err
+        told = f"of {label} is dated {date} and does not apply yet" in done.err
         assert told is not counts
 
 
@@ -241,7 +241,7 @@ def test_an_accepted_failure_says_by_whom(calm, accepting):
     nobody = accepting("{rule: knockdown, reason: deep enough}", more=more)
     done = calm("check", nobody)
     assert "1 accepted" in done.out
-    assert "1 of 1 `accept` names nobody" in done.err
+    assert "1 of 1 `accept` entries lacks a name" in done.err
     own = "by: A. Martin, until: 2036-12-31"
     signed = accepting(f"{{rule: knockdown, reason: deep enough, {own}}}", more=more)
     assert "names nobody" not in calm("check", signed).err
@@ -250,4 +250,4 @@ def test_an_accepted_failure_says_by_whom(calm, accepting):
 def test_what_is_not_judged_is_listed(calm, accepting):
     _, document, _ = checked(calm, accepting("{rule: knockdown, reason: deep enough}"))
     assert "waves" in document["not_judged"]
-    assert any("beams of a current profiler" in each for each in document["not_judged"])
+    assert any("ADCP beams" in each for each in document["not_judged"])

@@ -29,6 +29,7 @@ OWN = """\
          inclination: insensitive, estimate: {quantity: working_load, value: 9 kN, low: 10 N,
          source: its chain}}
 """
+CABLE = "{}: {{kind: cable, diameter: 8 mm, cn: 1.3, weight: 1.5 N/m, stiffness: 4 MN}}"
 CATALOGUE = """\
 sbe56-uwa: {kind: body, role: instrument, length: 0.2 m, buoyancy: -2 N, kn: 1 N/(m/s)^2,
             inclination: insensitive, max_tilt: 90 deg, source: a list}
@@ -36,32 +37,72 @@ sbe56-uwa: {kind: body, role: instrument, length: 0.2 m, buoyancy: -2 N, kn: 1 N
 
 
 @pytest.fixture
-def lacking(folder):
+def unknowns(folder):
     (folder / "own.yaml").write_text(CATALOGUE, encoding="utf-8")
     (folder / "m.yaml").write_text(f"{LINE}components:\n{OWN}", encoding="utf-8")
     return "m.yaml", "--catalog", "own.yaml"
 
 
-def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, lacking):
-    done = calm("check", *lacking, "--missing")
+def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, unknowns):
+    done = calm("check", *unknowns, "--missing")
     assert done.code == 1
-    block = yaml.safe_load(done.out)["components"]
+    block = yaml.safe_load(done.out)
     assert block["sbe56-uwa"] == {"depth_rating": None}
     assert block["link"] == {"working_load": None}
-    assert "sbe56-uwa:  # sbe56-uwa 1 and 2\n" in done.out
-    assert "    depth_rating:  # needed by depth-rating\n" in done.out
-    assert "working_load:  # or breaking_load; needed by strength, launch-strength\n" in done.out
-    assert "is estimated: 10 N at least, 9000 N likely (its chain)\n" in done.out
+    assert "Copy the other entries to below `components:`, line 15 of m.yaml.\n" in done.out
+    assert "  sbe56-uwa:  # sbe56-uwa 1 and 2\n" in done.out
+    assert "  link:  # link 1 and 2; defined in line 16 of m.yaml\n" in done.out
+    assert (
+        "    depth_rating:  # e.g. 2000 m: maximum depth of use\n      # needed for depth rating\n"
+    ) in done.out
+    assert "working_load:  # e.g. 20 kN: load it may carry in use, or `breaking_load`" in done.out
+    assert "is estimated: at least 10 N, probably 9.00 kN (its chain)\n" in done.out
 
 
-def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, folder):
-    assert calm("check", *lacking, "--missing", "-o", "block.yaml").out == ""
+def test_a_file_without_components_gets_a_whole_section(calm, folder):
+    text = LINE.replace("  - {use: link, count: 2}\n", "").replace("sbe56-uwa", "release-rt161")
+    (folder / "m.yaml").write_text(text, encoding="utf-8")
+    block = yaml.safe_load(calm("check", "m.yaml", "--missing").out)
+    assert block == {"components": {"release-rt161": {"depth_rating": None}}}
+
+
+def test_screen_json_and_block_count_the_same_figures(calm, folder):
+    text = f"""\
+name: Alike
+environment: {{depth: 300 m, current: {{speed: 0.2 m/s, toward: 90 deg}}}}
+line:
+  - {{use: float}}
+  - {{use: wire, length: 40 m}}
+  - {{use: cord, length: 40 m}}
+  - {{use: release-ar861}}
+  - {{use: anchor}}
+components:
+  float: {{kind: sphere, role: float, diameter: 1 m, buoyancy: 3 kN}}
+  {CABLE.format("wire")}
+  {CABLE.format("cord")}
+  anchor: {{kind: anchor, weight: 9 kN}}
+"""
+    (folder / "m.yaml").write_text(text, encoding="utf-8")
+    done = calm("check", "m.yaml", "--json", "all.json")
+    written = json.loads((folder / "all.json").read_text(encoding="utf-8"))
+    block = yaml.safe_load(calm("check", "m.yaml", "--missing").out)
+    count = sum(map(len, block.values()))
+    assert {id for id, keys in block.items() if "breaking_load" in keys} == {"wire", "cord"}
+    assert f" {count} unknown" in done.out
+    assert sum(one["state"] == "unknown" for one in written["findings"]) == count
+    assert written["key_figures"]["Alike"]["counts"]["unknown"] == count
+    for id, keys in block.items():
+        assert all(f"{id}: {key.replace('_', ' ')}" in done.out for key in keys)
+
+
+def test_a_completed_block_in_the_file_settles_what_it_gives(calm, unknowns, folder):
+    assert calm("check", *unknowns, "--missing", "-o", "block.yaml").out == ""
     block = (folder / "block.yaml").read_text(encoding="utf-8")
     given = re.sub(r"( +depth_rating):", r"\1: 500 m", block)
     # the file defines `link` itself
     pasted = re.sub(r"  link:.*?\n(?=  \S|\Z)", "", given, flags=re.DOTALL)
-    (folder / "m.yaml").write_text(f"{LINE}{pasted}\n{OWN}", encoding="utf-8")
-    done = calm("check", *lacking, "--json", "-")
+    (folder / "m.yaml").write_text(f"{LINE}components:\n{pasted}\n{OWN}", encoding="utf-8")
+    done = calm("check", *unknowns, "--json", "-")
     assert "hides" not in done.err
     found = json.loads(done.out)["findings"]
     asked = {f["component_id"] for f in found if f["rule"] == "missing"}
@@ -71,34 +112,36 @@ def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, fold
     assert rated["sbe56-uwa 2"] == pytest.approx(400.0)
 
 
-def test_a_key_without_a_value_stays_unknown(calm, lacking, folder):
-    empty = f"{LINE}components:\n  sbe56-uwa: {{depth_rating: }}\n{OWN}"
+def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
+    own = OWN.replace("{kind: body,", "{breaking_load: , kind: body,")
+    empty = f"{LINE}components:\n  sbe56-uwa: {{depth_rating: }}\n{own}"
     (folder / "m.yaml").write_text(empty, encoding="utf-8")
-    block = yaml.safe_load(calm("check", *lacking, "--missing").out)["components"]
+    block = yaml.safe_load(calm("check", *unknowns, "--missing").out)
     assert block["sbe56-uwa"] == {"depth_rating": None}
+    assert block["link"] == {"working_load": None}
 
 
 @pytest.mark.parametrize(
     ("words", "says"),
     [
         (("-o", "x.yaml"), "-o is the file of --missing"),
-        (("--missing", "--json", "-"), "--missing is printed in place of the findings"),
+        (("--missing", "--json", "-"), "--missing replaces the findings"),
         (("--missing", "-o", "m.yaml"), "m.yaml would overwrite the file that is read"),
     ],
 )
-def test_what_cannot_be_is_refused_before_anything_is_solved(calm, lacking, words, says):
-    done = calm("check", *lacking, *words)
+def test_what_cannot_be_is_refused_before_anything_is_solved(calm, unknowns, words, says):
+    done = calm("check", *unknowns, *words)
     assert done.code == 2
     assert says in done.err
 
 
-def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, lacking, folder):
+def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, unknowns, folder):
     text = (folder / "m.yaml").read_text(encoding="utf-8")
     sunk = text.replace("count: 2", "count: 4000")
     (folder / "m.yaml").write_text(sunk, encoding="utf-8")
-    done = calm("check", *lacking, "--missing", "-o", "block.yaml")
+    done = calm("check", *unknowns, "--missing", "-o", "block.yaml")
     assert done.code == 3
     assert "buoyancy" in done.err  # why there is none
     assert "block.yaml written" in done.err
     block = (folder / "block.yaml").read_text(encoding="utf-8")
-    assert block.startswith("# Without an equilibrium nothing is judged")
+    assert block.startswith("# The mooring has no equilibrium")

@@ -18,7 +18,7 @@ echo "${{COMPREPLY[@]}}"
 @pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
 @pytest.mark.parametrize(
     ("words", "offered"),
-    [("calm ru", "run"), ("calm run --env", "--environment"), ("calm catalog se", "search")],
+    [("calm ru", "run"), ("calm run --env", "--environment"), ("calm catalog sh", "show")],
 )
 def test_bash_completes_commands_and_options(calm, folder, words, offered):
     (folder / "calm.bash").write_text(calm("completion", "bash").out)

@@ -204,7 +204,7 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
 def test_signs_that_no_font_has_are_reported(deck):
     text = mooring(8).replace("A. Nobody", "海 Nobody")
     out, said = deck(text.replace("label: top float", "label: top 浮"))
-    assert "lacks 海 (U+6D77), 浮 (U+6D6E), which shows as �: in author, `top 浮`" in said
+    assert "has no 海 (U+6D77), 浮 (U+6D6E), printed as �: in author, `top 浮`" in said
     pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
     assert "lacks" in "".join(pages)
     assert packed("top �") in pages[0]
@@ -295,7 +295,7 @@ def test_the_workbook_holds_what_the_files_hold(deck):
                     assert cell == pytest.approx(float(text), rel=1e-5, abs=1e-9)
                 else:
                     assert (cell or "") == text.removeprefix("'")
-    first = book["parts"]["B2"]
+    first = book["parts"]["C2"]
     assert (first.value, first.data_type) == ("=1+1", "s")
 
 
@@ -338,7 +338,7 @@ def test_usage(calm, folder, write_mooring):
     (folder / "file").write_text("")
     (folder / "tow.yaml").write_text("tow: {speed: 2 m/s, toward: 0}\nline: [{use: shackle-13}]\n")
     for words, complaint in (
-        (("m.yaml",), "output"),
+        (("m.yaml",), "needs -o path"),
         (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
         (("m.yaml", "-o", "file"), "is not a folder"),
         (("tow.yaml", "-o", "out"), "calm deck is for moorings; these are tows: tow.yaml"),

@@ -31,9 +31,9 @@ def test_the_page_shows_what_is_printed(command, shown):
     )
     printed = "\n".join(line.rstrip() for line in finished.stdout.splitlines())
     # The page leaves the table of `calm run` out; how many solves it took may differ.
-    start = max(printed.find("What causes"), printed.find("Uncertainty"), 0)
-    printed = printed[start:].partition("Found by")[0]
-    assert shown.partition("Found by")[0].strip() == printed.strip()
+    start = max(printed.find("Causes of"), printed.find("Uncertainty"), 0)
+    printed = printed[start:].partition("Found after")[0]
+    assert shown.partition("Found after")[0].strip() == printed.strip()
 
 
 def test_all_commands_are_shown():

@@ -79,7 +79,7 @@ def test_the_table(calm, two):
     assert out.splitlines()[0] == "a.yaml → b.yaml"
     assert "changed  rope.length         60 m    65 m" in out
     assert "added    tail" in out
-    for words in ("What it does", "knockdown of the top", "Design check: what governs", "+5.00"):
+    for words in ("Results", "knockdown of the top", "Governing checks", "+5.00"):
         assert words in out
     assert max(map(len, out.splitlines())) <= 80
 
@@ -102,7 +102,7 @@ def test_named_environments_are_compared(calm, write_mooring, folder):
 def test_nothing_differs(calm, write_mooring):
     done = calm("diff", write_mooring("a.yaml"), write_mooring("b.yaml"))
     assert done.code == 0
-    assert "Nothing differs." in done.out
+    assert "The designs are equal." in done.out
 
 
 def test_the_design_and_what_was_deployed(calm, write_mooring, folder):
@@ -145,7 +145,7 @@ def test_the_mistakes_of_both_files_at_once(calm, broken, write_mooring, folder)
     ("words", "complaint"),
     [
         (("m.yaml",), "m.yaml has no `deployed:` to compare its design with"),
-        (("m.yaml", "tow.yaml"), "a mooring is not compared with a tow"),
+        (("m.yaml", "tow.yaml"), "a mooring cannot be compared with a tow"),
         (("tow.yaml",), "tow.yaml is a tow; give the file to compare it with"),
         (("m.yaml", "none.yaml"), "none.yaml"),
     ],

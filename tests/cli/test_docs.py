@@ -68,16 +68,28 @@ def test_a_page_that_does_not_exist(calm, page, told):
 
 
 def test_a_word_lists_the_pages_that_contain_it_those_with_it_in_a_heading_first(calm, manual):
-    (manual / "how-to/first.md").write_text("# Chains\n\nA swivel, a Swivel, one more swivel.\n")
+    chains = "A swivel, a [Swivel](x.md), one more `swivel`."
+    (manual / "how-to/first.md").write_text(f"# Chains\n\n{chains}\n")
     (manual / "tutorial/first.md").write_text("# Wires\n\n## The swivel\n")
     done = calm("docs", "swivel")
-    wires, chains = (
-        f"{manual / 'tutorial/first.md'}  Wires",
-        f"{manual / 'how-to/first.md'}  Chains",
-    )
-    assert (done.code, done.out) == (0, f"{wires}\n{chains}\n")
+    of_wires = "tutorial/first: Wires\n    The swivel\n"
+    of_chains = "how-to/first: Chains\n    A swivel, a Swivel, one more swivel.\n"
+    assert (done.code, done.out) == (0, of_wires + of_chains)
     assert "no page is called `swivel`" in done.err
-    assert calm("docs", "swivel more").out == f"{chains}\n"
+    assert calm("docs", "swivel more").out == of_chains
+    several = calm("docs", "swivel", "more", "nowhere")
+    assert several.out == of_chains
+    assert "contain 2 of its 3 words" in several.err
+
+
+def test_a_long_line_is_shown_around_the_word(calm, manual):
+    (manual / "how-to/first.md").write_text(f"# Chains\n\n{'anchor ' * 40}swivel{' float' * 40}\n")
+    line = calm("docs", "swivel").out.splitlines()[1]
+    assert len(line) <= 100 and line.startswith("    … anchor") and "swivel float" in line
+
+
+def test_several_words_may_be_the_name_of_a_page(calm):
+    assert calm("docs", "mooring", "file").out == f"{ROOT / 'docs/reference/mooring-file.md'}\n"
 
 
 def test_a_name_that_two_books_have(calm, manual):

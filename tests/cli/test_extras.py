@@ -54,7 +54,7 @@ size m.yaml --target knockdown(top)<=5m --change rope.length | diff m.yaml new.y
 waves w.yaml --hs 2m --tp 8s | export m.yaml --to mdd -o m.mat | export m.yaml --to csv -o m.csv
 import m.mat -o from-mat.yaml | import list.xlsx -o list.yaml --environment e.yaml
 import m.csv -o from-csv.yaml --environment e.yaml
-catalog list | catalog search sphere | catalog show glass-17in | schema
+catalog list sphere | catalog show glass-17in | schema
 locate ranges.csv --depth 2000m --plot ranges.pdf | verify cdms | docs | completion bash
 chart solve --k 2.4 --weight 5N/m --phi-b 75deg --tension-b 350N --height 20m
 """
@@ -125,7 +125,7 @@ def test_a_command_that_needs_an_extra_says_so_in_one_line():
         assert code == 2, (command, told)
         *_, last = told.splitlines()
         assert last.startswith("calm: this needs "), (command, told)
-        assert last.endswith(f": pip install 'calm-mooring[{extra}]'"), (command, told)
+        assert last.endswith(f": in CALM's checkout, pip install '.[{extra}]'"), (command, told)
 
 
 @pytest.mark.thorough
@@ -183,7 +183,7 @@ def test_the_extras_of_the_package_hold_the_libraries_that_are_named():
 @pytest.mark.parametrize(
     ("name", "advice"),
     [
-        ("xarray.core", "this needs xarray: pip install 'calm-mooring[records]'"),
+        ("xarray.core", "this needs xarray: in CALM's checkout, pip install '.[records]'"),
         ("scipy", "this needs scipy, which is not installed: pip install scipy"),
         ("calm.lost", None),
         (None, None),

@@ -6,8 +6,11 @@ from pathlib import Path
 
 import gsw
 import numpy as np
+import pandas
 import pytest
 import xarray
+
+import calm as package
 
 LABELS = ("upper", "middle", "lower", "deep")
 STILL = np.array([100.0, 150.0, 200.0, 250.0])
@@ -203,7 +206,7 @@ def test_salinity_is_computed_where_a_file_holds_none(calm, depths):
 
     run = both(calm, depths, cell, "--json", "grid.json")
     assert run.code == 0, run.err
-    assert "salinity is computed from conductivity, temperature and pressure" in run.err
+    assert "salinity is computed from conductivity, temperature, pressure" in run.err
     with xarray.open_dataset("out.nc", engine="h5netcdf") as result:
         assert float(abs(result["salinity"] - 35.2).max()) < 1e-6
     said = json.loads(Path("grid.json").read_text())
@@ -211,6 +214,51 @@ def test_salinity_is_computed_where_a_file_holds_none(calm, depths):
     assert set(said["read"][0]["variables"]) == {
         "temperature", "conductivity", "pressure", "time"
     }  # fmt: skip
+
+
+def test_salinity_without_a_pressure_is_that_of_the_depth_on_the_line(calm, depths):
+    def cell(label, t):
+        pressure = gsw.p_from_z(-STILL[LABELS.index(label)], 48.0)
+        one_file("TEMP", t, *WATER, label, CNDC=(gsw.C_from_SP(35.2, t, pressure) / unit[0],
+                 {"units": unit[1]}))  # fmt: skip
+
+    unit = (10.0, "S m-1")
+    run = both(calm, depths, cell, "--variables", "salinity")
+    assert run.code == 0, run.err
+    with xarray.open_dataset("out.nc", engine="h5netcdf") as result:
+        assert float(abs(result["salinity"] - 35.2).max()) < 0.01
+    run = calm("grid", "depths.nc", *(f"{one}.nc" for one in LABELS[:2]), "-o", "out.nc",
+               "--levels", "100:25:300")  # fmt: skip
+    assert "salinity is not computed: there is neither a pressure nor a nominal depth" in run.err
+    unit = (10.0, "mS/cm")
+    run = both(calm, depths, cell)
+    assert "its median is 2.9: is `CNDC` in another unit?" in run.err
+
+
+@pytest.mark.parametrize("make", [
+    lambda count: ("INDEX", ("READING", np.repeat([0, 1], count), {"instance_dimension": "PLACE"})),
+    lambda count: ("COUNT", ("PLACE", [count, count], {"sample_dimension": "READING"})),
+    lambda count: ("INDEX", ("READING", np.repeat([1, 2], count), {"instance_dimension": "PLACE"})),
+])  # fmt: skip
+def test_ragged_arrays_of_instruments_are_split(calm, depths, make):
+    time = START + np.arange(HOURS) * np.timedelta64(3600, "s")
+    name, index = make(HOURS)
+    values = np.concatenate([profile(depths[:, j]) for j in range(2)])
+    about = {"standard_name": WATER[0], "units": WATER[1]}
+    nominal = {"units": "m", "standard_name": "depth", "positive": "down"}
+    xarray.Dataset(
+        {"TEMP": ("READING", values, about), name: index,
+         "NOMINAL_DEPTH": ("PLACE", STILL[:2], nominal), "serial": ("PLACE", ["11", "12"])},
+        {"TIME": ("READING", np.tile(time, 2))},
+    ).to_netcdf("all.nc", engine="h5netcdf")  # fmt: skip
+    run = calm("grid", "depths.nc", "all.nc", "-o", "out.nc", "--levels", "100:25:150")
+    if index[1][0] == 1:  # counted from 1
+        assert run.code == 2
+        assert "`INDEX` does not fit its 2 instruments, which are counted from 0" in run.err
+        return
+    assert run.code == 0, run.err
+    assert f"TEMP [degree_Celsius]: {values.min():.4g} to {values.max():.4g}, median" in run.err
+    assert "  levels       2" in run.err and "step 1 h, no gaps" in run.err
 
 
 def test_capitals_as_oceansites_has_them(calm, depths):
@@ -272,7 +320,7 @@ def test_files_of_one_instrument_and_a_folder_of_them(calm, depths, folder):
         ("deep", "write FIRST:STEP:LAST"),
         ("100:-20:0", "does not go down"),
         ("100:0:200", "does not go down"),
-        ("200,100", "do not go down"),
+        ("200,100", "must increase"),
         ("-50:10:50", "above the sea surface"),
         ("0:0.001:1000", "more than 5000 levels"),
         ("nan:1:2", "write FIRST:STEP:LAST"),
@@ -306,7 +354,7 @@ def test_bad_inputs_are_refused(calm, depths, folder):
     write_values("none.nc", depths, unit="")
     assert "its unit is missing, such as degC" in refused(calm, "depths.nc", "none.nc")
     (folder / "empty.nc").write_bytes(b"")
-    assert "is not NetCDF, RODB, .cnv or RBR's table" in refused(calm, "depths.nc", "empty.nc")
+    assert "empty.nc: is empty" in refused(calm, "depths.nc", "empty.nc")
     assert "no such file" in refused(calm, "depths.nc", "absent.nc")
     assert "is not a result of calm motion" in refused(calm, "v.nc", "v.nc")
     write_values("blank.nc", np.full_like(depths, np.nan))
@@ -341,5 +389,55 @@ def test_without_matplotlib_a_report_names_the_command_that_installs_it(calm, de
     write_values("v.nc", depths)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     said = refused(calm, "depths.nc", "v.nc", "--report", "page")
-    assert "this needs matplotlib: pip install 'calm-mooring[plot]'" in said
+    assert "this needs matplotlib: in CALM's checkout, pip install '.[plot]'" in said
     assert not Path("out.nc").exists()
+
+
+@pytest.fixture
+def tables(depths):
+    """A table of temperatures for each instrument, by its label."""
+    time = pandas.DatetimeIndex(START + np.arange(HOURS) * np.timedelta64(3600, "s"))
+    return {
+        label: pandas.DataFrame({"temperature[degC]": profile(depths[:, j])}, time)
+        for j, label in enumerate(LABELS)
+    }
+
+
+def test_python_grids_datasets_and_tables_as_the_command_grids_files(calm, depths, tables):
+    write_values("v.nc", depths)
+    written = gridded(calm, "v.nc", "--step", "1 h")[0]
+    levels = np.arange(100.0, 301.0, 25.0)
+    with xarray.open_dataset("depths.nc", engine="h5netcdf") as motion:
+        with xarray.open_dataset("v.nc", engine="h5netcdf") as values:
+            found = package.grid(motion, values, levels, step=3600.0)
+        by_label = package.grid(motion.load(), tables, levels, step=3600.0)
+    for one in (found, by_label):
+        result = one.to_xarray()
+        off = result["temperature"] - written["temperature"]
+        assert float(abs(off).max()) < 1e-5
+        assert result["depth"].values.tolist() == levels.tolist()
+    assert repr(found).splitlines()[1].startswith("temperature: 4 instruments, scales ")
+    axes = found.plot("temperature")
+    assert axes.get_ylim() == (300.0, 100.0) and len(axes.lines) == len(LABELS)
+    found.write("again.nc")
+    assert Path("again.nc").stat().st_size > 1000
+
+
+def test_a_table_of_one_instrument_is_read(calm, depths, tables):
+    given = []
+    for label, table in tables.items():
+        table.to_csv(f"{label}.csv", index_label="time", date_format="%Y-%m-%dT%H:%M:%S")
+        given.append(f"{label}={label}.csv")
+    result, run = gridded(calm, *given)
+    assert np.isfinite(result["temperature"].values).any()
+    assert "upper.csv: read as" in run.err
+    Path("upper.csv").write_text("time,temprature[degC]\n2026-03-01T00:00,4\n")
+    done = calm("grid", "depths.nc", *given, "-o", "o.nc", "--levels", "100,200")
+    assert done.code == 2
+    assert "no column is called `temprature`; did you mean `temperature`?" in done.err
+
+
+@pytest.mark.parametrize("levels", [[100.0, 100.0], [-5.0, 10.0], [], [np.nan]])
+def test_levels_in_python_must_increase_below_the_surface(depths, levels):
+    with pytest.raises(package.UsageError, match="--levels"):
+        package.grid("depths.nc", "v.nc", levels)

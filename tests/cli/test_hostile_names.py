@@ -85,7 +85,7 @@ COMMANDS = {
         ("M [/y] <i>", TOP, CTD),
     ),
     "catalog list": (["catalog", "list", "--kind", "sphere"], ("x-[/b]", "[red]float[/red]")),
-    "catalog search": (["catalog", "search", "[/b]"], ("x-[/b]", "[red]float[/red]")),
+    "catalog list, words": (["catalog", "list", "[/b]"], ("x-[/b]", "[red]float[/red]")),
     "catalog show": (["catalog", "show", "x-[/b]"], ("x-[/b]", "[red]float[/red]")),
 }
 
@@ -107,7 +107,7 @@ def test_names_are_printed_as_they_are(command, folder, capsys):
         (["run", "[none].yaml"], "[none].yaml: no such file"),
         (["size", "m.yaml", "--target", "tilt([/no]) <= 1 deg", "--change", "x.count"], "[/no]"),
         (["catalog", "show", "[/c]"], "[/c]"),
-        (["catalog", "search", "[/none]"], "[/none]"),
+        (["catalog", "list", "[/none]"], "[/none]"),
         (["verify", "[/none]"], "[/none]"),
         (["chart", "solve", "--weight", "[/5 N]"], "[/5 N]"),
         (["new", "-o", "m.yaml"], "m.yaml"),

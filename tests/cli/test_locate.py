@@ -45,7 +45,7 @@ def test_what_a_person_reads(calm, ranges):
     done = calm("locate", ranges())
     assert done.code == 0
     assert "48° 18.000′ N" in done.out
-    assert "Not used, they do not fit the others: line 7." in done.out
+    assert "Rejected as outliers: line 7." in done.out
     assert done.err == ""
 
 
@@ -150,7 +150,7 @@ def test_of_two_places_the_one_near_the_plan_is_taken(calm, ranges, write_moorin
 
     done, document, updated = written()
     assert (done.code, updated) == (1, False)
-    assert "m.yaml was not changed: two places fit; say with --near LAT,LON" in done.err
+    assert "m.yaml was not changed: two positions fit; select one with --near LAT,LON" in done.err
     assert document["second"]["distance"] == pytest.approx(2000.0, rel=0.01)
     assert written("--accept")[2]
     for position, side in (("48 18.5 N", 1.0), ("48°17.5'N", -1.0)):

@@ -67,7 +67,13 @@ def test_help_of_every_command_shows_an_example(calm, command):
     ("words", "told"),
     [
         (["rn", "m.yaml"], '"run"'),
-        (["run"], "FILE"),
+        (["run"], "`calm run` needs FILE...; see `calm run --help`"),
+        (["motion", "m.yaml"], "`calm motion` needs --pressures FILE and -o PATH; see"),
+        (["motion", "m.yaml", "--pressure", "p.nc"], "did you mean --pressures for --pressure?"),
+        (["batch"], "`calm batch` needs FILE, --currents FILE and -o PATH; see"),
+        (["batch", "m.yaml", "--currents"], "`calm batch`: --currents needs a value: --currents F"),
+        (["grid", "d.nc"], "`calm grid` needs VALUES..., -o PATH and --levels LEVELS; see"),
+        (["catalog", "add", "ours"], "`calm catalog add` needs KEY=VALUE...; see"),
         (["run", "m.yaml", "--enviroment", "x"], "--environment"),
         (["catalog", "shwo", "x"], '"show"'),
         (["catalog", "list", "--kind", "rope"], "chain"),
@@ -80,6 +86,14 @@ def test_wrong_usage_is_one_line_with_the_nearest(calm, words, told):
     assert done.out == ""
     assert len(done.err.splitlines()) == 1
     assert told in done.err
+
+
+def test_a_file_without_its_command(calm, write_mooring):
+    done = calm(write_mooring())
+    assert done.code == 2
+    assert done.err == (
+        "calm: `m.yaml` is a file, not a command; see `calm --help`, or `calm run m.yaml`\n"
+    )
 
 
 def test_interrupt(calm, write_mooring, monkeypatch):

@@ -16,7 +16,7 @@ def test_it_stands_above_the_table(calm, write_mooring):
     for sign in ("~~~~~~~~~~ sea surface", " (   )     top float", "   ├─[#]     logger"):
         assert f"\n{sign}" in drawing
     assert "as solved in the current." in drawing
-    assert "sideways" in table
+    assert "horizontal" in table
     assert max(map(len, done.out.splitlines())) <= 80
     assert not any(line.endswith(" ") for line in done.out.splitlines())
 
@@ -40,7 +40,7 @@ def test_a_line_without_equilibrium_is_drawn_all_the_same(calm, heavy):
     assert done.code == 3
     assert "\n (   )     top float" in done.out
     assert "upright and unstretched" in done.out
-    assert "sideways" not in done.out
+    assert "horizontal" not in done.out
     assert done.err
 
 

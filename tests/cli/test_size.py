@@ -12,7 +12,7 @@ def test_what_to_change(calm, write_mooring):
     lines = done.out.splitlines()
     assert lines[0] == "Test: knockdown(top) <= 5 cm"
     assert lines[2].startswith("top float.buoyancy: 2000 N → ")
-    for row in ("knockdown of the top", "pull on the anchor", "anchor weight needed"):
+    for row in ("knockdown of the top", "anchor load", "anchor weight required"):
         assert f"\n{row}" in done.out
     assert "size, drag and mass do not" in done.out
     assert max(map(len, lines)) <= 80
@@ -42,7 +42,7 @@ def test_json_goes_to_a_file_beside_the_table(calm, write_mooring, folder):
 def test_nothing_to_change(calm, write_mooring):
     done = calm("size", write_mooring(), "--target", "knockdown(top) <= 50 m", *TARGET[2:])
     assert done.code == 0
-    assert "Nothing to change: the target is met with top float.buoyancy as it is." in done.out
+    assert "No change needed: the present top float.buoyancy meets the target." in done.out
 
 
 def test_a_target_that_cannot_be_met(calm, write_mooring):
@@ -68,7 +68,7 @@ def test_range_and_environment(calm, write_mooring, folder):
     with (folder / file).open("a") as stream:
         stream.write("environments: {still: {current: {speed: 0 m/s, toward: 0 deg}}}\n")
     done = calm("size", file, *TARGET, "--environment", "still")
-    assert "Nothing to change" in done.out
+    assert "No change needed" in done.out
 
 
 def test_new_warnings_are_shown(calm, write_mooring):

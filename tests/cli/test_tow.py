@@ -39,7 +39,7 @@ def test_table_tells_both_ends_of_the_line(calm, write_tow):
     done = calm("run", write_tow())
     assert (done.code, done.err) == (0, "")
     assert done.out.startswith("Test tow: tow at 1.00 m/s towards 90°\n")
-    for words in ("\nwire ", "\nfish ", "Tow point  pulled by", "N back", "Body ", "layback"):
+    for words in ("\nwire ", "\nfish ", "Tow point  load", "N astern", "Body ", "layback"):
         assert words in done.out
     assert done.out.index("\nwire ") < done.out.index("\nfish ")
     assert "Strumming" not in done.out

@@ -99,12 +99,12 @@ def test_designs_are_listed_by_their_probability(calm, write_mooring, folder):
         encoding="utf-8",
     )
     done = calm("check", safe, "shaky.yaml", "--allow-unknown", *DRAWS, "--report", "out")
-    said = done.out[done.out.index("Probability of breaking a limit") :]
+    said = done.out[done.out.index("Probability of exceeding a limit") :]
     assert said.index("Shaky") < said.index("Test")
     header, *rows = (folder / "out" / "checks.csv").read_text(encoding="utf-8").splitlines()
     assert header.endswith(",reason,probability")
     assert any(row.rpartition(",")[2] for row in rows)
-    assert "Probability of breaking a limit" in (folder / "out" / "report.html").read_text("utf-8")
+    assert "Probability of exceeding a limit" in (folder / "out" / "report.html").read_text("utf-8")
 
 
 def test_a_check_refuses_samples_that_are_no_power_of_two(calm, write_mooring):

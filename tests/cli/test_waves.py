@@ -295,11 +295,11 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{significant_heigth: 2 m, peak_period: 4 s}", "significant_height"),
         ("{significant_height: 2 m, peak_period: 6 s, spectrum: jonswop}", "mean `jonswap`"),
         ("{significant_height: 2 m, peak_period: 6 s, gamma: 30}", "at most 10"),
-        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "no period"),
+        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "remove the period"),
         ("{spectrum: sea.csv, significant_height: 2 m}", "leave them out"),
         ("{scatter: none.csv}", "no such file"),
         ("{scatter: bad.csv}", "not numbers"),
-        ("{scatter: seas.csv, spectrum: ochi-hubble}", "periods of its own"),
+        ("{scatter: seas.csv, spectrum: ochi-hubble}", "defines its own periods"),
     ],
 )
 def test_seas_of_the_file_that_cannot_be(calm, buoy, tmp_path, waves, message):
@@ -347,7 +347,7 @@ def test_the_check_judges_the_waves_of_the_file(calm, buoy, tmp_path):
         (state["components"][1] for state in told["states"]), key=lambda one: one["greatest"]
     )
     low, high = (greatest[f"measured_{end}"]["greatest"] for end in ("low", "high"))
-    band = f"The band measured at sea (SOFS) gives {low:.0f} N to {high:.0f} N."
+    band = f"Measurements at sea (SOFS) imply {low:.0f} N to {high:.0f} N."
     assert strength["message"].endswith(band)
     assert found["fatigue", "rope"]["state"] == "unknown"  # no curve of nylon is published
     chain = found["fatigue", "chain"]
@@ -370,4 +370,4 @@ def test_the_check_says_what_falls_slack(calm, buoy):
     assert "fail" in states
     slack = [one for one in found.values() if one["rule"] == "wave-slack"]
     assert all((one["value"] < 0.0) == (one["state"] == "fail") for one in slack)
-    assert all("The band measured at sea (SOFS) gives " in one["message"] for one in slack)
+    assert all("Measurements at sea (SOFS) imply " in one["message"] for one in slack)

@@ -21,7 +21,7 @@ def test_an_empty_line_begins_with_a_mooring(drive, number):
         await driver.settle()
         assert driver.view.result is not None
         await driver.press("b")
-        assert "There is a line already" in driver.screen
+        assert "The line is not empty" in driver.screen
         await driver.press("u")
         assert driver.session.draft.items == ()
 

@@ -157,7 +157,7 @@ def test_the_catalogue_has_a_key_of_its_own(drive, small):
     drive(story, small)
 
 
-def test_an_assembly_is_asked_for_no_serial_number_which_the_file_could_not_have(drive, folder):
+def test_the_releases_of_an_assembly_have_serial_numbers(drive, folder):
     path = folder / "pack.yaml"
     path.write_text(
         MOORING.replace("{use: releaser}", "{use: pack}")
@@ -167,8 +167,7 @@ def test_an_assembly_is_asked_for_no_serial_number_which_the_file_could_not_have
 
     async def story(driver):
         await driver.press("end", "up", "N")
-        assert "pack is an assembly" in driver.screen
-        await driver.press("number_sign", "s")
-        assert "These rows cannot have such a value" in driver.screen
+        await driver.press(*"17, 18", "ctrl+s")
+        assert "serial: [17, 18]" in driver.text
 
     drive(story, path)

@@ -15,7 +15,7 @@ from calm.files.mooring_file import Solver, TowKeys
 from calm.files.reader import MooringKeys
 from calm.tui.component_screen import form_fields
 from calm.tui.forms import (
-    Asked,
+    FormField,
     filled,
     form_of,
     model_in,
@@ -41,7 +41,7 @@ def keys_of(model: type[Model], at: str = "") -> set[str]:
     return keys
 
 
-def field(asked: list[Asked], key: str) -> Asked:
+def field(asked: list[FormField], key: str) -> FormField:
     return next(each for each in asked if each.key == key)
 
 
@@ -80,7 +80,7 @@ def test_every_section_of_the_file_that_is_a_form_is_on_a_sheet():
 
 def test_what_a_key_may_be_is_judged_as_it_is_typed():
     asked = form_of(DocumentKeys)
-    assert "is not a day of the calendar" in field(asked, "date").check("soon").note
+    assert "is not a date" in field(asked, "date").check("soon").note
     asked = form_of(EnvironmentKeys)
     assert field(asked, "depth_range").check("[98 m, 104 m]").is_good
     assert not field(asked, "depth_range").check("98 m").is_good

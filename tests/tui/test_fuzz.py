@@ -231,7 +231,7 @@ def test_keys_at_random_while_another_program_writes_the_file(
                     small.write_bytes(theirs.encode())
                 elif number % 11 == 0:
                     small.unlink(missing_ok=True)
-                driver.app.saving.look_at_disk()
+                driver.app.saving.check_external_change()
 
             keys = chance, DISK_KEYS, DISK_VERBS
             await press_at_random(driver, *keys, count, steps.check, write)

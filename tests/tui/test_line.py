@@ -47,6 +47,27 @@ def test_add_a_cable_below_with_its_length_and_label(drive, small):
     drive(story, small)
 
 
+@pytest.mark.parametrize(
+    ("typed", "keys"),
+    [
+        ("fit 60", {"length": "fit", "top_depth": "60 m"}),
+        ("25 at 2", {"length_at": {"load": "2 kN", "length": "25 m"}}),
+    ],
+)
+def test_the_form_of_a_new_cable_takes_what_its_cell_takes(drive, small, typed, keys):
+    async def story(driver):
+        await driver.press("a")
+        await driver.type(WIRE)
+        await driver.press("enter")
+        await driver.type(typed)
+        await driver.press("enter", "enter", "escape")
+        await driver.settle()
+        assert driver.session.draft.value(("line", 1)) == {"use": WIRE, **keys}
+        assert not driver.view.problems
+
+    drive(story, small)
+
+
 def test_the_cursor_goes_on_where_the_line_is_longer_than_the_screen(drive, small):
     """What a table scrolls by where it overflows would take these keys."""
 

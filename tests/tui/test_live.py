@@ -79,7 +79,7 @@ def test_findings_are_those_of_check(name: str) -> None:
     (design,), _ = read_designs([path], None, [], 1)  # in each of its environments
     stands = [one for each in design.moorings for one in stands_of(each, design.name)]
     assessment = assessment_of(design.name, stands)
-    assert [each.environment for each in fully.stands] == [each.environment for each in stands]
+    assert [each.environment for each in fully.cases] == [each.environment for each in stands]
     assert fully.complete and fully.findings == tuple(assessment.all_findings())
     assert judge_fully(fully) is fully
 

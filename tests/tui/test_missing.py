@@ -14,12 +14,12 @@ from tests.tui.conftest import MOORING
 UNKNOWN = MOORING.replace(", depth_rating: 300 m", "")
 
 
-def asked(text):
+def missing_by_use(text):
     return {each.use: each for each in missing_figures(judge(text), Draft(text))}
 
 
 def test_each_component_is_asked_for_once_with_the_rows_that_use_it():
-    found = asked(UNKNOWN)
+    found = missing_by_use(UNKNOWN)
     assert [field.key for field in found["ball"].fields] == ["depth_rating"]
     keys = ["depth_rating", "working_load", "breaking_load", "max_tilt"]
     assert {field.key for field in found["releaser"].fields} == set(keys)
@@ -35,7 +35,7 @@ def test_of_a_component_of_the_catalogue_the_rows_that_lack_it_get_the_figure():
     text = MOORING.replace("- {use: logger, at: 10 m}", clamped).replace(
         "  - {use: weight}", "  - {use: aanderaa-thermistor-recorder, count: 2}\n  - {use: weight}"
     )
-    found = asked(text)["aanderaa-thermistor-recorder"]
+    found = missing_by_use(text)["aanderaa-thermistor-recorder"]
     rows = {key: list(targets) for key, targets in found.targets.items()}
     assert rows["depth_rating"] == [("line", 1, "clamps", 0), ("line", 3)]
     assert rows["breaking_load"] == [("line", 3)]  # a clamp's would be taken for its grip
@@ -50,7 +50,7 @@ def test_of_a_component_of_the_catalogue_the_rows_that_lack_it_get_the_figure():
         "- {use: aanderaa-thermistor-recorder, count: 2, depth_rating: 2000 m, working_load: 20 kN}"
         in made.text
     )
-    assert "aanderaa-thermistor-recorder" not in asked(made.text)
+    assert "aanderaa-thermistor-recorder" not in missing_by_use(made.text)
 
 
 def test_what_is_filled_in_is_known_then_with_its_source():
@@ -116,19 +116,19 @@ def test_the_form_shows_the_class_estimate_of_a_figure():
     estimate = "estimate: {quantity: working_load, value: 20 kN, low: 1 N, source: its like}"
     text = UNKNOWN.replace("role: release,", f"role: release, {estimate},")
     (found,) = (one for one in missing_figures(judge(text), Draft(text)) if one.use == "releaser")
-    assert found.estimates == {"working_load": "estimated: 1 N at least, 20000 N likely"}
-    takes = {each.key: each.takes for each in figures_sheet([found])._asked}
-    assert takes["releaser.working_load"] == "estimated: 1 N at least, 20000 N likely"
+    assert found.estimates == {"working_load": "estimated: at least 1.00 N, probably 20.00 kN"}
+    takes = {each.key: each.takes for each in figures_sheet([found])._form_fields}
+    assert takes["releaser.working_load"] == "estimated: at least 1.00 N, probably 20.00 kN"
 
 
 def test_the_form_asks_for_what_the_block_asks_for():
     """Both name the figure that is missing and those that would do in its place."""
     view = judge_fully(judge(UNKNOWN))
-    block = yaml.safe_load(missing_block(view.findings))["components"]
-    asked = {each.use: each for each in missing_figures(view, Draft(UNKNOWN))}
-    assert asked.keys() == block.keys()
+    block = yaml.safe_load(missing_block(view.findings, {}))["components"]
+    missing_by_use = {each.use: each for each in missing_figures(view, Draft(UNKNOWN))}
+    assert missing_by_use.keys() == block.keys()
     for use, keys in block.items():
-        assert {field.key for field in asked[use].fields} == {
+        assert {field.key for field in missing_by_use[use].fields} == {
             instead for key in keys for instead in alternatives(key)
         }
 

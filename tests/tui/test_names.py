@@ -126,7 +126,7 @@ def test_a_second_builder_on_the_same_file_says_so(drive, small, tmp_path):
     hold = (
         "import sys, time\nfrom pathlib import Path\n"
         "from calm.files.editing.user_state import Presence\n"
-        "Presence().say(Path(sys.argv[1]))\nprint('open', flush=True)\ntime.sleep(60)\n"
+        "Presence().announce(Path(sys.argv[1]))\nprint('open', flush=True)\ntime.sleep(60)\n"
     )
     other = subprocess.Popen(
         [sys.executable, "-c", hold, str(small)], stdout=subprocess.PIPE, text=True

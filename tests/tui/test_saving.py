@@ -42,7 +42,7 @@ async def theirs(driver, path, old="60 m", new="55 m"):
     """Another program changes the file, and the application looks."""
     text = path.read_text().replace(old, new)
     path.write_text(text)
-    driver.app.saving.look_at_disk()
+    driver.app.saving.check_external_change()
     await driver.settle()
     return text
 
@@ -360,7 +360,7 @@ def test_a_signal_leaves_the_work_that_is_offered(drive, small, of_another, end,
 
     async def story(driver):
         small.write_text(small.read_text() + "# theirs\n")
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.settle()
         end(driver.app, number, terminal=True)
         await until(driver, lambda: driver.app._exit)
@@ -387,7 +387,7 @@ def test_work_that_cannot_be_kept_is_told_at_the_end(drive, small, monkeypatch):
     async def story(driver):
         await rename(driver)
         monkeypatch.setattr(os, "replace", refuse)
-        driver.app.keep_at_the_end()
+        driver.app.save_copy_on_exit()
         assert "No space left" in driver.app.not_kept
 
     drive(story, small)
@@ -444,7 +444,7 @@ def test_a_file_that_is_read_again_closes_the_editor_of_another_text(drive, smal
         await driver.press("end", "n")  # nothing typed yet
         line = small.read_text().partition("line:")[0] + "line: []\n"
         small.write_text(line)
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.settle()
         assert driver.text == line and not driver.builder.line.editor.is_open
         await driver.press("x", "enter")
@@ -459,7 +459,7 @@ def test_a_change_is_told_once(drive, small):
         await theirs(driver, small)
         assert "Another program changed the file" in driver.screen
         await driver.press("down")
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.settle()
         assert "Another program changed the file" not in driver.screen
         await theirs(driver, small, "55 m", "554 m")
@@ -473,7 +473,7 @@ def test_a_file_that_is_gone_is_not_saved_any_more(drive, small):
 
     async def story(driver):
         small.unlink()
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.settle()
         assert "deleted from the disk" in driver.screen and "not saved" in driver.screen
         await driver.press("q")
@@ -490,7 +490,7 @@ def test_the_last_copy_of_a_file_that_is_gone_is_kept(drive, small):
 
     async def story(driver):
         small.unlink()
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.settle()
         await until(driver, lambda: copies(small))
         assert kept(small) == before
@@ -540,7 +540,7 @@ def test_a_changed_file_is_not_overwritten_unasked(drive, small):
         await rename(driver)
         theirs = small.read_text().replace("60 m", "55 m")
         small.write_text(theirs)
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.pilot.pause()
         assert "Another program changed the file" in driver.screen
         await driver.press("ctrl+s")

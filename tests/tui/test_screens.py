@@ -280,7 +280,7 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
         for text in ("M-17", "B", "soon"):
             await driver.type(text)
             await driver.press("enter")
-        assert "is not a day of the calendar; write it as 2027-06-30" in driver.screen
+        assert "is not a date; write it as 2027-06-30" in driver.screen
         await driver.press("ctrl+u")
         await driver.type("2027-06-30")
         await driver.press("ctrl+s")
@@ -304,7 +304,7 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
         await driver.press("enter")
         await driver.type("of no day")
         await driver.press("enter")
-        assert "is not a day of the calendar" in driver.screen
+        assert "is not a date" in driver.screen
         await driver.press("escape", "delete", "ctrl+s")
         await driver.settle()
         assert driver.session.draft.value(("document",)) == document

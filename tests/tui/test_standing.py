@@ -37,7 +37,7 @@ def test_an_environment_that_another_program_takes_out(drive, stormy):
     async def story(driver):
         await driver.press("w")
         stormy.write_text(without)
-        driver.app.saving.look_at_disk()
+        driver.app.saving.check_external_change()
         await driver.settle()
         assert "[default]" in driver.screen and "no environment storm now" in driver.screen
         assert driver.view.environment is None and not driver.view.problems

@@ -110,20 +110,20 @@ async def play(driver, story):
     return sum(map(len, parts))
 
 
-def assert_is_meant(path, meant):
+def assert_file_is(path, expected):
     """That the file says what was meant, and nothing else but a name and a density."""
-    said, meant = yaml.safe_load(path.read_text(encoding="utf-8")), yaml.safe_load(meant)
+    data, expected = yaml.safe_load(path.read_text(encoding="utf-8")), yaml.safe_load(expected)
     columns = ["depth m", "speed m/s", "toward deg"]
-    assert said["line"] == meant["line"]
-    assert said["environment"] == {
-        "depth": meant["environment"]["depth"],
+    assert data["line"] == expected["line"]
+    assert data["environment"] == {
+        "depth": expected["environment"]["depth"],
         "density": "1025 kg/m^3",
-        "current": {"columns": columns, "rows": meant["environment"]["current"]},
+        "current": {"columns": columns, "rows": expected["environment"]["current"]},
     }
-    if "storm" in meant:
-        storm = {"current": {"columns": columns, "rows": meant["storm"]}}
-        assert said["environments"] == {"storm": storm}
-    assert set(said) == {"name", "environment", "line"} | ({"environments"} & set(said))
+    if "storm" in expected:
+        storm = {"current": {"columns": columns, "rows": expected["storm"]}}
+        assert data["environments"] == {"storm": storm}
+    assert set(data) == {"name", "environment", "line"} | ({"environments"} & set(data))
 
 
 @pytest.mark.thorough
@@ -135,7 +135,7 @@ def test_a_deep_mooring_from_nothing_in_five_hundred_keys(drive, folder):
 
     drive(story)
     assert counts[0] <= 500
-    assert_is_meant(folder / "deep.yaml", DEEP_MEANT)
+    assert_file_is(folder / "deep.yaml", DEEP_MEANT)
     line = yaml.safe_load(DEEP_MEANT)["line"]
     assert len(line) == 33 and sum(len(piece.get("clamps", ())) for piece in line) == 6
     for environment, top in ((None, 172.6), ("storm", 266.8)):
@@ -151,6 +151,6 @@ def test_a_surface_mooring_from_nothing_in_a_hundred_and_twenty_keys(drive, fold
 
     drive(story)
     assert counts[0] <= 120
-    assert_is_meant(folder / "buoy.yaml", SURFACE_MEANT)
+    assert_file_is(folder / "buoy.yaml", SURFACE_MEANT)
     result = Design(read_mooring(folder / "buoy.yaml")).solve()
     assert result.type == "surface" and len(result.file.pieces) == 11

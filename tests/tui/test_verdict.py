@@ -11,7 +11,7 @@ from calm.files.editing import Draft
 from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
 from calm.tui.theme import ELLIPSIS
-from calm.tui.verdict_text import headline, sayings
+from calm.tui.verdict_text import headline, verdict_lines
 from tests.judged import without_checks
 from tests.tui.conftest import MOORING
 
@@ -21,12 +21,12 @@ LINES = Path(__file__).resolve().parents[2] / "lines"
 BUOY = without_checks("braconnot-buoy")
 
 
-def said(text):
-    return list(sayings(judge_fully(judge(text))))
+def lines_of(text):
+    return list(verdict_lines(judge_fully(judge(text))))
 
 
-def the(told, begin):
-    return next(each for each in told if each.text.startswith(begin))
+def the(lines, begin):
+    return next(each for each in lines if each.text.startswith(begin))
 
 
 @pytest.mark.parametrize(
@@ -39,28 +39,31 @@ def the(told, begin):
     ],
 )
 def test_the_anchor_needs_what_the_worst_finding_says(anchor, needs, state):
-    told = said(BUOY.replace("weight: 1000 N", f"weight: {anchor}"))
-    head = the(told, "needs")
+    lines = lines_of(BUOY.replace("weight: 1000 N", f"weight: {anchor}"))
+    head = the(lines, "needs")
     assert head.text.startswith(needs) and head.state is state
-    for each in (each for each in told if each.heading):
+    for each in (each for each in lines if each.heading):
         if found := re.search(r"([\d.]+ k?N) is required", each.text):
             assert f"needs {found[1]}" in head.text and each.state is head.state
             assert each.heading == "Anchor weight" + " (strumming)" * ("strumming" in needs)
 
 
 def test_the_reserve_is_that_of_the_worst_finding():
-    told = said(BUOY.replace("buoyancy: 1000 N", "buoyancy: 550 N"))
-    head, below = the(told, "212 N"), the(told, "127 % of ≥ 0.300. 24 % of the float's buoyancy")
+    lines = lines_of(BUOY.replace("buoyancy: 1000 N", "buoyancy: 550 N"))
+    head, below = (
+        the(lines, "212 N"),
+        the(lines, "127 % of ≥ 0.300. Reserve buoyancy of the float is 24 %"),
+    )
     assert head.heading == "Reserve" and head.state is below.state is State.WARN
     assert head.text.endswith("61% of the float's buoyancy in use; 76% at worst (strumming)")
-    assert below.heading == "Reserve of buoyancy (strumming)"
+    assert below.heading == "Reserve buoyancy (strumming)"
 
 
 def test_the_knockdown_is_that_of_the_worst_finding():
     text = without_checks("s1000")
-    told = said(text + "checks: {maximum_knockdown: 35 m}\n")
-    head = next(each for each in told if each.heading == "Knockdown" and "top at" in each.text)
-    below = next(each for each in told if "The top is knocked down" in each.text)
+    lines = lines_of(text + "checks: {maximum_knockdown: 35 m}\n")
+    head = next(each for each in lines if each.heading == "Knockdown" and "top at" in each.text)
+    below = next(each for each in lines if "The top is knocked down" in each.text)
     worst = re.search(r"by ([\d.]+ m)", below.text)[1]
     assert re.match(r"\d+ % of ≤ 35.0 m\. The top", below.text)
     assert head.text.endswith(f"; {worst} at worst (strumming)") and head.state is below.state
@@ -76,8 +79,8 @@ def test_the_use_of_a_row_is_the_greatest_of_any_situation():
 
 
 def test_a_line_without_an_anchor_is_told_what_one_is_to_weigh():
-    told = list(sayings(judge(BUOY.replace("  - {use: block}\n", ""))))
-    assert the(told, "needs").text == "needs 720 N in water"
+    lines = list(verdict_lines(judge(BUOY.replace("  - {use: block}\n", ""))))
+    assert the(lines, "needs").text == "needs 720 N in water"
 
 
 def test_nothing_is_said_to_pass_before_all_is_judged():
@@ -114,20 +117,20 @@ environments:
 def test_all_environments_are_judged_and_the_worst_is_named():
     text = MOORING.replace("breaking_load: 20 kN", "breaking_load: 12 kN") + STORM
     view = judge_fully(judge(text))
-    assert [each.environment for each in view.stands] == ["own", "storm"]
-    told = list(sayings(view))
-    lines = {each.heading: each for each in told}
+    assert [each.environment for each in view.cases] == ["own", "storm"]
+    lines = list(verdict_lines(view))
+    lines = {each.heading: each for each in lines}
     assert lines["In storm"].state is State.FAIL
     assert lines["In default environment"].state is not State.FAIL
     assert headline(view).state is State.FAIL
-    grave = [each.heading for each in told if each.state is State.FAIL and each.heading]
+    grave = [each.heading for each in lines if each.state is State.FAIL and each.heading]
     assert any("(storm" in heading for heading in grave)
 
 
 def test_seen_from_the_storm_the_own_environment_is_named():
     text = MOORING + STORM
     here, there = (judge_fully(judge(text, environment=name)) for name in (None, "storm"))
-    assert {each.environment for each in there.stands} == {"own", "storm"}
+    assert {each.environment for each in there.cases} == {"own", "storm"}
     count = [sum(f.state is State.FAIL for f in each.findings) for each in (here, there)]
     assert count[0] == count[1] > 0
 
@@ -138,16 +141,16 @@ def test_an_environment_that_cannot_be_read_is_named(tmp_path):
     if not view.problems:  # the file of another environment is looked for when that is judged
         view = judge_fully(view)
         assert view.elsewhere and headline(view).state is State.FAIL
-        assert any("none.csv" in each.text for each in sayings(view))
+        assert any("none.csv" in each.text for each in verdict_lines(view))
 
 
 def test_nothing_passes_before_all_is_judged_nor_where_a_figure_is_missing():
     early = judge(MOORING)
-    signs = [headline(early).sign, *(each.sign for each in sayings(early))]
+    signs = [headline(early).sign, *(each.sign for each in verdict_lines(early))]
     assert State.PASS.sign not in signs and signs[0] == ELLIPSIS
-    told = [*sayings(judge_fully(early))]
-    unknown = {each.heading for each in told if each.state is State.UNKNOWN}
-    passed = next(each.text for each in told if each.heading == "Pass").split(", ")
+    lines = [*verdict_lines(judge_fully(early))]
+    unknown = {each.heading for each in lines if each.state is State.UNKNOWN}
+    passed = next(each.text for each in lines if each.heading == "Pass").split(", ")
     assert unknown and not unknown & set(passed)
 
 
@@ -155,8 +158,8 @@ def test_an_environment_that_fails_is_named_and_each_has_its_line():
     """The own one is sound; what fails elsewhere makes the whole verdict fail."""
     gale = "environments:\n  gale: {current: {speed: 4 m/s, toward: 0 deg}}\n"
     view = judge_fully(judge(MOORING.replace("line:\n", f"{gale}line:\n")))
-    lines = [each for each in sayings(view) if each.heading.startswith("In ")]
+    lines = [each for each in verdict_lines(view) if each.heading.startswith("In ")]
     assert [each.heading for each in lines] == ["In default environment", "In gale"]
     assert lines[1].state is State.FAIL and lines[0].state is not State.FAIL
     assert headline(view).state is State.FAIL
-    assert any("gale" in each.heading for each in sayings(view) if each.state is State.FAIL)
+    assert any("gale" in each.heading for each in verdict_lines(view) if each.state is State.FAIL)

@@ -4,15 +4,15 @@ from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.live import judge, judge_fully
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.verdict_text import sayings, why
+from calm.tui.verdict_text import verdict_lines, why
 from tests.tui.conftest import MOORING
 
 WEAK = MOORING.replace("breaking_load: 20 kN", "breaking_load: 4 kN")
 
 
-def said_here(pane):
-    """What the line of the verdict that is chosen says."""
-    return pane._said[pane._chosen].text
+def chosen_text(pane):
+    """Text of the selected line of the verdict."""
+    return pane._lines[pane._chosen].text
 
 
 def test_a_row_has_all_that_was_found_of_it_the_gravest_first():
@@ -59,14 +59,14 @@ def test_a_line_of_the_verdict_leads_to_its_row_and_back(drive, folder):
         await driver.press("f6")
         pane = driver.app.focused
         assert isinstance(pane, VerdictPane)
-        while "breaking load" not in said_here(pane):
+        while "breaking load" not in chosen_text(pane):
             await driver.press("down")
-        told = said_here(pane)
+        told = chosen_text(pane)
         await driver.press("enter")
         assert driver.table.has_focus and driver.table.spot == Place(1)
         assert "breaking load" in driver.screen.splitlines()[-1]
         await driver.press("escape")
-        assert driver.app.focused is pane and said_here(pane) == told
+        assert driver.app.focused is pane and chosen_text(pane) == told
         await driver.press("escape")
         assert driver.table.has_focus
 
@@ -93,9 +93,9 @@ def test_unknown_figures_lead_to_one_row_after_the_other(drive, small):
         ]
         assert len(places) > 1
         await driver.press("f6")
-        lines = len(list(sayings(driver.view)))
+        lines = len(list(verdict_lines(driver.view)))
         for _ in range(lines):  # the first such line is of one row alone
-            if "depth_rating of logger, deep logger" in said_here(driver.app.focused):
+            if "depth_rating of logger, deep logger" in chosen_text(driver.app.focused):
                 break
             await driver.press("down")
         seen = []

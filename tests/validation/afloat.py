@@ -107,11 +107,11 @@ def depth_of_free_end(march: March, share: Vector, out: float) -> float:
     if march.head <= last:
         return 0.0  # a cable lies above the float
 
-    def lacking(depth: float) -> float:
+    def residual(depth: float) -> float:
         shape = march.down(depth, share, until=last + 1)
         axis = shape.bottom[last] - shape.top[0]
         return depth + out * max(-float(axis[2] / np.linalg.norm(axis)), 0.0)
 
-    if out == 0.0 or lacking(-out) >= 0.0:
+    if out == 0.0 or residual(-out) >= 0.0:
         return -out
-    return float(brentq(lacking, -out, 0.0, xtol=1e-13, rtol=1e-14))
+    return float(brentq(residual, -out, 0.0, xtol=1e-13, rtol=1e-14))

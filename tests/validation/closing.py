@@ -128,13 +128,13 @@ def _riding(
         share = np.where(np.arange(n) == first, part, 1.0)
         return march, share, depth_of_free_end(march, share, out)
 
-    def lacking(part: float, tolerance: float) -> float:
+    def residual(part: float, tolerance: float) -> float:
         march, share, depth = placed(part, tolerance)
         return excess(march, depth, share)
 
     parts = np.unique(np.concatenate([np.linspace(0.0, 1.0, SCAN) ** 2, 1.0 - AWASH]))
     try:
-        part = _first_root(lambda p: lacking(p, COARSE), lambda p: lacking(p, FINE), parts)
+        part = _first_root(lambda p: residual(p, COARSE), lambda p: residual(p, FINE), parts)
     except Folded:
         raise
     except NoContinuousSolution:

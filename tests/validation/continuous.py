@@ -81,7 +81,7 @@ class Place:
         self.force = self.force * [1.0, 1.0, 0.0]
         self.lying = True
 
-    def way_on(self) -> Vector:
+    def direction_on_seabed(self) -> Vector:
         """The unit vector along the seabed, against the pull."""
         if self.way is None:
             pull = float(np.linalg.norm(self.force))
@@ -93,7 +93,7 @@ class Place:
     def hold_back(self, friction: float) -> None:
         """Leave what a friction does not hold of the pull [N]."""
         pull = float(np.linalg.norm(self.force))
-        self.force = -max(pull - friction, 0.0) * self.way_on()
+        self.force = -max(pull - friction, 0.0) * self.direction_on_seabed()
 
 
 class March:
@@ -192,7 +192,7 @@ class March:
             if rests and not stands:
                 place.lie_down()  # it would tip over
         if place.lying:
-            axis, pulls = place.way_on(), []
+            axis, pulls = place.direction_on_seabed(), []
             shape.grounded = (shape.grounded or 0.0) + length
         for i, (piece, c, at, load) in enumerate(loads):
             above = place.force
@@ -262,7 +262,7 @@ class March:
             stretch, _ = quad(lambda s: strain(pull - s * held), 0.0, pulled, limit=200)
             long = length + stretch + (length - pulled) * strain(0.0)
             shape.grounded = (shape.grounded or 0.0) + length
-            place.position = place.position + long * place.way_on()
+            place.position = place.position + long * place.direction_on_seabed()
             place.hold_back(length * held)
 
 

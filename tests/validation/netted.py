@@ -117,7 +117,7 @@ class Leg:
     def _lying(self, hung: float, pull: Vector) -> Vector:
         """The way from the anchor to the touchdown along what lies, against the seabed's pull."""
         size, line = float(np.linalg.norm(pull)), self.leg.line
-        lying = line.length - self._hung(hung)
+        lying = line.length - self._suspended(hung)
         stretched = [
             length * (1.0 + strain_law(line, piece)(size)) if line.flexible[piece] else length
             for piece, length in enumerate(lying)
@@ -140,7 +140,7 @@ class Leg:
         march = March(loaded, water, FINE, self.friction)
         return march, depth_of_free_end(march, share, out), share
 
-    def _hung(self, length: float) -> Vector:
+    def _suspended(self, length: float) -> Vector:
         """(n,) what hangs of each piece where so much of a slack leg does."""
         whole = self.leg.line.length
         return np.clip(length - (np.cumsum(whole) - whole), 0.0, whole)
@@ -158,7 +158,7 @@ class Leg:
         clamps = ("clamp_buoyancy", "clamp_volume", "clamp_drag", "clamp_lift")
         columns = {name: np.where(lies, 0.0, getattr(line, name)) for name in pieces}
         columns |= {name: np.where(on, 0.0, getattr(line, name)) for name in clamps}
-        return replace(line, length=self._hung(length), **columns)
+        return replace(line, length=self._suspended(length), **columns)
 
     def risen_ends(self, shape: Shape, hung: float) -> Ends:
         """Ends of a leg that was followed upwards, from its upper end down; NaN of what lies."""
@@ -166,7 +166,7 @@ class Leg:
         anchor, touchdown = np.array(self.leg.lower.place)[:2], shape.top[0, :2]
         if self.slack and np.hypot(*(touchdown - anchor)) > whole.sum() - hung:
             raise NoContinuousSolution("a slack leg does not reach its anchor")
-        cut = (self._hung(hung) < whole) | lies
+        cut = (self._suspended(hung) < whole) | lies
         tops, bottoms = shape.bottom[::-1].copy(), shape.top[::-1].copy()
         forces = shape.force_bottom[::-1].copy(), shape.force_top[::-1].copy()
         for ends, none in ((tops, lies), (bottoms, cut), (forces[0], lies), (forces[1], cut)):

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.grid.field import estimate, field_of, posterior
-from calm.grid.samples import MooringDepths, Samples, gather
+from calm.gridding.field import estimate, field_of, posterior
+from calm.gridding.samples import MooringDepths, Samples, gather
 from calm.motion.matching import LinePlaces, points_of
 from calm.records.instrument_series import read_series
 

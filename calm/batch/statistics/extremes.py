@@ -141,9 +141,9 @@ def _censored(statuses: Mapping[str, int]) -> str:
     for status, count in statuses.items():
         if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
             ended[ending_of(status)] += count
-    said = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
-    return said and (
-        f"of the profiles with a current {said}: the largest values may be among these, and "
+    outcomes = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
+    return outcomes and (
+        f"of the profiles with a current {outcomes}: the largest values may be among these, and "
         "levels from the remaining profiles would be too low"
     )
 
@@ -179,7 +179,7 @@ def _by_maxima(
         f"with at least {100 * WHOLE:.0f} % of their profiles{_gaps(time, values, step)}"
     )
     growths = {period: -log(-log1p(-1.0 / period)) for period in _periods(years)}
-    return _told("gev", tail, 1.0, rules, growths)
+    return _fit("gev", tail, 1.0, rules, growths)
 
 
 def _by_peaks(
@@ -215,7 +215,7 @@ def _over(
         f"clusters by the intervals between exceedances (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
-    return _told("pot", tail, rate, rules, growths)
+    return _fit("pot", tail, rate, rules, growths)
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
@@ -234,7 +234,7 @@ def _periods(years: float) -> list[int]:
     return [period for period in PERIODS if period <= EXTRAPOLATION * years]
 
 
-def _told(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
+def _fit(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
     """Return the fit with its levels, without intervals if the theory of the likelihood is not
     valid.
     """

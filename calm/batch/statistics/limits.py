@@ -76,7 +76,7 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
     order = list(RULES)
     found = [
         CountedLimit(rule, criterion, estimated(leg), seat, _on_estimate(rule, criterion, leg))
-        for leg, seat in zip(mooring.meant, seats, strict=True)
+        for leg, seat in zip(mooring.typed_legs, seats, strict=True)
         for rule in RULES.values()
         if rule.criteria is not None
         for criterion in rule.criteria(estimated(leg))

@@ -203,7 +203,7 @@ def summarize(
             limits_used=tuple(
                 dict.fromkeys(
                     key
-                    for leg in mooring.meant
+                    for leg in mooring.typed_legs
                     for key in limits_used(leg.file, reaches_the_surface(leg))
                 )
             ),
@@ -302,7 +302,6 @@ def _responses(
 
 
 def _greatest(values: Column) -> list[int]:
-    """Indices of the `WORST` largest values, with earlier ones first among equal values."""
     known = values[np.isfinite(values)]
     if not len(known):
         return []

@@ -160,20 +160,20 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text next to a part, a second text `beside` at distance `at`, and values."""
+    """A line of text next to a part, a second text `side_text` at distance `at`, and values."""
 
     text: str
     colour: str = INK
     bold: bool = False
-    beside: str = ""
+    side_text: str = ""
     at: float = 0.0
     cells: tuple[str, ...] = ()
 
     @property
     def width(self) -> float:
         """Width of the line of text."""
-        beside = self.at + text_width(self.beside, FONT) if self.beside else 0.0
-        return max(text_width(self.text, FONT, bold=self.bold), beside)
+        side_text = self.at + text_width(self.side_text, FONT) if self.side_text else 0.0
+        return max(text_width(self.text, FONT, bold=self.bold), side_text)
 
 
 @dataclass(frozen=True)
@@ -304,11 +304,10 @@ def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
         draw_cable(pen, part.cable, x, *one.ends)
     else:
         pen.line(x, one.ends[0], x, one.ends[1])
-    beside = part.sign if part.clamped else part.floats
-    if beside is not None:
+    if part.clamped:
         clamp = pen.group(x, one.middle)
         draw_clamp(clamp, _CLAMP_AT)
-        figure_of(beside).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
+        figure_of(part.sign).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
     elif part.sign.symbol not in LINES:
         figure_of(part.sign).draw(pen.group(x, one.middle, SYMBOL_SCALE))
 
@@ -322,7 +321,7 @@ def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> 
     ]
     for line, y in zip(one.lines, levels, strict=True):
         page.letters(start, y, line.text, size=FONT, colour=line.colour, bold=line.bold)
-        page.letters(start + line.at, y, line.beside, size=FONT, colour=SOFT)
+        page.letters(start + line.at, y, line.side_text, size=FONT, colour=SOFT)
     for line, y in zip(one.lines, levels, strict=True):
         for text, right in zip(line.cells, column.rights, strict=False):
             page.letters(left + right, y, text, size=FONT, anchor="end")

@@ -6,16 +6,17 @@ from functools import partial
 from itertools import groupby
 from math import nan
 
+from calm.case.result_tables import run_of
 from calm.deck import Deck
-from calm.deck.deck_items import DeckItem, DeckRow, rows_on_paper
+from calm.deck.deck_items import DeckItem, DeckRow, hardware_text, rows_on_paper
 from calm.drawing.schematic.shown_parts import ShownPart, TextRow, afloat, one_line, place_text
-from calm.drawing.schematic.symbols import LINES, Sign, Symbol, sign_of
+from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import MooringFile
 from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
-"""The figures beside some items, by these and by their cut length, or place, and stretched one."""
+"""Function that returns the values next to items, given their cut and stretched length."""
 
 
 def parts_of_deck(
@@ -23,11 +24,11 @@ def parts_of_deck(
 ) -> tuple[ShownPart, ...]:
     """Return the listed parts of a line or leg, whose top is at the `surface` or submerged.
 
-    The values of each part are cut length or position on the wire, stretched length, depth, planned
-    depth if any part has one, height, tension and net buoyancy.
+    The values of each part are its number, cut length or position on the wire, stretched length,
+    depth, planned depth if any part has one, height, tension and net buoyancy.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
-    cells = partial(_figures, weights=weights, planned=has_plans(deck))
+    cells = partial(_figures, deck.numbers, weights=weights, planned=has_plans(deck))
     return parts_of(deck.file, deck.parts, listed, cells, surface=surface)
 
 
@@ -39,30 +40,29 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+    """Return the parts of a line or a leg from its top, which may be at the `surface`.
 
-    Connectors that follow one another make one junction. The labels of a part are those of all
-    that it stands for.
+    Consecutive connectors form one junction, unless they are listed separately. A part has the
+    labels of all items that it represents.
 
     Parameters
     ----------
     every : all of the line, among which a label is a person's own or not
-    cells : the figures beside the items of a part
+    cells : values next to the items of a part
     """
     own = _own_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}
     found: list[ShownPart] = []
     joints: list[DeckItem] = []
     cable: Symbol | None = None
-    for row in rows_on_paper(listed):
+    for row in rows_on_paper(listed, drawn=True):
         one = row.first
-        joins = one.role == "connector" and one.on is None and one.is_rigid
-        if joins and not getattr(one.part, "clamps", ()):
+        if one.is_connector and not one.apart and not getattr(one.part, "clamps", ()):
             joints += (*row.items, *row.joints)
             continue
         if joints:
             found.append(_junction(joints, own, cells))
-        joints = [*row.joints] if len(row.items) == 1 else []
+        joints = [*row.after]
         if row.first.on is None:
             sign = _sign(row.first)
             cable = sign.symbol if sign.symbol in LINES else None
@@ -96,13 +96,17 @@ def _piece(
     row: DeckRow, cable: Symbol | None, codes: Mapping[str | None, str], cells: Cells
 ) -> ShownPart:
     first, label = row.first, one_line(row.label)
-    joints = row.joints if len(row.items) > 1 else ()
+    sign, floats = _sign(first), sum(one.role == "float" for one in (*row.items, *row.floats))
+    if row.floats:
+        sign = _sign(row.floats[0])
+    if sign.symbol in BALLS:
+        sign = replace(sign, count=sign.count * max(floats, 1))
     words = [
         "" if (name := one_line(row.name)) == label else name,
         f"on {one_line(first.name)}" if row.floats else "",
-        f"with {one_line(row.joined)}" if joints else "",
+        f"with {one_line(hardware_text(row.between))}" if row.between else "",
         "" if first.serial is None else f"no. {one_line(first.serial)}",
-        one_line(codes.get(first.serial, "")) if first.role == "release" else "",
+        _codes(first, codes) if first.role == "release" else "",
     ]
     if first.on is not None:
         places = dict.fromkeys((row.items[0].places[0], row.items[-1].places[-1]))
@@ -110,33 +114,41 @@ def _piece(
     elif len(row.items) > 1:
         lengths = "" if first.is_rigid else row.lengths, ""
     else:
-        lengths = _said("length", first.cut_length), _said("length", first.stretched)
-    row_beside = TextRow(
+        lengths = _number_text("length", first.cut_length), _number_text("length", first.stretched)
+    connector_row = TextRow(
         label,
         " · ".join(filter(None, words)),
-        cells([*row.items, *row.floats, *joints], lengths),
+        cells([*row.items, *row.floats, *row.between], lengths),
         strong=first.role != "line" or bool(row.floats),
     )
     return ShownPart(
-        _sign(first),
-        (row_beside,),
-        labels=tuple(one.label for one in (*row.items, *row.floats, *joints)),
+        sign,
+        (connector_row,),
+        labels=tuple(one.label for one in (*row.items, *row.floats, *row.between)),
         cable=cable,
         length=first.cut_length if first.cut_length is not None else nan,
-        floats=_sign(row.floats[0]) if row.floats else None,
         clamped=first.on is not None,
     )
 
 
+def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
+    """Codes of a release, or of each release of a pair after its serial number."""
+    known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
+    if len(one.serials) < 2:
+        return "".join(known.values())
+    return " · ".join(f"{one_line(serial)}: {text}" for serial, text in known.items())
+
+
 def _figures(
+    numbers: Mapping[str, str],
     items: Sequence[DeckItem],
     lengths: tuple[str, str],
     weights: Mapping[str, float | None],
     *,
     planned: bool,
 ) -> tuple[str, ...]:
-    """Lengths, depth, planned depth and height of the first item, maximum tension, and total net
-    buoyancy.
+    """Numbers, lengths, depth, planned depth and height of the first item, maximum tension, and
+    total net buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
@@ -144,16 +156,17 @@ def _figures(
     known = [one for one in own if one is not None]
     buoyancy = -sum(known) if len(known) == len(own) else None
     return (
+        run_of([numbers[one.label] for one in items]),
         *lengths,
-        _said("depth", items[0].depth),
-        *(["" if plan is None else _said("planned_depth", plan)] if planned else []),
-        _said("depth", items[0].height),
-        "" if tension is None else _said("tension", tension),
-        "?" if buoyancy is None else _said("wet_weight", buoyancy),
+        _number_text("depth", items[0].depth),
+        *(["" if plan is None else _number_text("planned_depth", plan)] if planned else []),
+        _number_text("depth", items[0].height),
+        "" if tension is None else _number_text("tension", tension),
+        "?" if buoyancy is None else _number_text("wet_weight", buoyancy),
     )
 
 
-def _said(name: str, value: float | None) -> str:
+def _number_text(name: str, value: float | None) -> str:
     return QUANTITIES[name].format(value)
 
 
@@ -169,8 +182,8 @@ def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], cells: Cells) -
     )
     signs = [_sign(one) for one in parts]
     lengths = (
-        _said("length", sum(one.cut_length or 0.0 for one in parts)),
-        _said("length", sum(one.stretched or 0.0 for one in parts)),
+        _number_text("length", sum(one.cut_length or 0.0 for one in parts)),
+        _number_text("length", sum(one.stretched or 0.0 for one in parts)),
     )
     sign = next((sign for sign in signs if sign.symbol is Symbol.SWIVEL), signs[0])
     labels = tuple(one.label for one in parts)

@@ -81,7 +81,6 @@ class TerminalSchematic:
     ascii_only: bool
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the text without wrapping."""
         text = schematic_text(self.file, self.result, options.max_width, ascii_only=self.ascii_only)
         yield Text(text, no_wrap=True, overflow="ignore")
 
@@ -159,7 +158,6 @@ def _padded(text: str, width: int) -> str:
 
 
 def _cut(text: str, width: int) -> str:
-    """Cut a text to a width, with an ellipsis."""
     if cell_len(text) <= width:
         return text
     return set_cell_size(text, width - 1).rstrip() + ELLIPSIS

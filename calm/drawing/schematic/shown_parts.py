@@ -37,12 +37,11 @@ class ShownPart:
 
     Attributes
     ----------
-    sign : symbol to draw
+    sign : symbol to draw; of a chain or cable with floats that of the floats, with their number
     rows : rows of text; two for a pair of releases, else one
     labels : labels of the pieces it represents
     cable : symbol of the cable that it is or is clamped on; None for a rigid part
     length : length of a cable [m], NaN if unknown
-    floats : symbol of the floats clamped on it
     clamped : whether it is clamped on the part above it
     junction : whether a page break above it separates nothing that belongs together
     """
@@ -52,7 +51,6 @@ class ShownPart:
     labels: tuple[str, ...] = ()
     cable: Symbol | None = None
     length: float = math.nan
-    floats: Sign | None = None
     clamped: bool = False
     junction: bool = False
 
@@ -187,16 +185,16 @@ def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
 
 def _subtitle(file: MooringFile) -> str:
     """Depth and position of a mooring, or speed of a tow."""
-    said = []
+    facts = []
     if file.tow is not None:
-        said.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
+        facts.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
     if file.environment.depth is not None:
-        said.append(f"{say('depth', file.environment.depth)} of water")
+        facts.append(f"{say('depth', file.environment.depth)} of water")
     if file.position is not None:
         latitude, longitude = file.position.latitude, file.position.longitude
-        said.append(f"{abs(latitude):.4f}° {'N' if latitude >= 0.0 else 'S'}")
-        said.append(f"{abs(longitude):.4f}° {'E' if longitude >= 0.0 else 'W'}")
-    return " · ".join(said)
+        facts.append(f"{abs(latitude):.4f}° {'N' if latitude >= 0.0 else 'S'}")
+        facts.append(f"{abs(longitude):.4f}° {'E' if longitude >= 0.0 else 'W'}")
+    return " · ".join(facts)
 
 
 _NOT_TO_SCALE = "Not to scale. Depth and height are at the upper end,"

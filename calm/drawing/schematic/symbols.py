@@ -96,7 +96,7 @@ def sign_of(use: str, label: str, component: Component) -> Sign:
     elif symbol is Symbol.WHEELS:
         count = _first_number(component.name) or _first_number(use) or 1
     sounding = symbol is Symbol.ADCP or bool(_ADCP.search(own))
-    up, down = (sounding and bool(way.search(words)) for way in (_UP, _DOWN))
+    up, down = (sounding and bool(pattern.search(words)) for pattern in (_UP, _DOWN))
     return Sign(symbol, count, sounding, up, down)
 
 
@@ -175,10 +175,10 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
     shift = _BEAM / 2 * (sign.up - sign.down)
 
     def draw(pen: Pen) -> None:
-        for way in [-1.0] * sign.up + [1.0] * sign.down:
-            start = shift + way * figure.height / 2
+        for direction in [-1.0] * sign.up + [1.0] * sign.down:
+            start = shift + direction * figure.height / 2
             for slope in (-1.0, -0.35, 0.35, 1.0):
-                pen.line(4.0 * slope, start, 12.0 * slope, start + way * _BEAM,
+                pen.line(4.0 * slope, start, 12.0 * slope, start + direction * _BEAM,
                          stroke_dasharray="2.5 1.5", stroke_width=0.9)  # fmt: skip
         figure.draw(pen.group(0.0, shift))
         for x in (-4.5, 0.0, 4.5):
@@ -188,8 +188,6 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
 
 
 def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
-    """Stack copies of a figure vertically."""
-
     def draw(pen: Pen) -> None:
         for number in range(count):
             figure.draw(pen.group(0.0, (number - (count - 1) / 2) * figure.height))
@@ -215,7 +213,6 @@ def _pack(sign: Sign) -> SymbolFigure:
 
 
 def _wheels(count: int) -> SymbolFigure:
-    """Draw railway wheels or rotors, stacked on their rod."""
     height = count * _WHEEL + 8.0
 
     def draw(pen: Pen) -> None:

@@ -46,16 +46,16 @@ _NEED = ("float", "release", "anchor", "instrument")
 
 
 def elevation(
-    result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()
+    result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()
 ) -> list[Text]:
     """Draw a line in the vertical plane of its excursion or its tow.
 
     Distances are from the anchor towards the free end, or from the ship backward; their scale
     differs from that of the depths. The line in still water is dotted. From a width of 50 cells,
-    the names of parts are shown. The shapes `beside` a mooring, from other environments or designs,
+    the names of parts are shown. The shapes `overlays`, from other environments or designs,
     are dashed.
     """
-    side = line_picture.elevation_of(result, beside)
+    side = line_picture.elevation_of(result, overlays)
     moored = not result.towed
     if moored:  # the seabed of a mooring is the foot of the picture
         held = [line.y.min() for line in side.lines] if result.several else []
@@ -68,7 +68,7 @@ def elevation(
     across, down = _span(side), (side.top, side.bottom)
     unit = f"m to {bearing_text(bearing_of(*plane_of(result)))}" if moored else "m behind"
     caption, size = _caption(result), (width, height)
-    frame = scaled_frame(size, caption, across, down, unit, "m", seabed=seabed, beside=room)
+    frame = scaled_frame(size, caption, across, down, unit, "m", seabed=seabed, margin=room)
     if side.surface and side.top <= 0.0 <= side.bottom:
         frame.line([(across[0], 0.0), (across[1], 0.0)], SURFACE)
     draw_picture(frame, side)
@@ -90,7 +90,6 @@ def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
 
 
 def _caption(result: AnyResult) -> str:
-    """Describe depth and offset of the end in words."""
     if result.several:
         return _distance(result)
     (leg,) = result.legs
@@ -104,7 +103,6 @@ def _caption(result: AnyResult) -> str:
 
 
 def _distance(result: AnyResult) -> str:
-    """Describe offset and direction of the end, or the number of legs of a net."""
     if result.several:
         return f"net of {len(result.legs)} legs"
     (leg,) = result.legs
@@ -187,15 +185,15 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     A red dotted line shows the allowable load of the weakest piece at each position: its working
     load, or its breaking load over the required safety factor. Much larger loads are not drawn.
     """
-    pulls, way = result.shape.tension, along_the_line(result.shape)
+    pulls, along = result.shape.tension, along_the_line(result.shape)
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body
-        pulls, way = pulls[::-1], (way[-1] - way)[::-1]
+        pulls, along = pulls[::-1], (along[-1] - along)[::-1]
     greatest = max(float(pulls.max()), 1e-9)
     loads = _allowable(result)
     near = [load for _, _, load in loads if load <= _HIGHEST_LOAD * greatest]
     scale, unit = (1e-3, "kN") if greatest >= _KILO else (1.0, "N")
     across = 0.0, 1.08 * max([greatest, *near]) * scale
-    length = max(float(way[-1]), 1e-9)
+    length = max(float(along[-1]), 1e-9)
     caption = f"at most {say('tension', greatest)}{'; dotted: limits' if near else ''}"
     frame = scaled_frame((width, height), caption, across, (0.0, length), unit)
     before = 0.0
@@ -204,7 +202,7 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
             x, _ = frame.point(load * scale, 0.0)
             frame.canvas.dot(x, frame.row * DOTS_DOWN + row, LIMIT)
         before = load
-    frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
+    frame.line(zip((pulls * scale).tolist(), along.tolist(), strict=True), LINE)
     return frame.canvas.rows()
 
 
@@ -244,7 +242,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
 
     Depths are on the same rows as in an `elevation` of the same height.
     """
-    beside = 6 if width >= _DEGREES_FROM else 2
+    margin = 6 if width >= _DEGREES_FROM else 2
     depths, u, v = line_picture.current_between(water, 0.0, water.depth)
     speeds = np.hypot(u, v)
     fastest = float(speeds.max())
@@ -252,7 +250,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     frame = scaled_frame(
         (width, height), "current, m/s" if fastest > 0.0 else "still water", across,
         (0.0, water.depth), "" if header_rows(height) else "m/s", seabed=water.depth,
-        beside=beside, per_tick=_COLUMNS_PER_TICK,
+        margin=margin, per_tick=_COLUMNS_PER_TICK,
     )  # fmt: skip
     frame.line([(0.0, 0.0), (across[1], 0.0)], SURFACE)
     frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
@@ -260,9 +258,9 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
         _, row = frame.cell(0.0, value)
         east, north = (float(np.interp(value, depths, each)) for each in (u, v))
         if hypot(east, north) > 0.0:
-            way = _ARROWS[round(np.degrees(np.arctan2(east, north)) / 45.0) % 8]
-            way = f"{bearing_text(bearing_of(east, north))}{way}" if beside > 2 else way
-            frame.canvas.text(width - beside + 1, row, way, _STYLE)
+            arrow = _ARROWS[round(np.degrees(np.arctan2(east, north)) / 45.0) % 8]
+            arrow = f"{bearing_text(bearing_of(east, north))}{arrow}" if margin > 2 else arrow
+            frame.canvas.text(width - margin + 1, row, arrow, _STYLE)
     return frame.canvas.rows()
 
 
@@ -270,12 +268,12 @@ _LEAST_RANGE = 1.0  # metres
 _MARGIN = 0.06
 
 
-def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()) -> list[Text]:
+def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()) -> list[Text]:
     """Draw a line from above, with its anchor or the ship at zero.
 
-    Other shapes `beside` it, from other environments or designs, are dashed.
+    The shapes `overlays`, from other environments or designs, are dashed.
     """
-    shapes = [*(leg.shape for leg in result.legs), *beside]
+    shapes = [*(leg.shape for leg in result.legs), *overlays]
     rows = height - header_rows(height) - 2
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
@@ -288,11 +286,11 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
     left, right = _centred(west, east, metres * (width - gutter - 1) * DOTS_ACROSS)
     across, down = (left, right), (top, bottom)
     what = "" if result.several else "end " if result.towed else "top "
-    said = f"{what}{_distance(result)}"
-    frame = scaled_frame((width, height), said, across, down, "m east", "m E")
+    title = f"{what}{_distance(result)}"
+    frame = scaled_frame((width, height), title, across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
-    draw_picture(frame, line_picture.plan_of(result, beside))
+    draw_picture(frame, line_picture.plan_of(result, overlays))
     frame.canvas.text(frame.column, frame.row, "N", AXIS)
     return frame.canvas.rows()
 

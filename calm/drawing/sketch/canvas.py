@@ -149,8 +149,8 @@ class PlotFrame:
         is there.
         """
         column, row = self.cell(x, y)
-        for beside in (0, 1, -1, 2):
-            here = column + beside
+        for shift in (0, 1, -1, 2):
+            here = column + shift
             if not self.column <= here < self.column + self.columns:
                 continue
             found = self.canvas.sign(here, row)
@@ -199,7 +199,6 @@ class PlotFrame:
 
 
 def _end(labels: list[tuple[int, str]]) -> int:
-    """Column after the last label."""
     return labels[-1][0] + len(labels[-1][1]) if labels else 0
 
 
@@ -220,7 +219,7 @@ def scaled_frame(
     down: tuple[float, float],
     *units: str,
     seabed: float | None = None,
-    beside: int = 0,
+    margin: int = 0,
     per_tick: int = COLUMNS_PER_TICK,
 ) -> PlotFrame:
     """Create a frame with its scales on a new canvas.
@@ -232,7 +231,7 @@ def scaled_frame(
     across, down : values at the left and the right edge, and at the upper and the lower edge
     units : units of the horizontal scale; room is made for the last one
     seabed : depth of the seabed below the frame, if any [m]
-    beside : number of columns to the right for other texts
+    margin : number of columns to the right for other texts
     per_tick : number of columns per number of the horizontal scale
     """
     canvas, head = Canvas(*size), header_rows(size[1])
@@ -241,7 +240,7 @@ def scaled_frame(
     values = levels(min(down), max(down), size[1] - head - 2)
     foot = "m" if seabed is None else number(seabed)
     gutter = max(map(len, [foot, *map(number, values)]))
-    columns, rows = size[0] - gutter - 1 - beside, size[1] - head - 2
+    columns, rows = size[0] - gutter - 1 - margin, size[1] - head - 2
     scales = CellScale(*across, columns * DOTS_ACROSS), CellScale(*down, rows * DOTS_DOWN)
     frame = PlotFrame(canvas, gutter + 1, head, columns, rows, *scales)
     sign, style, first = ("─", AXIS, -1) if seabed is None else ("▒", SEABED, 0)

@@ -87,9 +87,11 @@ class UnknownNameError(InputError):
 
     def __init__(self, token: Token, names: Sequence[str]) -> None:
         self.names = tuple(names)
-        said = "`{0}` is neither a number nor a known name; if it is a macro, define it by -D {0}=…"
+        message = (
+            "`{0}` is neither a number nor a known name; if it is a macro, define it by -D {0}=…"
+        )
         place = token.path, token.line, token.column
-        super().__init__([Problem(*place, one_line(said.format(name))) for name in names])
+        super().__init__([Problem(*place, one_line(message.format(name))) for name in names])
 
 
 @dataclass

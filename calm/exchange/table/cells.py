@@ -396,10 +396,10 @@ def _hidden_within(content: bytes) -> dict[str, str]:
             text = archive.read(part)
             rows = [each.get("r", "?") for each in _tags(text, "row") if _is_hidden(each)]
             columns = sum(_is_hidden(each) for each in _tags(text, "col"))
-            said = [f"row{'s' * (len(rows) > 1)} {', '.join(rows[:_SHOWN])}"] if rows else []
-            said += ["columns"] if columns else []
-            if said:
-                hidden[html.unescape(sheet.get("name", ""))] = " and ".join(said)
+            within = [f"row{'s' * (len(rows) > 1)} {', '.join(rows[:_SHOWN])}"] if rows else []
+            within += ["columns"] if columns else []
+            if within:
+                hidden[html.unescape(sheet.get("name", ""))] = " and ".join(within)
     return hidden
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.errors import refused
+from calm.errors import refused, unknown
 from calm.exchange import model
 from calm.exchange.mat_file import MatVariables
 from calm.exchange.mdd.water import read_water
@@ -41,24 +41,26 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     columns, elements = options.columns, options.elements
     sheets, hidden = read_sheets(path)
     check_given(sheets, columns, path)
-    if elements is None and not columns and is_library(sheets):
+    if elements is None and not columns and options.sheet is None and is_library(sheets):
         raise refused(
             path,
-            "is a library of elements, not a mooring; a list takes its figures: --elements FILE",
+            "is a library of elements, not a mooring; a list takes its figures: --elements FILE. "
+            "If a sheet is a list of pieces, name it: --sheet NAME",
         )
+    lists = _named(sheets, options.sheet, path)
     library = read_library(elements) if elements is not None else {}
     design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
-    said = list[model.Remark]()
+    remarks = list[model.Remark]()
     headings = None
-    if chosen := _headed(sheets, hidden, columns, said):
+    if chosen := _headed(lists, hidden, columns, path, remarks):
         sheet, cells, headings = chosen
         problems += headings.problems
-        said += _unit_remarks(headings)
+        remarks += _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
         rows = rows_of(
-            cells, headings, problems, design.dropped, said,
+            cells, headings, problems, design.dropped, remarks,
             bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
         )  # fmt: skip
         weights_as_buoyancy(rows, design.guessed)
@@ -67,7 +69,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
         problems += growing_lengths(rows)
         design.understood = _understood(sheet, headings, rows)
     else:
-        rows = _names(sheets, design, path, library)
+        rows = _names(lists, design, path, library)
     if elements is not None:
         complete_rows(rows, library, elements.name)
     count_lines(rows, headings.columns if headings else {})
@@ -76,11 +78,11 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     rows = _from_the_top(rows, path, design)
     if headings and "depth" in headings.columns and not _go_down(rows):
         heading = headings.columns["depth"].heading
-        said.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
+        remarks.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
         for row in rows:
             row.figures.pop("depth", None)
     design.items = _items(rows)
-    design.guessed += said
+    design.guessed += remarks
     if problems := [*problems, *(each for row in rows for each in row.problems)]:
         raise refused(path, *problems)
     design.in_kilograms = headings is None or any(
@@ -89,31 +91,46 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     return design
 
 
+def _named(
+    sheets: Mapping[str, SheetRows], name: str | None, path: Path
+) -> Mapping[str, SheetRows]:
+    """Return the sheet of a name alone, or all sheets without a name."""
+    if name is None:
+        return sheets
+    if name not in sheets:
+        raise refused(path, unknown(f"has no sheet `{name}`", name, filter(None, sheets)))
+    return {name: sheets[name]}
+
+
 def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
-    said: list[model.Remark],
+    path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return the name, the cells and the headings of the longest sheet with headings; a visible
-    sheet is preferred.
+    """Return the name, the cells and the headings of the only sheet with headings, ignoring hidden
+    sheets if another one is visible; None if there is none.
 
-    Remarks about other sheets and hidden parts are added to `said`.
+    Remarks about hidden sheets and parts are added to `remarks`. InputError: there are several.
     """
     found = [
         (name, cells, headings)
         for name, cells in sheets.items()
         if (headings := headings_of(cells, columns)) is not None
     ]
-    if not found:
+    shown = [each for each in found if hidden.get(each[0]) != "the sheet"] or found
+    if not shown:
         return None
-    found.sort(key=lambda each: (hidden.get(each[0]) == "the sheet", -len(each[1])))
-    (taken, *_), *others = found
-    if others:
-        what = f"taken of {len(found)} with headings; not read: "
-        what += ", ".join(f"`{name}`" for name, *_ in others)
-        said.append(model.Remark(f"sheet `{taken}`", what))
+    if len(shown) > 1:
+        names = ", ".join(f"`{name}` ({len(cells) - 1} rows)" for name, cells, _ in shown)
+        raise refused(path, f"has {len(shown)} sheets with headings: {names}; --sheet NAME")
+    taken = shown[0][0]
+    if others := [name for name, *_ in found if name != taken]:
+        what = f"taken; hidden and not read: {', '.join(f'`{name}`' for name in others)}"
+        remarks.append(model.Remark(f"sheet `{taken}`", what))
     if taken in hidden:
-        said.append(model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same"))
-    return found[0]
+        remarks.append(
+            model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same")
+        )
+    return shown[0]
 
 
 def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:

@@ -71,8 +71,8 @@ class ListRow:
 
     @property
     def is_anchor(self) -> bool:
-        said = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
-        return said is not None or is_called(self.name, "anchor")
+        anchor = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
+        return anchor is not None or is_called(self.name, "anchor")
 
     @property
     def sinks(self) -> bool:
@@ -110,9 +110,9 @@ def rows_of(
     """
     rows: list[ListRow] = []
     known = headings.columns
-    decimal, said = decimals_of(cells, headings, problems)
-    if said:
-        guessed.append(model.Remark("numbers", said))
+    decimal, remark = decimals_of(cells, headings, problems)
+    if remark:
+        guessed.append(model.Remark("numbers", remark))
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
         name = cell_of(each, known["name"])
         if _DITTO.match(name) and rows:
@@ -137,8 +137,8 @@ def rows_of(
             guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
-            said = f"read as one piece with the figures of its row, not as {several[1]} pieces"
-            guessed.append(model.Remark(row.where, said))
+            remark = f"read as one piece with the figures of its row, not as {several[1]} pieces"
+            guessed.append(model.Remark(row.where, remark))
         _divide(row, known, guessed)
         rows.append(row)
     return rows

@@ -203,7 +203,7 @@ def data_of(value: Value) -> Any:
     return [data_of(one) for one in value]
 
 
-GONE = object()
+REMOVED = object()
 """Used as a value: the key is removed."""
 
 
@@ -222,7 +222,7 @@ def with_value(data: Any, location: Location, value: Any) -> Any:
     if isinstance(data, list) and isinstance(step, int):
         return [with_value(one, below, value) if i == step else one for i, one in enumerate(data)]
     base = data if isinstance(data, dict) else {}
-    if value is GONE and not below:
+    if value is REMOVED and not below:
         return {key: one for key, one in base.items() if key != step}
     return {**base, step: with_value(base.get(step), below, value)}
 

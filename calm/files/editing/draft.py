@@ -17,12 +17,12 @@ from calm.files.editing.items import LINE, LineItem, LineLists, item_of, items_o
 from calm.files.editing.writing import Patch, Value, Worded, WritingStyle, patched
 from calm.files.yaml_document import Location
 
-KEPT = "environment"
+DEFAULT_ENVIRONMENT = "environment"
 VARIANTS = "environments"
 """Sections that are kept even if they are empty."""
 
 _CONTROL = "a control character cannot be written into the file"
-_ENTANGLED = "the layout of the file does not allow this change; make it in the text"
+_LAYOUT_PREVENTS = "the layout of the file does not allow this change; make it in the text"
 
 _EMPTY = """\
 # Every figure carries its unit: 12 mm, 1.5 knot, 35 kgf, 0.22 kgf/m, 30 deg, 1/2 in.
@@ -138,7 +138,7 @@ class Draft:
         above : for an index between two legs, whether the item is the first of the lower leg
             instead of the last of the upper leg
         """
-        self._stands(rows)
+        self._check_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
@@ -205,7 +205,7 @@ class Draft:
         snippets : items as returned by `copy`
         rows, above : as in `insert`
         """
-        self._stands(rows)
+        self._check_item(rows)
         worded = _worded(snippets)
         place = self.lists.place_in(rows, index, above=above)
         return self._add(*place, worded) if worded else self
@@ -238,11 +238,11 @@ class Draft:
             return self
         while len(location) > 1 and isinstance(location[-2], str):
             outer = page.node(location[:-1])
-            is_kept = location[:-1] == (KEPT,) or location[:-2] == (VARIANTS,)
+            is_kept = location[:-1] == (DEFAULT_ENVIRONMENT,) or location[:-2] == (VARIANTS,)
             if outer is None or len(outer.keys) > 1 or is_kept:
                 break
             location = location[:-1]
-        return self._changed(page.remove(location), location, changes.GONE)
+        return self._changed(page.remove(location), location, changes.REMOVED)
 
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
@@ -277,14 +277,13 @@ class Draft:
         """Define a component in this file, or replace its definition of that id."""
         return self.put_at((changes.NAMED[0], id), values)
 
-    def _stands(self, rows: Location) -> None:
+    def _check_item(self, rows: Location) -> None:
         """Raise EditError if a list of clamps belongs to an item that does not exist."""
         if rows[0] == LINE[0] and rows != LINE:
             own, index = self.lists.place(int(rows[1]), above=True)
             self._page.known(own, [index])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
-        """Add new items to a list that may not exist yet."""
         page = self._page
         node = page.node(location)
         if node is not None and node.kind != "sequence" and node.data is not None:
@@ -308,7 +307,7 @@ class Draft:
         draft = Draft(text)
         if draft._root is None or draft._root.data != data:
             is_hidden = changes.has_control(data) and not changes.has_control(self._data)
-            raise changes.EditError(_CONTROL if is_hidden else _ENTANGLED)
+            raise changes.EditError(_CONTROL if is_hidden else _LAYOUT_PREVENTS)
         return draft
 
     @cached_property
@@ -319,7 +318,6 @@ class Draft:
 
     @cached_property
     def _padded(self) -> str:
-        """Return the text with a final line break."""
         ends = self.text.endswith("\n")
         return self.text if ends else self.text + WritingStyle.of(self.text, None).line_break
 

@@ -19,7 +19,7 @@ class Presence:
     def __init__(self) -> None:
         self._place: Path | None = None
 
-    def say(self, path: Path | None) -> list[int]:
+    def announce(self, path: Path | None) -> list[int]:
         """Record that a file is open, or none; return the numbers of other processes that have it
         open.
         """

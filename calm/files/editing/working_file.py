@@ -69,7 +69,7 @@ class WorkingFile:
         assert self.path is not None
         content = read_content(self.path)
         text = decoded(self.path, content)
-        self._see(content)
+        self._remember(content)
         sweep(Path(os.path.realpath(self.path)).parent)
         return text
 
@@ -96,7 +96,7 @@ class WorkingFile:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise NotWritten(f"cannot write {self.path}: {reason}") from None
-        self._see(content)
+        self._remember(content)
         return _lost(before, _status(target))
 
     @property
@@ -146,7 +146,7 @@ class WorkingFile:
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
             self._adopted = None
 
-    def left_behind(self) -> KeptWork | None:
+    def recoverable_work(self) -> KeptWork | None:
         """Return the latest unsaved work of a session that has ended, if it differs from the
         file.
         """
@@ -179,13 +179,13 @@ class WorkingFile:
         """
         self._adopted = kept.place
         if self.is_of_another(kept):
-            self._see(_UNREADABLE)
+            self._remember(_UNREADABLE)
 
     def discard(self, kept: KeptWork) -> None:
         """Remove a copy whose work is not wanted."""
         self._drop(kept.place)
 
-    def _see(self, content: bytes) -> None:
+    def _remember(self, content: bytes) -> None:
         self._seen, self._looked = content, None
 
     def _content(self) -> bytes | None:
@@ -255,7 +255,6 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return the status of a file; None if it cannot be obtained."""
     try:
         return path.stat()
     except (OSError, ValueError):
@@ -331,7 +330,6 @@ class KeptWork:
 
 
 def _digest(content: bytes | None) -> str:
-    """Return a short hash of a content; empty for None."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
 
 

@@ -148,7 +148,7 @@ def test_what_is_no_mooring_and_no_current_is_refused(subsurface: Design) -> Non
     with pytest.raises(UsageError, match="is a tow; this is for moorings"):
         solve_profiles(tow, u, v, depth)
     for wrong in (u.astype(complex), u > 0.0, u.astype(str)):
-        with pytest.raises(TypeError, match="a current is numbers, not "):
+        with pytest.raises(TypeError, match="the current must be numeric, not "):
             solve_profiles(subsurface, wrong, v, depth)
     for workers in (0, -1):
         with pytest.raises(ValueError, match="at least one is needed"):
@@ -166,10 +166,10 @@ def test_arrays_of_any_layout_are_taken(subsurface: Design) -> None:
 @pytest.mark.parametrize(
     ("shapes", "message"),
     [
-        (((3, 5), (3, 4), (5,)), "one shape, profiles by levels; they have .3, 5., .3, 4."),
-        (((), (), (5,)), "must have one shape, profiles by levels"),
-        (((3, 5), (3, 5), (4,)), "depth must be"),
-        (((3, 5), (3, 5), (2, 5)), "depth must be"),
+        (((3, 5), (3, 4), (5,)), "same shape, profiles by levels; they have .3, 5., .3, 4."),
+        (((), (), (5,)), "must have the same shape, profiles by levels"),
+        (((3, 5), (3, 5), (4,)), "depth must have the shape"),
+        (((3, 5), (3, 5), (2, 5)), "depth must have the shape"),
     ],
 )
 def test_shapes_that_do_not_fit_are_refused(
@@ -227,5 +227,5 @@ def test_a_record_is_solved_from_its_file_a_dataset_or_a_table(
 def test_a_record_and_arrays_are_not_mixed(subsurface: Design) -> None:
     with pytest.raises(TypeError, match="u needs v and depth"):
         solve_profiles(subsurface, np.zeros((2, 3)))
-    with pytest.raises(TypeError, match="holds the whole current"):
+    with pytest.raises(TypeError, match="contains the whole current"):
         solve_profiles(subsurface, "record.nc", np.zeros((2, 3)), np.zeros(3))

@@ -213,7 +213,7 @@ def test_period_and_every(tmp_path: Path) -> None:
         assert np.array_equal(record.profiles(0, 3)[1], whole[1:6:2])
         assert np.array_equal(record.profiles(2, 3)[1], whole[5:6])
         assert record.notes[:2] == (
-            "5 of the 7 profiles are in the period asked for",
+            "5 of the 7 profiles are in the requested period",
             "one profile in 2 is taken, from the first on",
         )
     with pytest.raises(UsageError, match=r"in this period: it is from 2026-03-01T00:00 to 2026-"):
@@ -290,4 +290,7 @@ def test_zarr_that_is_not_installed_is_named(tmp_path: Path, monkeypatch) -> Non
     monkeypatch.setitem(sys.modules, "zarr", None)
     with pytest.raises(ModuleNotFoundError) as caught:
         opened(path)
-    assert how_to_install(caught.value) == "this needs zarr: pip install 'calm-mooring[cluster]'"
+    assert (
+        how_to_install(caught.value)
+        == "this needs zarr: in CALM's checkout, pip install '.[cluster]'"
+    )

@@ -26,8 +26,8 @@ def refusal(dataset: xr.Dataset, folder: Path, at: tuple[float, float] | None = 
 def test_what_it_holds_is_listed(tmp_path: Path) -> None:
     dataset = adcp().drop_vars("v")
     assert refusal(dataset, tmp_path) == (
-        "holds no current: eastward and northward velocity, or speed and direction to or from, are "
-        "looked for by CF standard name, then by usual name; it holds "
+        "holds no current: CALM searches for eastward and northward velocity, or speed and "
+        "direction to or from, by CF standard name, then by usual name; it holds "
         "u (time 7, bin 5) [mm s-1] eastward_sea_water_velocity; "
         "w (time 7, bin 5) [mm s-1] upward_sea_water_velocity; "
         "bin_depths (time 7, bin 5) [m]; time (time 7) [seconds since 2026-03-01] time; bin (bin 5)"
@@ -69,8 +69,8 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         (staggered, "`a` and `b` are on different points of a staggered grid"),
         (
             direction_of_no_convention,
-            "`direction` does not say whether it is where the current flows to or where it comes "
-            "from; its `standard_name` should be sea_water_velocity_to_direction or "
+            "`direction` is ambiguous: the current may flow to this direction or come from it; "
+            "its `standard_name` should be sea_water_velocity_to_direction or "
             "sea_water_velocity_from_direction",
         ),
         (along_a_turned_grid, "`uo` is sea_water_x_velocity, which is not eastward_sea_water_v"),
@@ -85,7 +85,7 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (
             lambda: glorys().assign_coords(depth=-glorys()["depth"].assign_attrs(positive="down")),
-            "`depth` is positive down, and no level of it is below the surface: its sign or its",
+            "`depth` is positive down, but all levels are above the surface: its sign or its",
         ),
         (lambda: with_attributes(adcp(), "u", units="kg"), "`u`: its unit, `kg`, is a mass; a spe"),
         (lambda: with_attributes(adcp(), "u", units=""), "`u` has no `units`"),

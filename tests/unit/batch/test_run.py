@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.batch.blocks import AHEAD, in_order, in_threads
+from calm.batch.blocks import IN_PROGRESS, in_order, in_threads
 from calm.batch.compiling import compile_solver
 from calm.batch.finished import open_result
 from calm.batch.profiles import Batch
@@ -175,7 +175,7 @@ def test_threads_take_no_more_than_is_ahead_and_keep_the_order(workers):
 
     def tasks():
         for number in range(30):
-            assert number - len(finished) <= AHEAD * workers
+            assert number - len(finished) <= IN_PROGRESS * workers
             taken.append(number)
             yield number
 

@@ -56,7 +56,7 @@ def test_the_check_says_once_what_a_smooth_float_makes_of_the_knockdown(solve):
     constant, curve = solve(), solve(drag="reynolds")
     (found,) = _of_drag(constant)
     assert found.state is State.NOT_JUDGED and found.component == "top"  # less drag is no danger
-    assert "The Reynolds number of top is 4.4e5; the drag coefficient holds up to 2e5." in (
+    assert "The Reynolds number of top is 4.4e5; the drag coefficient is valid up to 2e5." in (
         found.message
     )
     then, now = (f"{each.top.knockdown:.1f} m" for each in (curve, constant))
@@ -67,7 +67,7 @@ def test_the_check_says_once_what_a_smooth_float_makes_of_the_knockdown(solve):
 def test_beyond_its_curve_a_smooth_float_is_not_judged_either(solve):
     (found,) = _of_drag(solve(speed="1.2 m/s", drag="reynolds"))
     assert found.message == (
-        "The Reynolds number of top is 1.1e6; the drag coefficient holds up to 1e6."
+        "The Reynolds number of top is 1.1e6; the drag coefficient is valid up to 1e6."
     )
 
 

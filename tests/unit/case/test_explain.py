@@ -196,7 +196,7 @@ def test_a_surface_mooring_is_explained_by_its_excursion():
     result = calm.load(LINES / "taut-nylon-surface.yaml").solve()
     explanation = explain(result)
     assert explanation.quantities == ("excursion", "used_buoyancy")
-    assert "not knocked down" in explanation.notes[0]
+    assert "has no knockdown" in explanation.notes[0]
     causes, start = explanation.causes, explanation.without_drag
     total = start["excursion"] + causes.excursion.sum()
     assert total == pytest.approx(hypot(result.top.x, result.top.y), rel=1e-9)

@@ -57,8 +57,8 @@ def test_of_a_leg_only_what_it_has_is_said(net):
     """No anchor's load where it has no anchor; no strumming, as it does not stand alone."""
     said = {leg.name: str((summary_of(leg), quality_of(leg))) for leg in net.solve().legs}
     assert "unknown" not in "".join(said.values())
-    assert "nchor" not in said["stem"] and "lower end missed by" in said["stem"]
-    assert "sideways" in said["west"] and "off the anchor" in said["west"]
+    assert "nchor" not in said["stem"] and "position at the lower end" in said["stem"]
+    assert "horizontal" in said["west"] and "position at the anchor" in said["west"]
     assert all(leg.strumming_band is None for leg in net.solve().legs)
 
 

@@ -109,22 +109,22 @@ def test_stops_that_cannot_be_are_refused(tmp_path, where, told):
 
 def test_a_profiler_in_the_line_is_refused(tmp_path):
     change = ("  - {use: rel, label: release}", "  - {use: mmp}\n  - {use: rel, label: release}")
-    with pytest.raises(InputError, match="a profiler rides on a wire"):
+    with pytest.raises(InputError, match="a profiler must be among the `clamps`"):
         mooring(tmp_path, change=change)
 
 
 @pytest.mark.parametrize(
     ("change", "state", "told"),
     [
-        (("7500 N", "3300 N"), "fail", "which needs 2224 N to travel on it"),
-        (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive gives 5 N"),
+        (("7500 N", "3300 N"), "fail", "the profiler needs 2.22 kN to travel"),
+        (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive force is 5.00 N"),
         (("drive_force: 50 N, ", ""), "unknown", "The drive force of"),
-        (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire is 14.0 mm thick"),
+        (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire has a diameter of 14.0 mm"),
         (
             ("      - {use: bumper, at: 1380", "      - {use: bumper, at: 600 m}\n"
              "      - {use: bumper, at: 1380"),
             "fail",
-            "bumper obstructs MMP, 600 m along the wire",
+            "bumper blocks MMP, 600 m down the wire",
         ),
     ],
 )  # fmt: skip
@@ -143,7 +143,7 @@ def test_time_and_number_of_profiles(tmp_path):
     assert (travel.distance, travel.time, travel.profiles) == (1375.0, 5500.0, 72)
     slow = mooring(tmp_path, change=("speed: 0.25 m/s", "speed: 0.05 m/s")).solve()
     told = [each.message for each in profiler.judge(slow) if each.state == "warn"]
-    assert told == ["A profile of MMP takes 7 h 38 min; its time limit allows 6 h 24 min."]
+    assert told == ["A profile of MMP takes 7 h 38 min; the limit is 6 h 24 min."]
 
 
 def test_drag_along_a_leaning_wire(tmp_path):
@@ -154,14 +154,14 @@ def test_drag_along_a_leaning_wire(tmp_path):
     tilt = np.radians(result.profilers[0].upper.tilt)
     past = 0.25 + 0.5 * np.sin(tilt)
     drag = 0.5 * 1025.0 * 0.6 * 0.45 * past**2
-    needed = [each.limit for each in profiler.judge(result) if "its drive gives" in each.message]
+    needed = [each.limit for each in profiler.judge(result) if "its drive force is" in each.message]
     assert needed == [pytest.approx(drag + 3.0 * np.cos(tilt), rel=1e-6)]
 
 
 def test_each_rule_is_judged_at_both_stops_and_where_the_wire_leans_most(tmp_path):
     names = [each.name for each in check(mooring(tmp_path, TURNING)).stands[0].situations]
     assert "MMP at its lower stop" in names
-    assert "MMP where its wire leans most" in names
+    assert "MMP at its largest wire angle" in names
     assert [each for each in names if "MMP" in each] == names[2:4]
 
 

@@ -167,7 +167,7 @@ COMPACT += FILE[FILE.index("  - {use: opener, label: release}") :].replace("50 m
 def test_a_compact_line_of_one_float_has_no_back_up_to_judge(tmp_path):
     (found,) = backup_of(tmp_path, COMPACT)
     assert (found.state, found.component) == ("not-judged", "top")
-    assert found.message == "top alone brings up the line: it has no back-up."
+    assert found.message == "top provides all the buoyancy, so there is no back-up."
 
 
 @pytest.mark.parametrize("lead, judged", [(49.0, False), (51.0, True)])
@@ -224,7 +224,7 @@ def test_a_line_hauled_in_from_its_buoy_needs_no_release(tmp_path):
     text = text.replace("buoyancy: 2000 N", "buoyancy: 30 kN").replace("15 kN", "60 kN")
     (found,) = backup_of(tmp_path, text)
     assert (found.state, found.value) == ("not-judged", None)
-    assert "the line is hauled in" in found.message
+    assert "without a release is hauled in" in found.message
     found = check(calm.load(tmp_path / "m.yaml")).findings
     (rise,) = [one for one in found if one.rule == "recovery"]
     assert rise.state == "not-judged"

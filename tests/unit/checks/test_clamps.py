@@ -95,7 +95,7 @@ def test_the_fall_and_the_rise_pull_along_the_line(load):
     pulls = [abs(end * fall**2 - 40.0), 40.0 + end * rise**2]
     (found,) = (one for one in check(mooring).findings if one.rule == "clamp-grip")
     assert found.value == pytest.approx(max(pulls), rel=1e-9)
-    assert "in the rise" in found.message
+    assert "during the ascent" in found.message
 
 
 def test_clamps_in_the_fall_and_the_rise_have_their_drag_along_the_line(load):

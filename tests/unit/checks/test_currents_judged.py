@@ -46,11 +46,11 @@ def table(*rows):
 
 def test_the_strongest_current_of_all_environments_is_said(tmp_path):
     weak, strong = (of(tmp_path, UNIFORM.replace("SPEED", speed)) for speed in ("0.1", "0.6"))
-    assert said(weak, strong) == [("pass", "The strongest current judged is 0.60 m/s.")]
+    assert said(weak, strong) == [("pass", "The strongest current checked is 0.60 m/s.")]
     assert said(weak) == [
         (
             "warn",
-            "The strongest current judged is 0.10 m/s; a wind of 7 m/s alone drives 0.20 m/s at "
+            "The strongest current checked is 0.10 m/s; a wind of 7 m/s alone drives 0.20 m/s at "
             "the surface.",
         )
     ]
@@ -61,11 +61,11 @@ def test_centimetres_beside_a_storm_are_told(tmp_path):
     state, message = said(small, storm)[0]
     assert state == "warn"
     assert message == (
-        "The current is 0.004 m/s at its strongest, 0.80 m/s in another environment: "
-        "was m/s read as cm/s, or cm/s as m/s?"
+        "The strongest current is 0.004 m/s here and 0.80 m/s in another environment: one of them "
+        "may be in the wrong unit."
     )
     still = of(tmp_path, UNIFORM.replace("SPEED", "0"))
-    assert said(still, storm) == [("pass", "The strongest current judged is 0.80 m/s.")]
+    assert said(still, storm) == [("pass", "The strongest current checked is 0.80 m/s.")]
 
 
 GAPS = {
@@ -134,9 +134,7 @@ def test_an_accept_by_nobody_is_told(tmp_path):
         judged = load(tmp_path / "m.yaml", text=thin + text.replace(" MORE", more))
         notices = assessment_of("m", stands_of(judged, "m")).notices
         assert (
-            notices.count(
-                "1 of 1 `accept` names nobody (`by`) or no end (`until`): accepted is not passed"
-            )
+            notices.count("1 of 1 `accept` entries lacks a name (`by`) or an end date (`until`)")
             == count
         )
 
@@ -155,7 +153,7 @@ def test_a_current_weaker_than_its_own_record_is_told(tmp_path):
     calm, storm = (
         of(tmp_path, f"{{file: record.csv, time: '2026-01-01T{hour}:00'}}") for hour in ("00", "06")
     )
-    told = "The record that this current is taken from reaches 0.90 m/s; "
-    assert said(calm)[0] == ("warn", f"{told}the strongest current judged is 0.30 m/s.")
+    told = "The record behind this current reaches 0.90 m/s; "
+    assert said(calm)[0] == ("warn", f"{told}the strongest current checked is 0.30 m/s.")
     assert [state for state, _ in said(storm)] == ["pass"]
     assert [state for state, _ in said(calm, storm)] == ["pass"]

@@ -61,12 +61,18 @@ def test_usual_environments_pass(tmp_path: Path, changes: dict[str, object]) -> 
         ({"way": 1.571}, "`toward` is 1.57 degrees throughout"),
         ({"way": 1.571, "column": "from"}, "`from` is 1.57 degrees throughout"),
         ({"density": "1100 kg/m^3"}, "1100 kg/m^3 is that of brine"),
-        ({"density": "{temperature: 35 degC, salinity: 8}"}, "temperature and salinity exchanged"),
+        (
+            {"density": "{temperature: 35 degC, salinity: 8}"},
+            "are temperature and salinity exchanged",
+        ),
         ({"more": "depth_range: [800 m, 1200 m]"}, "`depth_range` spans 400 m"),
         ({"more": "wind: {speed: 108 m/s, toward: 90 deg}"}, "stronger than any at sea"),
         # a decimal point too far left at two levels of the storm, found by its name or its maximum
         ({"other": STORM.replace("0.7", "0.07").replace("0.4", "0.04")}, "of storm is 0.07 m/s"),
-        ({"name": "case 2", "other": STORM.replace("0.7", "0.07")}, "case 2 is 0.07 m/s at 200.0"),
+        (
+            {"name": "case 2", "other": STORM.replace("0.7", "0.07")},
+            "At 200.0 m, the current of case 2 is 0.07 m/s",
+        ),
         ({"other": "[[0, 0.06, 90], [1000, 0.015, 90]]"}, "of storm is 0."),
     ],
 )

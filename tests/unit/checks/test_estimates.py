@@ -62,7 +62,7 @@ def test_what_passes_by_the_low_bound_is_estimated(tmp_path: Path) -> None:
     state, limit, message = of_link(assessment, "strength")
     assert (state, limit) == (State.ESTIMATED, 3000.0)
     assert message.endswith(
-        "`working_load` is estimated: 3000 N at least, 20000 N likely (its chain)."
+        "`working_load` is estimated: at least 3.00 kN, probably 20.00 kN (its chain)."
     )
     every = [one for one in assessment.all_findings() if one.state is State.ESTIMATED]
     assert check_document([assessment])["estimated"] == len(every) >= 1
@@ -72,7 +72,7 @@ def test_what_passes_by_its_value_alone_is_unknown(tmp_path: Path) -> None:
     assessment = judged(tmp_path, ESTIMATE.replace("LOW", "2.8 kN"))
     (finding,) = missing_of_link(assessment)
     assert finding.state is State.UNKNOWN
-    assert "20000 N likely (its chain)" in finding.message
+    assert "probably 20.00 kN (its chain)" in finding.message
     figure = finding.to_dict()
     assert (figure["component_id"], figure["quantity"]) == ("link", "working_load")
     assert figure["needed_by"] == ["strength"]
@@ -120,7 +120,7 @@ def test_a_lower_bound_alone_is_enough_and_its_quality_is_shown(tmp_path: Path) 
     figures = ", estimate: {quantity: working_load, low: 3 kN, quality: low, source: its chain}"
     state, limit, message = of_link(judged(tmp_path, figures), "strength")
     assert (state, limit) == (State.ESTIMATED, 3000.0)
-    assert message.endswith("is estimated: 3000 N at least (its chain, quality low).")
+    assert message.endswith("is estimated: at least 3.00 kN (its chain, quality low).")
 
 
 # Waves of 5 cm add next to nothing: the bound differs, not the load.
@@ -131,7 +131,7 @@ def test_a_line_that_waves_move_is_judged_by_the_bound_for_waves(tmp_path: Path)
     (finding,) = missing_of_link(judged(tmp_path, figures, waves=WAVES))
     assert finding.state is State.UNKNOWN
     for message in (calm_water[2], finding.message):
-        assert "3000 N at least, 2800 N in waves, 20000 N likely" in message
+        assert "at least 3.00 kN (2.80 kN in waves), probably 20.00 kN" in message
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,7 @@ FLAWS = (
         "wave-strength",
         None,
         "unknown",
-        "no `waves:` are given",
+        "The environment has no `waves:`",
     ),
     Flaw(
         "a link too weak for a sea",
@@ -88,7 +88,7 @@ FLAWS = (
         "wave-strength",
         "floating rope",
         "fail",
-        "in waves of Hs 3.0 m; its loads allow 4000 N",
+        "; the limit is 4.00 kN",
     ),
     Flaw(
         "a rope whose stretch in waves is not known",
@@ -106,7 +106,7 @@ FLAWS = (
         "wave-slack",
         "floating rope",
         "fail",
-        "it goes slack and snatches",
+        "the line goes slack and snap loads follow",
     ),
     Flaw(
         "a life without a climate",
@@ -115,7 +115,7 @@ FLAWS = (
         "fatigue",
         None,
         "not-judged",
-        "One sea is not a wave climate",
+        "A fatigue life needs a wave climate",
     ),
     Flaw(
         "a wire too weak",
@@ -124,7 +124,7 @@ FLAWS = (
         "strength",
         "wire",
         "fail",
-        "its working load is 5000 N",
+        "its working load is 5.00 kN",
     ),
     Flaw(
         "a breaking load less than thrice the pull",
@@ -133,7 +133,7 @@ FLAWS = (
         "strength",
         "wire",
         "fail",
-        "its breaking load of 15000 N over 3 allows 5000 N",
+        "its breaking load of 15.00 kN over 3 allows 5.00 kN",
     ),
     Flaw(
         "a rope that needs 5, not 3",
@@ -142,7 +142,7 @@ FLAWS = (
         "strength",
         "Kevlar 1",
         "fail",
-        "over 5 allows 6000 N",
+        "over 5 allows 6.00 kN",
     ),
     Flaw(
         "no load known",
@@ -151,7 +151,7 @@ FLAWS = (
         "missing",
         "wire",
         "unknown",
-        "neither its working nor its breaking",
+        "its working load and breaking load are unknown",
     ),
     Flaw(
         "one weak shackle in a strong line",
@@ -165,7 +165,7 @@ FLAWS = (
         "strength",
         "shackle-19 1",
         "fail",
-        "its working load is 1000 N",
+        "its working load is 1.00 kN",
     ),
     Flaw(
         "a weak link between strong neighbours",
@@ -179,7 +179,7 @@ FLAWS = (
         "strength-steps",
         "shackle-13 1",
         "warn",
-        "is rated for 1000 N",
+        "is rated for 1.00 kN",
     ),
     Flaw(
         "an anchor lighter than the rule",
@@ -197,7 +197,7 @@ FLAWS = (
         "anchor-uplift",
         "deadweight",
         "fail",
-        "The vertical pull of the line is",
+        "The vertical anchor load is",
     ),
     Flaw(
         "a bed that does not hold",
@@ -206,7 +206,7 @@ FLAWS = (
         "anchor-sliding",
         "deadweight",
         "fail",
-        "friction of 0.1 holds",
+        "a friction coefficient of 0.1 holds",
     ),
     Flaw(
         "a rope almost slack",
@@ -219,7 +219,7 @@ FLAWS = (
         "slack",
         "Kevlar 3",
         "fail",
-        "300 N keeps a rope taut",
+        "a rope needs 300 N to stay taut",
     ),
     Flaw(
         "an instrument that leans too much",
@@ -233,7 +233,7 @@ FLAWS = (
         "tilt",
         "meter 1500 m",
         "fail",
-        "1.0° is its limit",
+        "the limit is 1.0°",
     ),
     Flaw(
         "an instrument whose data become doubtful",
@@ -256,7 +256,7 @@ FLAWS = (
         "tilt",
         "meter 500 m",
         "fail",
-        "0.5° is its limit",
+        "the limit is 0.5°",
     ),
     Flaw(
         "a clamp below its depth",
@@ -265,7 +265,7 @@ FLAWS = (
         "depth-rating",
         "CTD 900 m",
         "fail",
-        "it is rated to 950 m, less a margin of 100 m",
+        "its depth rating of 950 m less a margin of 100 m allows 850 m",
     ),
     Flaw(
         "a float whose depth is not known",
@@ -274,7 +274,7 @@ FLAWS = (
         "missing",
         "sphere",
         "unknown",
-        "its depth rating is not known",
+        "its depth rating is unknown",
     ),
     Flaw(
         "a knockdown that the design forbids",
@@ -283,7 +283,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "fail",
-        "2.0 m is allowed",
+        "the limit is 2.0 m",
     ),
     Flaw(
         "an excursion that the design forbids",
@@ -292,7 +292,7 @@ FLAWS = (
         "excursion",
         "ADCP float",
         "fail",
-        "20.0 m is allowed",
+        "the limit is 20.0 m",
     ),
     Flaw(
         "a buoy with little in reserve",
@@ -301,7 +301,7 @@ FLAWS = (
         "reserve",
         "buoy",
         "fail",
-        "90 % should be",
+        "at least 90 % is required",
     ),
     Flaw(
         "a watch circle beyond the chart's",
@@ -319,7 +319,7 @@ FLAWS = (
         "backup",
         None,
         "fail",
-        "the part that holds the release has a buoyancy of",
+        "the section with the release has a net buoyancy of",
     ),
     Flaw(
         "a release that nothing is told of",
@@ -328,7 +328,7 @@ FLAWS = (
         "backup",
         None,
         "unknown",
-        "There is no release",
+        "The line has no release",
     ),
     Flaw(
         "a line that hardly rises",
@@ -343,7 +343,7 @@ FLAWS = (
         "recovery",
         None,
         "warn",
-        "it rises at",
+        "the line rises at",
     ),
     Flaw(
         "a parafil that breaks in the launch",
@@ -352,7 +352,7 @@ FLAWS = (
         "launch-strength",
         "parafil 1",
         "fail",
-        "in the fall; its breaking load over 2 is 6000 N",
+        "its breaking load over 2 is 6.00 kN",
     ),
     Flaw(
         "an anchor that falls like a stone",
@@ -366,7 +366,7 @@ FLAWS = (
         "launch-speed",
         "four wheels",
         "warn",
-        "2.5 m/s should not be exceeded",
+        "the limit is 2.5 m/s",
     ),
     Flaw(
         "an anchor lifted at high water",
@@ -385,7 +385,7 @@ FLAWS = (
         "reserve",
         "buoy",
         "fail",
-        "under water: 0 % is left",
+        "under water and has no reserve buoyancy",
     ),
     Flaw(
         "a buoy too small to come up",
@@ -399,7 +399,7 @@ FLAWS = (
         "reserve",
         "buoy",
         "fail",
-        "under water: 0 % is left",
+        "under water and has no reserve buoyancy",
     ),
     Flaw(
         "a buoy without freeboard",
@@ -455,7 +455,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "fail",
-        "13.0 m is allowed",
+        "the limit is 13.0 m",
         "fouling",
     ),
     Flaw(
@@ -465,7 +465,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "warn",
-        "13.0 m is allowed",
+        "the limit is 13.0 m",
         "strumming",
     ),
     Flaw(
@@ -479,7 +479,7 @@ FLAWS = (
         "top-depth",
         None,
         "warn",
-        "10.0 m is needed to stay clear",
+        "at least 10.0 m is needed to stay clear",
     ),
     Flaw(
         "a top less deep than the design says",
@@ -488,7 +488,7 @@ FLAWS = (
         "top-depth",
         "ADCP float",
         "fail",
-        "400.0 m is needed to stay clear",
+        "at least 400.0 m is needed to stay clear",
     ),
     Flaw(
         "a release that the line overloads",
@@ -497,7 +497,7 @@ FLAWS = (
         "release-load",
         None,
         "fail",
-        "the allowed load is 1000 N",
+        "the limit is 1.00 kN",
     ),
     Flaw(
         "a release that does not open under its load",
@@ -511,7 +511,7 @@ FLAWS = (
         "release-load",
         None,
         "fail",
-        "its opening load is 1000 N",
+        "its opening load is 1.00 kN",
     ),
     Flaw(
         "a sub-surface line without a release",
@@ -520,7 +520,7 @@ FLAWS = (
         "release-present",
         None,
         "unknown",
-        "how the line is freed from its anchor is not known",
+        "the release of the line is unknown",
     ),
     Flaw(
         "a release with no other beside it",
@@ -529,7 +529,7 @@ FLAWS = (
         "release-present",
         "release",
         "warn",
-        "release is the only release: if it fails, nothing else frees the line.",
+        "release is the only release: if it fails, the line stays moored.",
     ),
     Flaw(
         "a release on its anchor",
@@ -546,7 +546,7 @@ FLAWS = (
         "release-present",
         "releases pair",
         "warn",
-        "releases pair stands 0.1 m above the anchor; 1 m would keep it out of the mud",
+        "releases pair is 0.1 m above the anchor; 1 m keeps a release clear of mud",
     ),
     Flaw(
         "a release above every float",
@@ -558,7 +558,7 @@ FLAWS = (
         "release-present",
         "release",
         "fail",
-        "Nothing above release floats: once released, it stays on the seabed.",
+        "No piece above release is buoyant: once released, it stays on the seabed.",
     ),
     Flaw(
         "a release that is clamped",
@@ -567,7 +567,7 @@ FLAWS = (
         "release-present",
         "CTD 900 m",
         "unknown",
-        "CTD 900 m has `role: release`, but a clamped release frees nothing.",
+        "CTD 900 m has `role: release`, but a clamped release cannot free the line.",
     ),
     Flaw(
         "a line without any shackle",
@@ -576,7 +576,7 @@ FLAWS = (
         "hardware",
         None,
         "warn",
-        "its joints are not judged",
+        "its joints are not checked",
     ),
     Flaw(
         "a rope where fish bite",
@@ -585,7 +585,7 @@ FLAWS = (
         "fish-bite",
         "polyester",
         "warn",
-        "fish bite through rope down to 1000.0 m",
+        "rope above 1000.0 m is exposed to fish bite",
     ),
     Flaw(
         "a release above every float, beside a good one",
@@ -599,7 +599,7 @@ FLAWS = (
         "release-present",
         "upper",
         "warn",
-        "Nothing above release upper floats",
+        "No piece above release upper is buoyant",
     ),
     Flaw(
         "a nylon rope without stiffness",
@@ -608,7 +608,7 @@ FLAWS = (
         "missing",
         "Kevlar 3",
         "unknown",
-        "is nylon of unknown stiffness, taken as inextensible: it could stretch by",
+        "is nylon of unknown stiffness and assumed inextensible. It could stretch by",
     ),
     Flaw(
         "a rope measured under most of what it bears",
@@ -622,7 +622,7 @@ FLAWS = (
         "stretch",
         "wire",
         "warn",
-        "wire is cut to its length under 22000 N; in use it bears",
+        "wire is cut to length under 22.00 kN, more than",
     ),
     Flaw(
         "a float that leaps",
@@ -634,7 +634,7 @@ FLAWS = (
         "recovery",
         None,
         "warn",
-        "Beyond 3 m/s floats may breach and the line may loop.",
+        "above 3 m/s floats may breach and the line may loop.",
     ),
     Flaw(
         "a clamp that slips",
@@ -643,7 +643,7 @@ FLAWS = (
         "clamp-grip",
         "CTD 900 m",
         "fail",
-        "it grips with 1 N",
+        "it grips 1.00 N",
     ),
     Flaw(
         "a wire that winds up its float",
@@ -719,7 +719,7 @@ FLAWS = (
         "current",
         None,
         "warn",
-        "The strongest current judged is 0.08 m/s; a wind of 7 m/s alone drives 0.20 m/s",
+        "The strongest current checked is 0.08 m/s; a wind of 7 m/s alone drives 0.20 m/s",
     ),
     Flaw(
         "a rope that no water drags",
@@ -728,7 +728,7 @@ FLAWS = (
         "figures",
         "wire",
         "fail",
-        "wire has `cn: 0.001`; a cable has 0.05 at least, 4 at most",
+        "wire has `cn: 0.001`; a cable has at least 0.05 and at most 4",
     ),
     Flaw(
         "a load that a catalogue's piece does not bear",
@@ -742,7 +742,7 @@ FLAWS = (
         "figures",
         None,
         "unknown",
-        "The line gives working_load of shackle-13 as 90000 N; the definition of shackle-13 has",
+        "The line sets working_load of shackle-13 to 90.00 kN without a source; the definition of",
     ),
     Flaw(
         "a rope that no current pushes",
@@ -751,7 +751,8 @@ FLAWS = (
         "figures",
         None,
         "unknown",
-        "The line gives cn of polyester as 0.2; the definition of polyester-19-dewey has 1.3, and",
+        "The line sets cn of polyester to 0.2 without a source; the definition of "
+        "polyester-19-dewey",
     ),
     Flaw(
         "a noble shackle on steel",
@@ -785,7 +786,7 @@ FLAWS = (
         "profiler",
         "MMP",
         "fail",
-        "CTD 295 m obstructs MMP, 80 m along the wire",
+        "CTD 295 m blocks MMP, 80 m down the wire",
     ),
     Flaw(
         "a shackle of nobody knows what",
@@ -799,7 +800,7 @@ FLAWS = (
         "figures",
         "link",
         "unknown",
-        "link is of `hastaloy`, a material that is not known: what it may bear, how it stretches",
+        "link has the unknown material `hastaloy`, so its strength, stretch and corrosion",
     ),
     Flaw(
         "a launch that may bear half the working load",
@@ -811,7 +812,7 @@ FLAWS = (
         "launch-strength",
         "wire 1",
         "fail",
-        "its working load times 0.5 is 4000 N",
+        "its working load times 0.5 is 4.00 kN",
     ),
     Flaw(
         "a breaking load a thousand times too great",
@@ -820,7 +821,7 @@ FLAWS = (
         "figures",
         "wire 1",
         "fail",
-        "wire 1 bears 48000000 N; no cable of its weight in water bears",
+        "wire 1 has a breaking load of 48000.00 kN; a cable of its weight in water has at most",
     ),
     Flaw(
         "a wire that floats",
@@ -829,7 +830,7 @@ FLAWS = (
         "figures",
         "wire 1",
         "fail",
-        "wire 1 lifts 1.2 N/m; water of its diameter weighs",
+        "wire 1 has a buoyancy of 1.2 N/m; water of its diameter weighs",
     ),
     Flaw(
         "a wire of 250 m in place of 200 m",
@@ -838,7 +839,8 @@ FLAWS = (
         "planned-depth",
         "CTD 295 m",
         "fail",
-        "CTD 295 m hangs at 245.0 m in still water, planned for 295.0 m: 50.0 m too shallow.",
+        "CTD 295 m is at 245.0 m in still water; its planned depth is 295.0 m (50.0 m too "
+        "shallow).",
     ),
     Flaw(
         "a bottom 250 m deeper than the design",
@@ -847,7 +849,7 @@ FLAWS = (
         "planned-depth",
         None,
         "fail",
-        "All 5 instruments with a planned depth hang",
+        "All 5 parts with a planned depth are",
     ),
     Flaw(
         "deployed where it is deeper",
@@ -856,7 +858,8 @@ FLAWS = (
         "as-deployed",
         None,
         "warn",
-        "Deployed in 2100.0 m of water, designed for 1800.0 m: its top, upright, is 300.0 m deeper",
+        "Deployed in 2100.0 m of water instead of 1800.0 m: the top of the upright line is "
+        "300.0 m deeper",
     ),
     Flaw(
         "a buoy that no wind blows on",
@@ -865,7 +868,7 @@ FLAWS = (
         "environment",
         "buoy",
         "warn",
-        "its pull on buoy is not judged",
+        "so the wind load on buoy is not checked",
     ),
     Flaw(
         "a wire straight onto a meter",
@@ -891,7 +894,7 @@ FLAWS = (
         "serials-and-dates",
         "CTD 295 m",
         "warn",
-        "The battery of CTD 295 m ends on 2026-01-31, and it is deployed on 2026-05-01.",
+        "The battery of CTD 295 m ends on 2026-01-31; the deployment is on 2026-05-01.",
     ),
     Flaw(
         "a current that no line stands",

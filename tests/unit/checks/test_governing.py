@@ -1,4 +1,4 @@
-"""What governs in the moorings of `lines/`: utilisation, sense, load case and conclusion."""
+"""Governing checks in the moorings of `lines/`: utilisation, sense, load case and conclusion."""
 
 import re
 from functools import cache
@@ -124,7 +124,7 @@ def test_a_tension_beyond_the_accepted_load_is_not_accepted(tmp_path: Path) -> N
     accept = "{rule: missing, component: frame, reason: proof-loaded, by: EXAMPLE, load: 1 kN}"
     _, found = _accepting(tmp_path, accept)
     assert found.state is State.UNKNOWN
-    assert "accepted up to 1000 N" in found.message
+    assert "allows at most 1.00 kN" in found.message
 
 
 def test_an_accepted_failure_passes_by_acceptance(tmp_path: Path) -> None:
@@ -145,5 +145,5 @@ def test_an_accepted_failure_passes_by_acceptance(tmp_path: Path) -> None:
 
 
 def test_a_load_is_refused_where_no_tension_is_judged(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="`load` is a tension, and `tilt` judges none"):
+    with pytest.raises(InputError, match="`load` is a tension, but the rule `tilt` does not"):
         _accepting(tmp_path, "{rule: tilt, reason: tried, load: 1 kN}")

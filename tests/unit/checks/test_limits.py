@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.criterion import limits_used, said
+from calm.checks.criterion import limit_value_text, limits_used
 
 LINE = """
 environment: {{depth: 100 m}}
@@ -50,7 +50,10 @@ def test_a_time_is_said_in_days():
     text = LINE.format(float="", clamp="") + "checks: {service_time: 1.5 d}\n"
     file = calm.load("line.yaml", text=text).file
     (time,) = [key for key in limits_used(file, surface=False) if key.name == "service_time"]
-    assert (said(time, time.value), said(time, time.default)) == ("1.5 d", "365 d")
+    assert (limit_value_text(time, time.value), limit_value_text(time, time.default)) == (
+        "1.5 d",
+        "365 d",
+    )
 
 
 def test_settings_that_flatter_depart():
@@ -60,7 +63,7 @@ def test_settings_that_flatter_depart():
     keys = {key.name: key for key in limits_used(file, surface=False) if key.departs}
     strumming = keys.pop("solver.strumming.factor")
     assert (strumming.value, strumming.default) == (1.2, 1.5)
-    assert said(strumming, strumming.value) == "1.2"
+    assert limit_value_text(strumming, strumming.value) == "1.2"
     assert keys.pop("solver.seabed_friction").value == 0.3
     tension = keys.pop("minimum_tension of thread")
     assert (tension.value, tension.default) == (0.0, 500.0)

@@ -4,6 +4,7 @@ import pytest
 
 import calm
 from calm.checks.design_check import check
+from calm.deck import deck_of
 
 FILE = """
 name: Metals
@@ -59,3 +60,22 @@ def test_a_piece_touches_its_neighbours_unless_it_is_insulated(warned):
     assert warned(bushes) == []
     chain = ("material: steel}\n  logger", "material: steel, insulated: true}\n  logger")
     assert warned(TITANIUM, chain) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "anodes"),
+    [
+        ([], set()),
+        ([("at: 5 m", "at: 5 m, insulated: false")], {"anode on links"}),
+        ([TITANIUM], {"anode on links"}),
+        ([(TITANIUM[0], TITANIUM[1].replace("titanium", "titanium, insulated: true"))], set()),
+    ],
+)
+def test_the_hardware_bill_has_anodes_for_the_contacts_that_are_warned_of(
+    warned, tmp_path, changes, anodes
+):
+    found = warned(*changes)
+    hardware = deck_of([calm.load(tmp_path / "m.yaml")]).hardware
+    assert {one.name for one in hardware if one.kind == "anodes"} == anodes
+    assert sum(one.count for one in hardware if one.kind == "anodes") == len(found)
+    assert bool(found) == any(one.kind == "isolators" for one in hardware)

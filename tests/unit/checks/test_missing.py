@@ -49,8 +49,8 @@ def test_one_finding_for_each_component_and_figure(tmp_path: Path) -> None:
     assert rating["pieces"] == ["T 5", "T 15", "T 25", "T 35"]
     assert rating["needed_by"] == ["depth-rating"]
     assert rating["component"] == "T 35"  # the deepest
-    assert "also for T 5, T 15 and T 25" in rating["message"]
-    assert rating["remedy"] == "Give the `depth_rating` of logger."
+    assert "Also affected: T 5, T 15 and T 25" in rating["message"]
+    assert rating["remedy"] == "Set the `depth_rating` of logger."
     load = asked["link", "working_load"]
     assert load["needed_by"] == ["strength", "launch-strength"]
     assert load["pieces"] == ["link 1", "link 2"]

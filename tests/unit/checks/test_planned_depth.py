@@ -68,7 +68,7 @@ def test_a_wire_of_another_length_moves_what_is_above_it(
     assert before[0].value is not None  # 1.8 m too shallow
     assert after[0].value == pytest.approx(before[0].value + longer, abs=0.1)
     if state != "pass":
-        assert after[0].remedy == "Check the lengths and clamp places between upper and middle."
+        assert after[0].remedy == "Check the lengths and clamp positions between upper and middle."
 
 
 @pytest.mark.parametrize("deeper", [100.0, -80.0, 15.0])
@@ -77,7 +77,7 @@ def test_all_off_by_one_amount_is_one_finding(deeper: float, tmp_path: Path) -> 
     assert found.component is None
     assert found.state is (State.FAIL if abs(deeper) > 50.0 else State.WARN)
     way = "too deep" if deeper > 0.0 else "too shallow"
-    assert found.message.startswith("All 3 instruments with a planned depth hang ")
+    assert found.message.startswith("All 3 parts with a planned depth are ")
     assert way in found.message
     assert found.remedy == "Check `depth`, and the lengths below lower."
 

@@ -183,7 +183,7 @@ def test_what_hangs_right_below_a_float_hangs_there_whatever_the_rounding():
 def test_minutes_until_what_is_hauled_in_comes_up():
     lowest = SimpleNamespace(label="releases", place=None)
     found = _hauled_in(lowest, 600.0, SimpleNamespace(rise_speed=1.0))
-    assert "releases comes up after 10 minutes" in found.message
+    assert "(releases) surfaces in 10 min" in found.message
 
 
 def test_a_buoyant_rope_tail_comes_up_after_its_floats(recovered):

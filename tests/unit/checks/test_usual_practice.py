@@ -54,7 +54,7 @@ def test_a_buoyant_strop_below_the_release_is_none_of_its_floats(tmp_path: Path)
     assert not _found(tmp_path, "release-present", shallow)
     ball = ("label: chain}", "label: chain}\n  - {use: glass-17in, label: low ball}")
     (found,) = _found(tmp_path, "release-present", shallow, ball)
-    assert found.message.startswith("low ball floats, but below the release")
+    assert found.message.startswith("low ball is buoyant, but below the release")
 
 
 @pytest.mark.parametrize(("latitude", "warned"), [("59 deg", True), ("-60 deg", False)])

@@ -7,12 +7,12 @@ import pytest
 
 import calm
 from calm.deck import Deck, deck_of
-from calm.deck.deck_items import Order, rows_on_paper
+from calm.deck.deck_items import Order, hardware_text, rows_on_paper
 from calm.deck.hardware import Stock, all_shipped
 from calm.drop import drop_plan
 from calm.drop.fall import Fineness
 from calm.quantities import show_in
-from calm.report.deck_lists import cutting_part, hardware_part, shipping_part
+from calm.report.deck_lists import cutting_part, hardware_part, lifts_part, shipping_part
 from calm.report.deck_logs import deployment_part
 
 MOORING = """\
@@ -82,7 +82,9 @@ def test_the_order_over_the_side(moorings, deck):
 
 
 def test_what_shares_a_row_on_paper(tmp_path, deck):
-    told = [(row.label, row.name, row.joined) for row in rows_on_paper(deck.deployment)]
+    told = [
+        (row.label, row.name, hardware_text(row.joints)) for row in rows_on_paper(deck.deployment)
+    ]
     assert told[:3] == [
         # the shackle with a serial number is a row of its own
         ("top float", "ball", "13 shackle, 22 ring"),
@@ -99,10 +101,11 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     (tmp_path / "m.yaml").write_text(text)
     sheets = deck_of([calm.load(tmp_path / "m.yaml")])
     rows = {row.label: row for row in rows_on_paper(sheets.deployment)}
-    assert (rows["cluster"].name, rows["cluster"].joined) == ("2 × pack", "13 shackle")
+    cluster = rows["cluster"]
+    assert (cluster.name, hardware_text(cluster.joints)) == ("2 × pack", "13 shackle")
     assert len(_parts_of(rows["cluster"])) == 4
     (shared,) = (row for row in rows.values() if len(row.items) == 3)
-    assert (shared.name, shared.joined) == ("3 × pack", "2 × 13 shackle, 16 shackle")
+    assert (shared.name, hardware_text(shared.joints)) == ("3 × pack", "2 × 13 shackle, 16 shackle")
     # nothing is lost, nothing counted twice; the other way round the same clusters
     for order in Order:
         listed = deck_of([sheets.result.design], order).deployment
@@ -207,7 +210,10 @@ def test_what_hangs_at_each_stage(deck):
     assert deck.lifts.recovery[0].hanging == pytest.approx(
         deck.lifts.deployment[[*lifts].index("release")].hanging
     )
-    assert deck.lifts.unknown == ()
+    lacking = [one.label for one in deck.assessment.inventory if one.dry_mass is None]
+    assert lacking and deck.lifts.unknown == tuple(lacking)
+    text = " ".join(map(str, lifts_part(deck).blocks[0].lines))
+    assert all(label in text for label in lacking)
 
 
 def test_surfacing_is_in_order_of_time(deck):

@@ -72,7 +72,7 @@ def test_pieces_and_instruments_stand_at_their_heights(tmp_path):
     assert "serial: 400115" in found.text
     assert 'serial: "761, 521"' in found.text
     guessed = [str(one) for one in found.guessed]
-    assert sum("catalog search microcat" in one for one in guessed) == 1
+    assert sum("catalog list microcat" in one for one in guessed) == 1
     assert not any("moved" in one for one in guessed)
 
 

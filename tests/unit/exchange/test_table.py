@@ -689,9 +689,30 @@ def test_other_sheets_and_what_is_hidden_are_reported(read):
     book.save(content)
     made = read(content.getvalue(), "list.xlsx")
     said = [str(each) for each in made.guessed]
-    assert "sheet `rev C & D`: taken of 2 with headings; not read: `old`" in said
+    assert "sheet `rev C & D`: taken; hidden and not read: `old`" in said
     assert "sheet `rev C & D`: row 3 hidden, read all the same" in said
     assert "16 pieces of sheet `rev C & D`" in made.understood
+
+
+def test_one_of_several_sheets_must_be_named(read):
+    openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
+    book = openpyxl.Workbook()
+    first, second = book.active, book.create_sheet("option B")
+    first.title = "option A"
+    for sheet in (first, second):
+        for row in SHORT.splitlines():
+            sheet.append([float(c) if c.strip("-").isdigit() else c for c in row.split(",")])
+    second.append(["Shackle", 1, 0.1, 20, 0.3])
+    content = io.BytesIO()
+    book.save(content)
+    said = r"2 sheets with headings: `option A` \(\d+ rows\), `option B` \(.*; --sheet NAME"
+    with pytest.raises(InputError, match=said):
+        read(content.getvalue(), "list.xlsx")
+    for name in ("option A", "option B"):
+        made = read(content.getvalue(), "list.xlsx", sheet=name)
+        assert f"pieces of sheet `{name}`" in made.understood
+    with pytest.raises(InputError, match="no sheet `option C`; did you mean `option"):
+        read(content.getvalue(), "list.xlsx", sheet="option C")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")

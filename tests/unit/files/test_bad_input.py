@@ -313,7 +313,7 @@ ONE_MISTAKE = {
     ),
     "elongation beside stiffness": (
         changed("length: 480 m", "length: 480 m, stiffness: 2 MN, elongation: [[0.1, 0.02]]"),
-        (11, 5, "gives both `stiffness` and `elongation`; one says how it stretches"),
+        (11, 5, "has both `stiffness` and `elongation`; give only one"),
     ),
     "elongation that stays, of nothing": (
         changed("length: 480 m", "length: 480 m, permanent_elongation: 4 %"),
@@ -398,8 +398,8 @@ ONE_MISTAKE = {
         (
             14,
             24,
-            "`current: 60 %` is too wide for a deviation, 25 % at most; give a pair, "
-            "its 5 and 95 %",
+            "`current: 60 %` is above 25 %, the largest standard deviation; give a pair, "
+            "the 5 and 95 % points",
         ),
     ),
     "deviation without percent": (
@@ -407,8 +407,8 @@ ONE_MISTAKE = {
         (
             14,
             23,
-            "`length: 5` is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %; "
-            "did you mean `length: 5 %`?",
+            "`length: 5` is above 25 %, the largest standard deviation; give a pair, "
+            "the 5 and 95 % points; did you mean `length: 5 %`?",
         ),
     ),
     "deviation below nothing": (
@@ -421,11 +421,11 @@ ONE_MISTAKE = {
     ),
     "pair the wrong way round": (
         GOOD + "uncertainty: {cable_drag: [30 %, -15 %]}\n",
-        (14, 27, "`cable_drag: …` is a pair, but its 5 % is not below its 95 %"),
+        (14, 27, "`cable_drag: …` is a pair whose 5 % point is not below its 95 % point"),
     ),
     "pair of three": (
         GOOD + "uncertainty: {cable_drag: [1 %, 2 %, 3 %]}\n",
-        (14, 27, "`cable_drag: …` is neither one deviation nor a pair, its 5 and 95 %"),
+        (14, 27, "`cable_drag: …` is neither a standard deviation nor a pair of 5 and 95 % points"),
     ),
     "pair below nothing": (
         GOOD + "uncertainty: {cable_drag: [-150 %, 10 %]}\n",

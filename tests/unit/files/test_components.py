@@ -170,13 +170,13 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
     [
         (
             {},
-            "gives no drag; one way is needed: `kn` with `kt`, `drag_area` with `cd`, "
-            "`drag_measurements`, or `made_of`",
+            "gives no drag; drag must be given by one of: `kn` with `kt`, `drag_area` with "
+            "`cd`, `drag_measurements`, or `made_of`",
         ),
         (
             {"kn": "1 N/(m/s)^2", "cd": "1"},
-            "gives `kn` and `cd`; one way is needed: `kn` with `kt`, `drag_area` with `cd`, "
-            "`drag_measurements`, or `made_of`",
+            "gives `kn` and `cd`; drag must be given by one of: `kn` with `kt`, `drag_area` with "
+            "`cd`, `drag_measurements`, or `made_of`",
         ),
         ({"drag_area": "1 m^2"}, "`drag_area` and `cd` go together"),
         ({"kn": "1 N/(m/s)^2"}, "`kn` needs `kt`, or `inclination: insensitive`"),
@@ -241,7 +241,8 @@ def test_cable() -> None:
         ({"mass": "1 kg/m"}, "needs `weight` or `buoyancy` in water, or `mass` with `density`"),
         (
             {"weight": "1 N/m", "buoyancy": "-1 N/m"},
-            "gives both `weight` and `buoyancy`; one is the other negated",
+            "has both `weight` and `buoyancy`; give only one, since each is the negative "
+            "of the other",
         ),
         (
             {"weight": "10 N/m", "mass": "1 kg/m"},
@@ -347,5 +348,5 @@ def test_a_hull_must_displace_what_the_float_lifts():
     table = {"displacement": [["0.1 m", "20 L", "0.2 m^2"], ["0.2 m", "50 L", "0.3 m^2"]]}
     _, problems = parse({"kind": "sphere", "diameter": "1 m", "buoyancy": "1 kN", "hull": table})
     assert problems == [
-        "the `hull` displaces 0.05 m³ at most, less than its net buoyancy of 1000 N takes"
+        "the `hull` displaces 0.05 m³ at most, less than required by its net buoyancy of 1000 N"
     ]

@@ -222,6 +222,6 @@ def test_a_column_of_times_of_another_zone(csv: Path, zone: str) -> None:
     with pytest.raises(InputError) as caught:
         read_current_file(csv, None, Terms())
     [problem] = caught.value.problems
-    assert problem.message.startswith(f"`time[{zone}]`: times are in UTC")
+    assert problem.message.startswith(f"`time[{zone}]`: times must be in UTC")
     csv.write_text("time[UTC],depth[m],u[m/s],v[m/s]\n2026-03-01,5,0.4,0.1\n")
     assert read_current_file(csv, None, Terms())[0].u == (0.4,)

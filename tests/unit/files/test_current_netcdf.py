@@ -195,9 +195,9 @@ def test_currents_that_are_flagged_as_bad_are_left_out(tmp_path, flags, told, le
 def test_no_current_in_the_file(tmp_path: Path) -> None:
     dataset = xr.Dataset({"temperature": ("depth", U)}, {"depth": DEPTH})
     assert problem(dataset, tmp_path) == (
-        "holds no current: eastward and northward velocity, or speed and direction to or from, are "
-        "looked for by CF standard name, then by usual name; it holds temperature (depth 3); "
-        "depth (depth 3) [m]"
+        "holds no current: CALM searches for eastward and northward velocity, or speed and "
+        "direction to or from, by CF standard name, then by usual name; it holds "
+        "temperature (depth 3); depth (depth 3) [m]"
     )
 
 

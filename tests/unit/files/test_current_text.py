@@ -43,7 +43,7 @@ def test_headings_give_columns_units_and_the_way() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("depth m,speed m/s,direction deg\n0,1,90\n", "does not say which way: call it `toward`"),
+        ("depth m,speed m/s,direction deg\n0,1,90\n", "has an ambiguous sense: call it `toward`"),
         ("depth m,sped m/s,toward deg\n0,1,90\n", "no column is called `sped`; did you mean `spe"),
         ("depth m,speed m/s,toward deg,from deg\n0,1,90,270\n", "give `toward`, where the curre"),
         (
@@ -83,8 +83,8 @@ def test_columns_from_magnetic_north_are_turned() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "there are no numbers in it"),
-        ("depth,u,v\n", "there are no numbers in it"),
+        ("", "the text has no numbers"),
+        ("depth,u,v\n", "the text has no numbers"),
         ("0,1,2\n3,4\n5,6,7", "line 2 has 2 values, the first 3"),
     ],
 )

@@ -78,7 +78,7 @@ def test_texts_decide_nothing_and_stand_on_the_card(tmp_path, words):
     table, notices = read(currents(comment="rotated").assign_attrs(words), tmp_path)
     assert table.u == tuple(U) and len(notices) == 1  # of the water below the last level
     assert table.card.texts == words
-    assert table.card.to_dict()["variables"]["east"]["said"] == "rotated"
+    assert table.card.to_dict()["variables"]["east"]["description"] == "rotated"
     long = read(currents().assign_attrs(title="x" * 400), tmp_path)[0].card.texts["title"]
     assert len(long) == 300 and long.endswith("…")
 
@@ -147,7 +147,7 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
     both = currents("UCUR", "VCUR").merge(currents("UCUR_MAG", "VCUR_MAG") * 2)
     assert read(both, tmp_path)[0].u == tuple(U)
     mixed = currents("UCUR", "VCUR_MAG")
-    assert refusal(mixed, tmp_path) == "`VCUR_MAG` is to magnetic north, `UCUR` is not"
+    assert refusal(mixed, tmp_path) == "`VCUR_MAG` is relative to magnetic north, `UCUR` is not"
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,7 @@ def test_the_way_of_a_direction_is_in_its_words(tmp_path: Path) -> None:
     assert table.u == pytest.approx([0.0, -1.0, 0.5], abs=1e-15)  # sines of 180°, 270°, 30°
     table, _ = read(directions(long_name="direction towards which it flows"), tmp_path)
     assert table.u == pytest.approx([0.0, 1.0, -0.5], abs=1e-15)
-    assert "does not say whether it is where the current flows to" in refusal(
+    assert "is ambiguous: the current may flow to this direction" in refusal(
         directions(), tmp_path
     )
 
@@ -372,9 +372,9 @@ def test_depths_deeper_than_any_sea(tmp_path: Path) -> None:
 def test_a_time_zone_is_not_guessed(tmp_path: Path) -> None:
     dataset = currents().expand_dims(time=[0.0])
     dataset["time"].attrs["units"] = "hours since 2026-03-01 00:00 EST"
-    assert "what `EST` is ahead of UTC is not known for sure" in refusal(dataset, tmp_path)
+    assert "the offset of `EST` from UTC is ambiguous" in refusal(dataset, tmp_path)
     dataset["time"].attrs["units"] = "hours since 2026-03-01 00:00 UTC"
     assert read(dataset, tmp_path)[0].u == tuple(U)
     dataset["time"].attrs["time_zone"] = "UTC+8"
-    said = "`time_zone` is `UTC+8`: the times are taken as they stand, in UTC"
+    said = "`time_zone` is `UTC+8`: CALM reads the times as UTC"
     assert said in read(dataset, tmp_path)[1]

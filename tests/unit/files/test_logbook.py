@@ -119,7 +119,8 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
             (
                 11,
                 18,
-                "`length_at` is for cables and chains; this is as long as its definition says",
+                "`length_at` is for cables and chains; the length of this piece is that of its "
+                "definition",
             ),
         ),
         (
@@ -132,7 +133,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
         ),
         (
             with_rope("  - {use: rope-12, length: 5 m, calibrated: spring}\n"),
-            (11, 45, "`spring` is not a day of the calendar; write it as 2027-06-30"),
+            (11, 45, "`spring` is not a date; write it as 2027-06-30"),
         ),
         (
             GOOD + "document: {revison: 2}\n",

@@ -132,7 +132,7 @@ def test_the_key_comes_first_and_labels_count_for_what_measures(tmp_path: Path) 
     [
         (
             "{use: glass-17in, count: 2, planned_depth: 150 m}",
-            "`planned_depth` is of one piece; this item counts 2",
+            "`planned_depth` is for single pieces; this item has a `count` of 2",
         ),
         ("{use: glass-17in, planned_depth: 150}", "`planned_depth"),
         ("{use: glass-17in, planned_depth: -5 m}", "`planned_depth"),

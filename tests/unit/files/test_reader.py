@@ -209,7 +209,9 @@ def test_mass_overridden_alone_is_noticed(read: Read) -> None:
     mooring = read(GOOD.replace("label: top float", "mass: 350 kg"))
     assert mooring.pieces[0].component.net_buoyancy == 7000.0
     [notice] = mooring.notices
-    assert notice.startswith("line 10: `mass` of ball is overridden, its net force in water is not")
+    assert notice.startswith(
+        "line 10: `mass` of ball is overridden, but not its net force in water"
+    )
 
 
 @pytest.mark.parametrize(

@@ -138,7 +138,7 @@ def test_files_are_opened_and_unsaved_work_is_offered_again(visit, tmp_path, mon
         await until(lambda: ("own.yaml", None) in sent.of("open"))
         assert (tmp_path / "moorings/water.yaml").is_file()
         assert (tmp_path / "moorings/own.yaml").read_bytes() == own
-        assert sent.of("told") == [("water.yaml can be named in a mooring file now", None)]
+        assert sent.of("told") == [("water.yaml can now be used in a mooring file", None)]
         page.receive({"kind": "example", "text": FIRST})
         await until(lambda: sent.of("open")[-1][0] == FIRST)
         await until(lambda: page.app is not None and page.app.is_running)
@@ -163,7 +163,7 @@ def test_a_later_visit_goes_on_with_the_last_file(visit, tmp_path):
         assert sent.of("open") == [("kept.yaml", None)]
         page.receive({"kind": "document", "text": "report"})
         ((told, _),) = await until(lambda: sent.of("failed"))
-        assert told == "the line is not complete: the verdict says what it lacks"
+        assert told == "the line is incomplete; the verdict names the missing parts"
 
     visit(story)
 
@@ -193,6 +193,8 @@ def test_a_tow_has_a_report(visit):
         page.receive({"kind": "document", "text": "report"})
         await until(lambda: sent.of("document"))
         page.receive({"kind": "document", "text": "deck"})
-        assert await until(lambda: sent.of("failed")) == [("a tow has a report alone", None)]
+        assert await until(lambda: sent.of("failed")) == [
+            ("for a tow, only the report is available", None)
+        ]
 
     visit(story)

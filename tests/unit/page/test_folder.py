@@ -78,8 +78,8 @@ def test_modules_are_compiled_for_a_runtime_of_this_version():
 def test_its_libraries_are_among_those_of_the_package():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     wanted = {re.split(r"[^\w-]", each.lower())[0] for each in project["dependencies"]}
-    assert {*archive.LIBRARIES, *archive.OF_THE_RUNTIME} <= wanted
-    left = wanted - {*archive.LIBRARIES, *archive.OF_THE_RUNTIME}
+    assert {*archive.LIBRARIES, *archive.IN_RUNTIME} <= wanted
+    left = wanted - {*archive.LIBRARIES, *archive.IN_RUNTIME}
     assert left == {"scipy", "typst", "cyclopts", "python-calamine"}
     found = {each.metadata["Name"].lower() for each in archive.distributions()}
     assert {"markdown-it-py", "markupsafe", "platformdirs"} <= found
@@ -126,7 +126,7 @@ def test_another_content_is_another_build(tmp_path, monkeypatch, runtime):
 def test_a_runtime_that_lacks_files_is_refused(tmp_path, runtime):
     (runtime / "pyodide/pydantic-core.whl").unlink()
     (runtime / "package/css/xterm.css").unlink()
-    with pytest.raises(UsageError, match=r"lacks xterm\.css, pydantic-core\.whl; it has to hold"):
+    with pytest.raises(UsageError, match=r"lacks xterm\.css, pydantic-core\.whl; it must contain"):
         write_page(tmp_path / "page", runtime)
     assert not (tmp_path / "page").exists()
     with pytest.raises(UsageError, match="there is no folder"):

@@ -272,7 +272,7 @@ def test_a_range_is_judged_by_its_residual_as_the_others_give_it(beyond, is_out)
         ships = HERE.place(found.latitude, found.longitude, np.full(count, TRANSDUCER))
         model = RangeModel(found, ONE, HERE, ships, None)
         x = model.least_squares(ANCHOR, used)
-        return model.judged(x, used), model.jacobian(ANCHOR)
+        return model.tested(x, used), model.jacobian(ANCHOR)
 
     every, others = np.full(count, True), np.arange(count) != odd
     _, slopes = judged(0.0, every)

@@ -48,6 +48,62 @@ def test_two_instruments_in_turn():
     assert said.startswith("1 of 3 series look like two in turn: readings next to each other dif")
 
 
+def test_levels_whose_components_are_exchanged_or_of_the_other_sign():
+    u, v = tide(12.4206), tide(12.0, 0.2) + 0.02 * np.sin(HOURS[:, np.newaxis] / 7.7)
+    for own_u, own_v in ((v, u), (-u, -v), (u, -v), (-v, u)):
+        one, other = u.copy(), v.copy()
+        one[:, 1], other[:, 1] = own_u[:, 1], own_v[:, 1]
+        (said,) = doubts(one, other)
+        assert said.startswith("currents at 60 m have other directions than those above and below")
+        assert doubts(one[:, :2], other[:, :2], depth=DEPTH[:2], water_depth=60.0) == []
+
+
+def test_an_undercurrent_is_no_doubt():
+    u, v = tide(12.4206), tide(12.0, 0.2)
+    u[:, 1], v[:, 1] = -1.6 * u[:, 0], -1.6 * v[:, 0]
+    assert doubts(u, v) == []
+
+
+def test_components_that_are_missing_equal_or_zero():
+    rng = np.random.default_rng(5)
+    u, v = tide(12.4206), tide(12.0, 0.2)
+    u += 0.03 * rng.standard_normal(u.shape)
+    v += 0.03 * rng.standard_normal(v.shape)
+    gone = u.copy()
+    gone[3:9, 0] = np.nan
+    assert doubts(gone, v) == ["6 of 2160 currents have one component without the other"]
+    assert "all 2160 currents have equal components to the east and to the north" in doubts(u, u)
+    filled, other = u.copy(), v.copy()
+    filled[100:110] = other[100:110] = 0.0
+    (said,) = doubts(filled, other)
+    assert said.startswith("30 of 2160 currents are exactly 0, and hardly any are nearly 0")
+    rounded = np.round(0.03 * rng.standard_normal((2, COUNT, 3)), 2)  # weak, to a cm/s
+    assert (np.hypot(*rounded) == 0.0).sum() > 30
+    assert not [one for one in doubts(*rounded) if "exactly 0" in one]
+
+
+def test_levels_that_repeat_and_times_that_repeat():
+    u, v = tide(12.4206), tide(12.0, 0.2)
+    u[:, 2], v[:, 2] = u[:, 1], v[:, 1]
+    (said,) = doubts(u, v)
+    assert said.startswith("1 of 3 levels have the same currents at all times as the level above")
+    several = np.repeat(TIMES[: COUNT // 2], 2)
+    notes = [*series_doubts(np.random.default_rng(2).random((COUNT, 1, 1)), several)]
+    assert notes == ["360 of 720 times repeat the one before: several instruments in one?"]
+
+
+def test_a_few_impossible_values_of_one_size_are_fill_values():
+    values = np.where(np.arange(90) % 9 == 0, -999.0, 8.0 + np.arange(90) / 90.0)
+    assert impossible_values("temperature", values)[1].endswith("median -999: a fill value?")
+
+
+def test_levels_without_a_depth_and_a_clock_that_was_not_set():
+    depth = np.array([20.0, np.nan, 120.0])
+    assert doubts(depth=depth) == ["720 of 2160 currents have no depth, and are left out"]
+    (said,) = doubts(times=TIMES - TIMES[0] + np.datetime64("1970-01-01", "ns"))
+    assert said == "720 of 720 times are in January 1970: was the clock not set?"
+
+
 def test_a_stretch_that_stands_twice():
     u, v = tide(12.4206), tide(11.7, 0.2)
     u[400:460], v[400:460] = u[100:160], v[100:160]

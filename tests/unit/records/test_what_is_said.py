@@ -89,7 +89,7 @@ def poor(record: xr.Dataset) -> xr.Dataset:
     (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` are left out, outside its v"),
-    (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`: the times are taken"),
+    (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`: CALM reads the"),
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
     (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
     (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m, 81 readings from 2026-0"),

@@ -16,6 +16,7 @@ import calm.report.html
 from calm.checks.finding import State
 from calm.drawing.picture import set_apart
 from calm.errors import UsageError
+from calm.report.blocks import Table
 from calm.report.check_report import check_report, mooring_section
 from calm.report.open_items import percent_text
 from calm.report.provenance import input_hash
@@ -90,13 +91,15 @@ def test_every_part_of_the_report_is_there(section):
         "Design check of a mooring", "Fails:", "Load cases", "The mooring", "Open items",
         "Governing checks", "Drawn", "Approved", "Mooring drawing", "The line",
         "Tension and capacity", "Connecting hardware", "Anchor: ", "Checks in full",
-        "How far to trust these figures", "Launch, anchor last", "Recovery, after release",
-        "Breaks and losses", "Inventory", "Limits used", "Environments", "Not judged",
+        "Accuracy of these values", "Launch, anchor last", "Recovery, after release",
+        "Breaks and losses", "Inventory", "Limits used", "Environments", "Not covered",
         "Mooring file", "SHA-256 of the inputs", "waves", "snap loads", "fatigue",
-        "creep, corrosion", "the jerk and the swing", "hauling and lifts",
+        "creep, corrosion", "transients of the launch", "hauling and lifting",
     ):  # fmt: skip
         assert heading in page.text, heading
-    rows = len(section.parts[1].blocks[-1].rows)
+    drawing = next(block for block in section.parts[1].blocks if isinstance(block, Table))
+    assert drawing.title == "Mooring drawing"
+    rows = len(drawing.rows)
     assert page.elements.count("svg") == 2 + rows
 
 
@@ -194,7 +197,7 @@ def test_a_mooring_without_equilibrium_is_reported(assessment):
     text = Page(calm.report.html.page(check_report([mooring_section(failed)]))).text
     assert "Design current: no equilibrium" in text
     assert "The mooring has no equilibrium" in text
-    assert "Neither the launch nor the recovery could be solved" in text
+    assert "Launch and recovery have no solution" in text
 
 
 def test_one_environment_without_equilibrium_leaves_the_others(assessment):

@@ -59,7 +59,7 @@ def test_surface_mooring_tells_its_reserve(make_result):
     result.top.used_buoyancy, result.top.reserve, result.top.knockdown = 0.6544, 2410.0, None
     shown = text(result, 100)
     assert "surface mooring" in shown
-    assert "65.4% of its buoyancy used, 2410 N in reserve" in shown
+    assert "65.4 % of its buoyancy in use, reserve buoyancy 2410 N" in shown
 
 
 def test_unknown_knockdown_is_told(make_result):
@@ -127,14 +127,14 @@ def test_what_strumming_does(make_result):
 def test_the_legend_is_that_of_the_marks_that_occur(make_result):
     result = make_result()
     legend = text(result, 100).splitlines()[-1]
-    assert legend == "~ near a limit. ! beyond a limit."
+    assert legend == "~ close to a limit. ! limit exceeded."
     for row in result.components:
         row.safety_factor, row.utilisation, row.tilt = 20.0, 0.1, 1.0
     for clamp in result.clamps:
         clamp.tilt = 1.0
-    assert text(result, 100).splitlines()[-1].endswith("Tension: the largest in it.")
+    assert text(result, 100).splitlines()[-1].endswith("tension is its maximum.")
 
 
 def test_the_error_of_the_figures_is_said_where_it_is_asked_for(result):
     assert "Good to" not in text(result, 100)
-    assert "Good to 0.003 m and 0.8 N." in text(result, 100, verbose=True)
+    assert "Numerical error: 0.003 m in depth, 0.8 N in tension." in text(result, 100, verbose=True)

@@ -8,7 +8,14 @@ from pathlib import Path
 import pytest
 
 from calm.solve import CompiledPart, Settings, two_speeds
-from calm.solve.two_speeds import COLD, UNANNOUNCED, WARM, count_lines, expect_many, runs_compiled
+from calm.solve.two_speeds import (
+    COMPILE_FROM,
+    LOAD_FROM,
+    UNANNOUNCED,
+    count_lines,
+    expect_many,
+    runs_compiled,
+)
 
 LEFT_OPEN = Settings()
 
@@ -40,7 +47,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[Child]:
     return children
 
 
-@pytest.mark.parametrize(("lines", "compiled"), [(WARM - 1, False), (WARM, True)])
+@pytest.mark.parametrize(("lines", "compiled"), [(LOAD_FROM - 1, False), (LOAD_FROM, True)])
 def test_cached_code_is_loaded_for_many_lines(started, monkeypatch, lines, compiled) -> None:
     monkeypatch.setattr(two_speeds, "is_cached", lambda law: law == CompiledPart.LINE.value)
     expect_many(lines)
@@ -57,7 +64,7 @@ def test_a_check_of_two_hundred_cases_does_not_compile(started) -> None:
     assert not runs_compiled(LEFT_OPEN)
 
 
-@pytest.mark.parametrize("announced", [COLD, 0])
+@pytest.mark.parametrize("announced", [COMPILE_FROM, 0])
 def test_a_child_compiles_while_the_solver_goes_on(started, announced) -> None:
     if announced:
         expect_many(announced)
@@ -73,9 +80,9 @@ def test_a_child_compiles_while_the_solver_goes_on(started, announced) -> None:
 
 
 def test_a_child_that_fails_leaves_the_solver_as_it_is(started) -> None:
-    expect_many(COLD)
+    expect_many(COMPILE_FROM)
     started[0].code = 1
-    for _ in range(2 * COLD):
+    for _ in range(2 * COMPILE_FROM):
         count_lines(1.0, CompiledPart.LINE)
     assert not runs_compiled(LEFT_OPEN)
     assert len(started) == 1

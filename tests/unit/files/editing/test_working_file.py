@@ -156,25 +156,25 @@ def test_what_is_no_regular_file_is_not_opened(path: Path) -> None:
     with pytest.raises(InputError, match="not a regular file"):
         WorkingFile(path).read()
     assert file.changed_on_disk()
-    assert file.left_behind() is None
+    assert file.recoverable_work() is None
 
 
 def test_a_file_that_is_new(path: Path) -> None:
     new = path.with_name("new.yaml")
     file = WorkingFile(new)
-    assert not file.changed_on_disk() and file.left_behind() is None
+    assert not file.changed_on_disk() and file.recoverable_work() is None
     file.save("name: new\n")
     assert new.read_text() == "name: new\n"
 
 
 def test_unsaved_work_is_offered_until_it_is_forgotten(path: Path) -> None:
     text = WorkingFile(path).read()
-    assert WorkingFile(path).left_behind() is None
+    assert WorkingFile(path).recoverable_work() is None
     place = left_by_another(path, text + "# more\r\n")
     assert place.parent == path.parent
     file = WorkingFile(path)
     file.read()
-    found = file.left_behind()
+    found = file.recoverable_work()
     assert found is not None and found.text == text + "# more\r\n" and found.place == place
     assert not file.is_of_another(found)
     file.adopt(found)
@@ -187,7 +187,7 @@ def test_unsaved_work_is_offered_until_it_is_forgotten(path: Path) -> None:
 
 def test_work_that_is_in_the_file_is_not_offered(path: Path) -> None:
     place = left_by_another(path, path.read_bytes().decode())
-    assert WorkingFile(path).left_behind() is None
+    assert WorkingFile(path).recoverable_work() is None
     assert not place.exists()
 
 
@@ -196,7 +196,7 @@ def test_work_on_another_text_is_told(path: Path) -> None:
     path.write_text("name: theirs\n")
     file = WorkingFile(path)
     file.read()
-    found = file.left_behind()
+    found = file.recoverable_work()
     assert found is not None and file.is_of_another(found)
     file.adopt(found)
     assert file.changed_on_disk()
@@ -207,7 +207,7 @@ def test_work_on_another_text_is_told(path: Path) -> None:
 def test_the_latest_work_is_offered_first(path: Path) -> None:
     for age, name in ((3, "old"), (1, "new"), (2, "middle")):
         os.utime(left_by_another(path, f"name: {name}\n"), (1e9 - age, 1e9 - age))
-    found = WorkingFile(path).left_behind()
+    found = WorkingFile(path).recoverable_work()
     assert found is not None and found.text == "name: new\n" and found.at == 1e9 - 1
 
 
@@ -215,7 +215,7 @@ def test_a_running_session_keeps_its_work_to_itself(path: Path) -> None:
     first, second = WorkingFile(path), WorkingFile(path)
     of_first = kept(first, "name: first\n")
     assert second.is_open_elsewhere() and not first.is_open_elsewhere()
-    assert second.left_behind() is None
+    assert second.recoverable_work() is None
     of_second = kept(second, "name: second\n")
     second.forget()
     assert of_first.exists() and not of_second.exists()
@@ -223,9 +223,9 @@ def test_a_running_session_keeps_its_work_to_itself(path: Path) -> None:
 
 def test_a_process_number_that_is_given_again_is_another(path: Path) -> None:
     place = kept(WorkingFile(path), "name: mine\n")
-    assert WorkingFile(path).left_behind() is None
+    assert WorkingFile(path).recoverable_work() is None
     rewrite(place, started="1")
-    assert WorkingFile(path).left_behind() is not None
+    assert WorkingFile(path).recoverable_work() is not None
 
 
 def test_a_killed_session_that_nobody_has_asked_after_is_gone(path: Path) -> None:
@@ -239,7 +239,7 @@ def test_a_killed_session_that_nobody_has_asked_after_is_gone(path: Path) -> Non
         deadline = time.monotonic() + 600.0
         while WorkingFile(path).is_open_elsewhere():
             assert time.monotonic() < deadline
-        assert WorkingFile(path).left_behind() is not None
+        assert WorkingFile(path).recoverable_work() is not None
 
 
 UNTIL_KILLED = """
@@ -256,7 +256,7 @@ signal.pause()
 
 def test_a_session_on_another_machine_is_named(path: Path) -> None:
     rewrite(kept(WorkingFile(path), "name: mine\n"), host="elsewhere")
-    found = WorkingFile(path).left_behind()
+    found = WorkingFile(path).recoverable_work()
     assert found is not None and found.keeper.host == "elsewhere" and not found.keeper.is_here
 
 
@@ -268,7 +268,7 @@ def test_only_copies_are_read(path: Path) -> None:
         ".line.yaml.old.0123abcd.calm-autosave": b"another file's",
     }.items():
         path.with_name(name).write_bytes(content)
-    assert WorkingFile(path).left_behind() is None
+    assert WorkingFile(path).recoverable_work() is None
 
 
 def kept(file: WorkingFile, text: str) -> Path:
@@ -313,7 +313,7 @@ def test_a_folder_that_cannot_be_written_loses_nothing(
     assert path.read_bytes() == before
     place = left_by_another(path, "name: kept\n")
     assert place.parent == path.parents[1] / "state" / "calm"
-    found = WorkingFile(path).left_behind()
+    found = WorkingFile(path).recoverable_work()
     assert found is not None and found.text == "name: kept\n"
     refuse_writing_in(path.parents[1], monkeypatch)
     with pytest.raises(NotWritten, match="cannot be kept"):
@@ -339,20 +339,20 @@ def test_a_folder_is_no_file(path: Path) -> None:
 
 def test_work_without_a_name_is_offered_once_its_session_is_gone(path: Path) -> None:
     mine = kept(WorkingFile(None), "name: mine\n")
-    assert WorkingFile(None).left_behind() is None
+    assert WorkingFile(None).recoverable_work() is None
     rewrite(mine, process=ended_process())
     later = WorkingFile(None)
-    found = later.left_behind()
+    found = later.recoverable_work()
     assert found is not None and found.text == "name: mine\n"
     later.discard(found)
-    assert WorkingFile(None).left_behind() is None
+    assert WorkingFile(None).recoverable_work() is None
 
 
 def test_a_long_name_leaves_room_for_the_copy(path: Path) -> None:
     long = path.with_name("n" * 240 + ".yaml")
     long.write_text("name: long\n")
     left_by_another(long, "name: kept\n")
-    found = WorkingFile(long).left_behind()
+    found = WorkingFile(long).recoverable_work()
     assert found is not None and found.text == "name: kept\n"
 
 
@@ -395,7 +395,7 @@ def test_a_kill_leaves_whole_files(path: Path) -> None:
     It has done both once before, however busy the machine is.
     """
     subprocess.run([sys.executable, "-c", KILLS, str(path)], cwd=ROOT, check=True)
-    assert WorkingFile(path).left_behind() is not None
+    assert WorkingFile(path).recoverable_work() is not None
 
 
 def test_parts_of_killed_sessions_are_swept(path: Path) -> None:

@@ -11,8 +11,8 @@ from calm.batch.dataset import laid_out, time_axis
 from calm.dataset import netcdf
 from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, written
 from calm.errors import UsageError
-from calm.grid.field import BLOCK, GriddedQuantity, estimate
-from calm.grid.samples import MooringDepths
+from calm.gridding.field import BLOCK, GriddedQuantity, estimate
+from calm.gridding.samples import MooringDepths
 from calm.quantities import QUANTITIES_MEASURED
 from calm.records import delimited
 from calm.records.card import ReadCard
@@ -25,7 +25,7 @@ MOST_LEVELS = 5000
 def parse_levels(text: str) -> NDArray[np.float64]:
     """Return the levels of a text: ``first:step:last``, or several separated by commas [m].
 
-    UsageError: it is neither, they do not go down, or are too many.
+    UsageError: the text is neither, the levels do not increase, or are too many.
     """
     given, wanted = text[:40], "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
     by_step = text.count(":") == 2
@@ -40,10 +40,19 @@ def parse_levels(text: str) -> NDArray[np.float64]:
         if (last - first) / step >= MOST_LEVELS:
             raise UsageError(f"--levels: `{text}` are more than {MOST_LEVELS} levels")
         levels = first + step * np.arange(int((last - first) / step + 1e-9) + 1)
-    if (np.diff(levels) <= 0.0).any():
-        raise UsageError(f"--levels: `{given}` do not go down one after the other; {wanted}")
+    return check_levels(levels)
+
+
+def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return levels [m] as an array.
+
+    UsageError: they do not increase, or one is above the sea surface.
+    """
+    levels = np.asarray(given, np.float64)
+    if levels.ndim != 1 or not levels.size or not (np.diff(levels, prepend=-np.inf) > 0.0).all():
+        raise UsageError("--levels: the depths must increase, such as 50,100,250")
     if levels[0] < 0.0:
-        raise UsageError(f"--levels: `{given}`: {levels[0]:g} m is above the sea surface")
+        raise UsageError(f"--levels: {levels[0]:g} m is above the sea surface")
     return levels
 
 

@@ -19,23 +19,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.grid.samples import Floats, Samples
+from calm.gridding.samples import Floats, Samples
 
 NODES = 60
 """Depths at which mean and standard deviation of the record are kept."""
-LOOKED_AT = 60
+TIMES_FOR_SCALES = 60
 """Times from which the scales are found."""
-LEFT_OUT_AT = 240
+TIMES_LEFT_OUT = 240
 """Times at which sensors are left out in turn."""
 BLOCK = 128
 """Times that are solved together, which bounds the memory."""
-MOST_FOR_PROFILE = 30_000
+SAMPLES_FOR_PROFILE = 30_000
 """Samples from which the mean profile is made."""
-OWN = 0.5
+OWN_SHARE = 0.5
 """Part of the variance of a depth's error that is the instrument's own."""
-KNOWN = 0.5
+REMAINING = 0.5
 """Share of variance remaining at a level, above which a value is poorly constrained."""
-GOOD_FIT = 1.96
+HALF_WIDTH = 1.96
 """Half the width of an interval of 95 %, in standard deviations."""
 
 INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
@@ -137,10 +137,12 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
     rough = GriddedQuantity(
         samples, profile_of(samples, noise), Scales(1.0, 1.0, 0.5), noise, in_time
     )
-    most = np.argsort(-known.sum(axis=1), kind="stable")[: max(len(known) // 2, LOOKED_AT)]
-    times = np.sort(most)[np.linspace(0, len(most) - 1, min(LOOKED_AT, len(most))).astype(int)]
+    most = np.argsort(-known.sum(axis=1), kind="stable")[: max(len(known) // 2, TIMES_FOR_SCALES)]
+    times = np.sort(most)[
+        np.linspace(0, len(most) - 1, min(TIMES_FOR_SCALES, len(most))).astype(int)
+    ]
     found = replace(rough, scales=_likeliest(rough, np.unique(times)))
-    every = max(len(known) // LEFT_OUT_AT, 1)
+    every = max(len(known) // TIMES_LEFT_OUT, 1)
     return replace(found, widened=_widening(found, np.arange(0, len(known), every)))
 
 
@@ -150,7 +152,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
-    every = max(len(depth) // MOST_FOR_PROFILE, 1)
+    every = max(len(depth) // SAMPLES_FOR_PROFILE, 1)
     depth, value = depth[::every], value[::every]
     node = np.linspace(depth.min(), depth.max() + 1e-6, NODES)
     width = max(spacing(samples), (node[-1] - node[0]) / NODES)
@@ -218,7 +220,7 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
     both = known[:, :, None] & known[:, None, :]
     matrix = _correlation(depth, depth, lag, lag, scales) * spread[:, :, None] * spread[:, None, :]
     matrix *= both
-    own = scales.share * spread**2 + OWN * wrong**2 + field.noise**2
+    own = scales.share * spread**2 + OWN_SHARE * wrong**2 + field.noise**2
     diagonal = np.arange(shape[1])
     matrix[:, diagonal, diagonal] += np.where(known, own, 1.0)
     return _Block(depth, anomaly, known, lag, matrix)
@@ -272,8 +274,8 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
     sides = np.concatenate([block.anomaly[:, :, None], across.transpose(0, 2, 1)], axis=2)
     found = np.asarray(np.linalg.solve(block.covariance, sides), np.float64)
     mean = field.profile.mean_at(level) + (across @ found[:, :, :1])[..., 0]
-    told = np.einsum("nkm,nmk->nk", across, found[:, :, 1:])
-    rest = np.maximum(spread**2 - told, 0.0)
+    explained = np.einsum("nkm,nmk->nk", across, found[:, :, 1:])
+    rest = np.maximum(spread**2 - explained, 0.0)
     slope, wrong = _slopes(field.samples, times, level)
     deviation = np.sqrt(np.maximum(rest, field.noise**2) + (slope * wrong) ** 2)
     return LevelPosterior(mean, deviation, rest / spread**2)
@@ -296,7 +298,7 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
     upper, lower = (f.reduce(depth, axis=1)[:, None] for f in (np.fmin, np.fmax))
     mean, deviation, left = posterior(field, times, levels)
     between = (levels >= upper) & (levels <= lower)
-    little = (left > KNOWN) & (field.profile.deviation_at(levels) > 3.0 * field.noise)
+    little = (left > REMAINING) & (field.profile.deviation_at(levels) > 3.0 * field.noise)
     flag = np.where(between & ~little, INTERPOLATED, DOUBTFUL)
     nothing = little & ~between
     flag = np.where(nothing, MISSING, flag).astype(np.int8)
@@ -352,7 +354,10 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     count = block.depth.shape[1] // sensors
     inverse = np.linalg.inv(block.covariance)
     weighted = (inverse @ block.anomaly[:, :, None])[..., 0]
-    miss, spread = np.full((len(times), sensors), np.nan), np.full((len(times), sensors), np.nan)
+    residual, spread = (
+        np.full((len(times), sensors), np.nan),
+        np.full((len(times), sensors), np.nan),
+    )
     here = count // 2
     for j in range(sensors):
         own = np.arange(count) * sensors + j
@@ -360,12 +365,14 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
         known = block.known[:, own[here]] & (
             block.known.sum(axis=1) > block.known[:, own].sum(axis=1)
         )
-        miss[:, j] = np.where(known, np.einsum("ni,ni->n", part[:, here], weighted[:, own]), np.nan)
+        residual[:, j] = np.where(
+            known, np.einsum("ni,ni->n", part[:, here], weighted[:, own]), np.nan
+        )
         spread[:, j] = np.where(known, np.sqrt(np.maximum(part[:, here, here], 0.0)), np.nan)
-    return miss, spread
+    return residual, spread
 
 
-FEWEST = 20
+MIN_RESIDUALS = 20
 """Misses of a sensor from which a factor is made."""
 
 
@@ -373,22 +380,22 @@ def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening | No
     """Find the factors by which bands must be widened to cover 95 % of each sensor, withheld in
     turn.
     """
-    miss, spread = left_out(field, times)
-    place = np.where(np.isfinite(miss), field.samples.depth[times], np.nan)
-    enough = np.isfinite(miss).sum(axis=0) >= FEWEST
+    residual, spread = left_out(field, times)
+    place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
+    enough = np.isfinite(residual).sum(axis=0) >= MIN_RESIDUALS
     if enough.sum() < 2:
         return None
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))
     between = (place > upper) & (place < lower)
     depth, within, beyond = [], [], 1.0
     for j in np.flatnonzero(enough).tolist():
-        off = np.abs(miss[:, j] / spread[:, j]) / GOOD_FIT
+        off = np.abs(residual[:, j] / spread[:, j]) / HALF_WIDTH
         inside = off[between[:, j]]
-        if inside.size >= FEWEST:
+        if inside.size >= MIN_RESIDUALS:
             depth.append(float(np.nanmean(place[:, j])))
             within.append(max(1.0, float(np.percentile(inside, 95.0))))
         outside = off[np.isfinite(off) & ~between[:, j]]
-        if outside.size >= FEWEST:
+        if outside.size >= MIN_RESIDUALS:
             beyond = max(beyond, float(np.percentile(outside, 95.0)))
     if not depth:
         depth, within = [0.0], [1.0]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.grid.field import (
+from calm.gridding.field import (
     DOUBTFUL,
     INTERPOLATED,
     MISSING,
@@ -16,7 +16,7 @@ from calm.grid.field import (
     left_out,
     posterior,
 )
-from calm.grid.samples import Samples
+from calm.gridding.samples import Samples
 
 HOUR = np.timedelta64(3600, "s")
 

@@ -1,0 +1,65 @@
+"""Messages for command lines that the parser rejects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cyclopts import CycloptsError, MissingArgumentError, UnknownCommandError, UnusedCliTokensError
+
+from calm.cli.help import metavar
+from calm.errors import nearest
+
+if TYPE_CHECKING:
+    from cyclopts import App, Argument
+
+
+def complaint(error: CycloptsError) -> str:
+    """Return the message for a command line that cannot be parsed, and the correct form."""
+    command = " ".join(("calm", *(error.command_chain or ())))
+    if isinstance(error, UnusedCliTokensError):
+        extra = " ".join(error.unused_tokens or ())
+        return f"unexpected argument: {extra}; see `{command} --help`"
+    if type(error) is MissingArgumentError and error.argument is not None:
+        return _missing(command, error, error.argument)
+    if isinstance(error, UnknownCommandError):
+        word = next(iter(error.unused_tokens or ()), "")
+        if Path(word).suffix and Path(word).exists():
+            return f"`{word}` is a file, not a command; see `calm --help`, or `calm run {word}`"
+        return f"{error} See `{command} --help`."
+    return str(error)
+
+
+def _missing(command: str, error: MissingArgumentError, argument: Argument) -> str:
+    """Name the missing arguments, or the option that was typed without its value."""
+    if error.keyword is not None or argument.tokens:
+        return f"`{command}`: {error.keyword or argument.name} needs a value: {_form(argument)}"
+    typed = [word.partition("=")[0] for word in error.root_input_tokens or () if word[:1] == "-"]
+    every = [*error.app.assemble_argument_collection()] if error.app is not None else []
+    later = every[next((i for i, one in enumerate(every) if one.name == argument.name), 0) :]
+    lacking = [one for one in later if one.required and not set(one.names) & {*typed}]
+    forms = [_form(one, error.app) for one in lacking] or [_form(argument)]
+    options = [name for one in every for name in one.names]
+    strange = [word for word in typed if word.startswith("--") and word not in options]
+    offers = [(nearest(word, options), word) for word in strange]
+    meant = next((f"; did you mean {near} for {word}?" for near, word in offers if near), "")
+    *first, last = forms
+    needs = f"{', '.join(first)} and {last}" if first else last
+    return f"`{command}` needs {needs}{meant or f'; see `{command} --help`'}"
+
+
+def _form(argument: Argument, app: App | None = None) -> str:
+    """Return an argument as it is typed, such as ``--currents FILE`` or ``FILE...``."""
+    if argument.name.startswith("-"):
+        short = min(argument.names, key=len)
+        return f"{short} {metavar(argument.name) or 'PATH'}"
+    place = argument.index or 0
+    words = _positionals(app)
+    return words[place] if place < len(words) else argument.name
+
+
+def _positionals(app: App | None) -> Sequence[str]:
+    """Return the arguments in the usage line of a command, if it is written by hand."""
+    usage = "" if app is None or not app.usage else app.usage
+    return [word for word in usage.partition("[OPTIONS]")[2].split() if word[0] != "["]
