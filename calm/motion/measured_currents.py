@@ -230,11 +230,11 @@ class CurrentSmoother:
         spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
-        usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
+        by_flag = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
         self._most_tide = (
             common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
         )
-        self.scales = ErrorScales(usual, tide=self._most_tide)
+        self.scales = ErrorScales(by_flag, tide=self._most_tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
@@ -242,7 +242,7 @@ class CurrentSmoother:
         self.meter_weight = np.ones(one.u.shape)
         self.sensor_weight = np.ones(one.depth.shape)
         usual = [common_unknowns.DATUM * self.seabed, *[common_unknowns.OFFSET] * sensors]
-        self.begin = np.square(usual)
+        self.begin: Floats = np.square(usual)
         self.first = self.begin.copy()
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
@@ -499,7 +499,7 @@ class CurrentSmoother:
 
     def _heavy(self, square: Floats) -> Floats:
         """Return initial variances by Student's law, from the expected squares."""
-        return np.maximum(self.begin, 0.5 * (self.begin + square))
+        return np.asarray(np.maximum(self.begin, 0.5 * (self.begin + square)), np.float64)
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
         one, at, count = self.measured, self.columns, len(self.measured.time)
