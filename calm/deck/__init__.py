@@ -220,7 +220,7 @@ def deck_of(
             plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
-            notes.append(f"The anchor drop is not planned: {failure}")
+            notes.append(f"The anchor drop cannot be planned: {failure}")
     return Deck(
         result=result,
         environment=_name(first),

@@ -170,8 +170,8 @@ moored, with the march.""",
 _LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
 
 _WHY = (
-    "Half a unit of the last printed digit, plus a tenth. Tension falls linearly along a hanging "
-    "rope, so the stretch of a segment at its mean tension is exact whatever the angle step."
+    "Half a unit of the last printed digit, plus 10 % of that. Tension falls linearly along a "
+    "hanging rope, so the stretch of a segment at its mean tension is exact for any angle step."
 )
 
 

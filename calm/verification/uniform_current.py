@@ -40,7 +40,7 @@ _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
 _HEAVY = 2.0
 
-_PRINTED = "Half a unit of the last printed digit, plus a tenth: one straight rod is exact."
+_PRINTED = "Half a unit of the last printed digit, plus 10 % of that: one straight rod is exact."
 _SEVEN_DIGITS = (
     "1e-6 of the line's length or of the tension, 6e-5° for an angle; the figures have seven "
     "digits, and the march errs by 4e-8 at an angle step of 0.1°."
@@ -86,7 +86,7 @@ def _fall(speed: float) -> float:
 def _identity(speed: float) -> Case:
     return Case(
         f"C4 heavy line, {speed} m/s: (T_top − T_bottom) / (w z_top)", 1.0, "", 1e-6,
-        "Exact; the rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°.",
+        "Exact; the error of straight segments is 1 − cos of half an angle step, 4e-7 at 0.1°.",
         lambda: _fall(speed) / (_HEAVY * _rope_ends(_HEAVY, 0.0, speed).z), Kind.PROPERTY,
     )  # fmt: skip
 
@@ -207,7 +207,7 @@ error 1e-10) without CALM. The march is compared with both; its angle step is 0.
             _by_speed("C7 bare cable", _bare, (
                 (1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277),
             )),
-            "Half a unit of the last printed digit, plus a tenth: a straight cable is exact "
+            "Half a unit of the last printed digit, plus 10 % of that: a straight cable is exact "
             "whatever the angle step.", Kind.CLOSED_FORM),
         *table(
             [
