@@ -72,13 +72,13 @@ class Profiles(Columnar):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Names of the columns, in table order."""
+        """Return the names of the columns, in table order."""
         own = (one.variable for columns in cls.columns().values() for one in columns)
         return ["component_label", "clamp_label", *own, "status"]
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """Definitions of the batch columns of one dimension: `component`, `clamp`, or empty for the
+        """Return the batch columns of one dimension: `component`, `clamp`, or empty for the
         ends.
         """
         return {

@@ -189,7 +189,7 @@ class LegResult:
 
     @property
     def legs(self) -> tuple[LegResult, ...]:
-        """Tuple of this one leg; a `Result` has the same attribute."""
+        """Tuple with this leg only, for use in place of a `Result`."""
         return (self,)
 
     @property

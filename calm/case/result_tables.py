@@ -81,12 +81,12 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Names of the columns, in table order."""
+        """Return the names of the columns, in table order."""
         return [each.name for each in fields(cls.record)]
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """Definitions of all columns, or of the columns that an output shows."""
+        """Return the definitions of all columns, or of the columns that an output shows."""
         every = columns_of(cls.record)
         return [*every] if output is None else shown_in(every, output)
 
@@ -156,7 +156,9 @@ class ColumnTable(Columnar, Generic[Row]):
         return self.joined([self, type(self)(**last)])
 
     def to_dicts(self) -> list[dict[str, Any]]:
-        """Rows as dictionaries of plain numbers and text; None stands for unknown values."""
+        """Return the rows as dictionaries of plain numbers and text; None stands for unknown
+        values.
+        """
         names = [name for name in self.names() if name != _OF_THE_FILE]
         return [{name: _known(getattr(row, name)) for name in names} for row in self]
 
@@ -591,7 +593,7 @@ class Shape:
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """Definitions of all columns, or of the columns that an output shows."""
+        """Return the definitions of all columns, or of the columns that an output shows."""
         every = columns_of(cls)
         return [*every] if output is None else shown_in(every, output)
 

@@ -41,9 +41,7 @@ _CHECK = "Check its values and units."
 
 @rule("environment")
 def environment(legs: Sequence[Leg]) -> Iterator[Found]:
-    """Yield warnings about the environments of a mooring; the argument has one leg per
-    environment.
-    """
+    """Yield warnings about the environments of a mooring; `legs` has one leg per environment."""
     said: set[str] = set()
     for leg in legs:
         for doubt in leg.file.environment.doubts:

@@ -28,7 +28,8 @@ def alternatives(quantity: str) -> tuple[str, ...]:
 
 @rule(MISSING)
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
-    """Yield one verdict per component id and missing value, from all findings that lack it.
+    """Yield one verdict per component id and missing value, which stands for all findings that lack
+    this value.
 
     The message is that of the piece with the largest value: the deepest, or the most heavily
     loaded.

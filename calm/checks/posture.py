@@ -334,7 +334,7 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
 
 
 def _too_long(leg: Leg) -> str:
-    """Remedy for a float without keys of surface floats: its line may be too long."""
+    """Return the remedy for a float without keys of surface floats: its line may be too long."""
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
         return ""

@@ -77,7 +77,8 @@ class Recovery:
         return np.array([self.depth_at(piece, 0.0) for piece in range(len(self.arrival))])
 
     def depth_at(self, piece: int, share: float) -> float:
-        """Depth of a point on a piece after all pieces have surfaced [m]; NaN if unknown.
+        """Return the depth of a point on a piece after all pieces have surfaced [m]; NaN if
+        unknown.
 
         The point is at a share of the length of piece number `piece`, from its upper end. It is
         suspended by the shorter length of line from a surfaced piece, above or below.

@@ -43,7 +43,7 @@ _seen: dict[Any, Any] = {}
 
 
 def resolving_once(typing: Any) -> Any:
-    """Context in which numba stores the signature of each operation by argument types.
+    """Return a typing context that stores the signature of each operation by argument types.
 
     numba's own context tries all candidates each time. Only the compiler of laws uses this one.
     """

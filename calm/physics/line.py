@@ -490,13 +490,13 @@ class Water(_Arrays):
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
 
     def current_at(self, depth: Floats) -> Floats:
-        """Current (..., 3) [m/s] at depths of any shape [m]."""
+        """Return the current (..., 3) [m/s] at depths of any shape [m]."""
         return np.stack([np.interp(depth, self.level, c) for c in (self.u, self.v, self.w)], -1)
 
     def density_at(self, depth: Floats) -> Floats:
-        """Density (...) [kg/m³] at depths of any shape [m]."""
+        """Return the density (...) [kg/m³] at depths of any shape [m]."""
         return np.interp(depth, self.level, self.density)
 
     def viscosity_at(self, depth: Floats) -> Floats:
-        """Kinematic viscosity (...) [m²/s] at depths of any shape [m]."""
+        """Return the kinematic viscosity (...) [m²/s] at depths of any shape [m]."""
         return np.interp(depth, self.viscosity_level, self.viscosity)

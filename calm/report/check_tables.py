@@ -86,8 +86,8 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """Key of findings that are counted once: findings with a state in `GRAVE` on equal pieces of
-    one file row, such as a cluster of floats.
+    """Return the key under which findings are counted once: findings with a state in `GRAVE` on
+    equal pieces of one file row, such as a cluster of floats.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:

@@ -229,7 +229,7 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
 
 
 def advice(finding: Finding) -> str:
-    """Recommended action for a finding, in brief."""
+    """Return the recommended action for a finding, in brief."""
     if finding.state in (State.PASS, State.NOT_JUDGED):
         return ""
     if finding.accept is not None:

@@ -77,7 +77,7 @@ def file_name(file: MooringFile) -> str:
 
 
 def input_hash(files: Sequence[MooringFile]) -> str:
-    """SHA-256 of the inputs in hexadecimal digits, over all environments.
+    """Return the SHA-256 of the inputs in hexadecimal digits, over all environments.
 
     The hash covers the text of the mooring file and, as JSON with sorted keys, the components with
     all catalogue values, the settings, and each environment with its currents, including those from

@@ -31,22 +31,24 @@ class BatchAccessor:
         self._dataset = dataset
 
     def depth(self, label: str) -> xr.DataArray:
-        """Depth (time) of a clamp, or of the upper end of a component [m].
+        """Return the depth (time) of a clamp, or of the upper end of a component [m].
 
         Like all methods of this class, raises UsageError if the line has no part with this label.
         """
         return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
-        """Knockdown (time) relative to still water [m]."""
+        """Return the knockdown (time) relative to still water [m]."""
         return self._of(label, "knockdown", "knockdown")
 
     def tilt(self, label: str) -> xr.DataArray:
-        """Tilt (time) of a component, or of the line at a clamp, from the vertical [degrees]."""
+        """Return the tilt (time) of a component, or of the line at a clamp, from the vertical
+        [degrees].
+        """
         return self._of(label, "tilt", "tilt")
 
     def tension(self, label: str) -> xr.DataArray:
-        """Tension (time) at a clamp, or the larger end tension of a component [N]."""
+        """Return the tension (time) at a clamp, or the larger end tension of a component [N]."""
         upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)
         return greater

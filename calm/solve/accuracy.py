@@ -45,14 +45,14 @@ UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 @within
 def tension_at(record: Record, node: int) -> float:
-    """Tension at a node [N]."""
+    """Return the tension at a node [N]."""
     fx, fy, fz = record[3][node], record[4][node], record[5][node]
     return sqrt(fx * fx + fy * fy + fz * fz)
 
 
 def next_node(record: Record, node: int, last: int) -> int:
-    """Return the node at the lower end of a segment, but at most `last`; an element without
-    segments counts as one.
+    """Return the next node at the end of a segment, or at the end of an element without segments,
+    but at most `last`.
     """
     node += 1
     while node < last and record[SEGMENT][node] >= HALVES:
@@ -128,7 +128,7 @@ def next_pair(
 
 
 def within_piece(record: Record, node: int) -> bool:
-    """Whether a node is between two segments of one piece."""
+    """Return whether a node is between two segments of one piece."""
     inside: bool = (
         record[SEGMENT][node] != NO_SEGMENT
         and record[SEGMENT][node + 1] != NO_SEGMENT

@@ -146,6 +146,6 @@ def flow_across(solution: Solution) -> Floats:
 
 
 def _flow(solution: Solution) -> Floats:
-    """Current (k, 3) at the midpoint of every element [m/s]."""
+    """Return the current (k, 3) at the midpoint of every element [m/s]."""
     heights = solution.position[:, 2]
     return solution.water.current_at(-0.5 * (heights[:-1] + heights[1:]))

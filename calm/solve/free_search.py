@@ -140,7 +140,7 @@ def _plumb(rising: Rising, angle_step: float) -> FreePlace:
 
 
 def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats:
-    """(3,) horizontal current averaged over the line, weighted by normal drag [m/s]."""
+    """Return the (3,) horizontal current averaged over the line, weighted by normal drag [m/s]."""
     water, line = rising.water, rising.line
     if rising.plumb:
         return np.array([water.u[0], water.v[0], 0.0])

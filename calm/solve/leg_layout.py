@@ -96,9 +96,7 @@ class LaidLeg:
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns of the leg; on a slope the height of the touchdown is an additional
-        one.
-        """
+        """Number of unknowns of the leg, on a slope including the height of the touchdown."""
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
         return 3 if self.kind == leg_numbers.PULLED else 1
@@ -133,7 +131,7 @@ class LaidLeg:
         return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int, span: float) -> LegRow:
-        """The leg as a row of numbers for compiled code.
+        """Return the leg as a row of numbers for compiled code.
 
         Parameters
         ----------

@@ -41,9 +41,7 @@ from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 SLOPE_STEP = 1e-6
 """Relative change of an unknown for the finite differences of the slopes."""
 LEAST_PULL = 1e-3
-"""Pull of a leg, as a fraction of its weight, below which this fraction of the weight is the leg's
-force scale.
-"""
+"""Smallest force scale of a leg, as a fraction of its weight; a larger pull is its own scale."""
 ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
 """Parameters of the strumming frequency: allowed relative error while segments are chosen, and on
 fixed segments; largest number of marches of a leg; smallest slope of the secants.
@@ -139,7 +137,7 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
 
 
 def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
-    """Shedding frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
+    """Return the shedding frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
 
     φ is the angle between the current and the force there, see `calm.physics.strumming`.
     """

@@ -189,7 +189,7 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
 
 @within
 def bed_of(net: NetProblem, i: int) -> Bed:
-    """The seabed below a leg."""
+    """Return the seabed below a leg."""
     leg, bed = net.legs[i], net.lines.limits.bed
     return Bed(leg.deeper_east, leg.deeper_north, bed.friction, bed.excess)
 

@@ -125,7 +125,7 @@ def search_of(problem: LineProblem, compiled: bool) -> Search:
 
 
 def lacks_room(problem: LineProblem) -> bool:
-    """Whether a search ended because the work arrays hold too few segments."""
+    """Return whether a search ended because the work arrays hold too few segments."""
     return bool(problem.work.left[FAILURE] == NO_ROOM)
 
 

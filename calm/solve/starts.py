@@ -15,7 +15,7 @@ from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem, Search
 from calm.solve.solution import FOUND
 
 IMMERSION_SHARE = 0.97
-"""Used fraction of its buoyancy above which a float at the surface may also have an immersed
+"""Used fraction of a surface float's buoyancy above which the float may also have an immersed
 equilibrium.
 """
 DROPS = 3

@@ -187,7 +187,7 @@ class _Marches:
         return self.net.shape(0, np.zeros(1))
 
     def miss(self, _: None, depth: float) -> float:
-        """Height of the upper end above the tow point [m]; NaN if the march stops."""
+        """Return the height of the upper end above the tow point [m]; NaN if the march stops."""
         self.failure, _same = self.net.do(leg_closing.MARCH, np.array([depth]), self._how)
         return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
@@ -260,8 +260,8 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 
 
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
-    """Return the depths to try, from below. In uniform water the miss is the distance to
-    the root.
+    """Return the depths of the free end to try, the deepest first. In uniform water, the miss is
+    the distance to the root.
     """
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()

@@ -25,7 +25,7 @@ LOAD_FROM = 60
 COMPILE_FROM = 1200
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
 UNANNOUNCED = 250
-"""Number of solved lines, beyond those announced, after which many more are expected."""
+"""Number of lines solved in excess of those announced, above which many more are expected."""
 TYPICAL_PARTS = 8
 """Number of pieces and clamps of an ordinary line. Computing time is in proportion to this number.
 """
@@ -42,7 +42,7 @@ class CompiledPart(Enum):
 
 
 class _Pace:
-    """The number of lines that one part of the solver has solved, and its speed.
+    """Number of lines that one part of the solver has solved, and the speed at which it runs.
 
     `announced` and `solved` are numbers of lines; `work` is the computing time, in ordinary lines.
     """

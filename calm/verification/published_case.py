@@ -286,7 +286,9 @@ def stream(depth: float, speed: float, density: float = REFERENCE_DENSITY) -> Wa
 
 
 def deep_water(density: float = REFERENCE_DENSITY) -> Water:
-    """Still water without a seabed, for tows; their flow results from the speed of the ship."""
+    """Return still water without a seabed, for tows; their flow results from the speed of
+    the ship.
+    """
     return stream(inf, 0.0, density)
 
 
