@@ -179,8 +179,8 @@ def amplitude(vibration: Vibration, angle: float) -> float:
 
 
 def strummed(vibration: Vibration, across: float) -> float:
-    """Return C*/C₀ = f(λ), limited to its maximum, from the sine of the angle φ between cable and
-    flow.
+    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to its maximum, from the
+    sine of the angle φ between cable and flow.
 
     λ = 2π (a/D) F D/(|V| sin φ). For flow along the cable the factor is the maximum.
     """
@@ -188,7 +188,9 @@ def strummed(vibration: Vibration, across: float) -> float:
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """Return f(λ) without its limit, but at most twice this limit."""
+    """Return the drag ratio f(λ) of a strumming cable without its limit, but at most twice this
+    limit.
+    """
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:

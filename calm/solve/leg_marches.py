@@ -41,7 +41,9 @@ from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 SLOPE_STEP = 1e-6
 """Relative change of an unknown for the finite differences of the slopes."""
 LEAST_PULL = 1e-3
-"""Smallest force scale of a leg, as a fraction of its weight; a larger pull is its own scale."""
+"""Smallest force scale of a leg, as a fraction of its weight; if its pull is larger, this pull is
+the scale.
+"""
 ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
 """Parameters of the strumming frequency: allowed relative error while segments are chosen, and on
 fixed segments; largest number of marches of a leg; smallest slope of the secants.

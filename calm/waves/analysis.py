@@ -147,8 +147,8 @@ class _Setting:
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
-        """Compute the standard deviations of tension (seas, pieces) [N], 0 on the seabed, and of the
-        float's pitch (seas, 1), 0 if unknown; also return the flows.
+        """Compute the standard deviations of tension (seas, pieces) [N], 0 on the seabed, and of
+        the float's pitch (seas, 1), 0 if unknown; also return the flows.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])
