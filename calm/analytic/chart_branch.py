@@ -182,7 +182,7 @@ class Branch:
         total = np.array([np.sum(weights * arc, axis=0), np.sum(weights * arc * cosine, axis=0)])
         far = width > _PANEL
         if np.any(far):
-            # this far out the cable is straight to rounding
+            # at this distance from the apex, the cable is straight within rounding
             rise = np.exp(self.log_tension(end)) - np.exp(self.log_tension(start))
             straight = np.where(far, rise, 0.0) / np.sqrt(1.0 - limit**2)
             total = np.where(far, [straight, limit * straight], total)

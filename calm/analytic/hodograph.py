@@ -170,7 +170,7 @@ class Hodograph:
 
     def reach(self, start: float, step: float) -> tuple[float, float]:
         """Return ξ and η: distance upstream and height over a step of m, in units of T₀/R."""
-        # either may vanish although the arc does not
+        # either coordinate may vanish although the arc length does not
         floor = 1e-13 * abs(self.arc(start, step))
         xi, eta = (self._integral(start, step, share, floor) for share in (0, 1))
         return xi, eta

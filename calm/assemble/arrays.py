@@ -53,7 +53,7 @@ def assemble_line(
     solver : laws of drag, friction and strumming; the defaults if None
     gravity : acceleration of gravity for weights from masses [m/s²]
     """
-    # the environments of a mooring have its lines in common, and all that is stored with them
+    # the environments of a mooring share its lines, with all results cached on the lines
     given = tuple(pieces), solver or Solver(), gravity
     for known, line in list(_ASSEMBLED):
         if known == given:

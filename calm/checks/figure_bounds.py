@@ -145,7 +145,7 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
     if metals:
         heavier = (metals[0].density or STEEL_DENSITY) - CATALOGUE_DENSITY
         share = -component.net_buoyancy / (STANDARD_GRAVITY * heavier * section)
-        # a weight that is wrong itself says nothing about the section of metal
+        # an impossible weight gives no information on the metal section
         least, most = (share, share) if LEAST_SHARE <= share <= 1.0 else (LEAST_SHARE, 1.0)
         stress = 1.1 * max(strengths)
         return WEAKEST_WIRE * least * section, stress * most * section, "weight in water"

@@ -187,7 +187,7 @@ def _risers(
     """
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():
-        # a rope has surfaced when its lower end has, a rigid piece when its upper end has
+        # a rope counts as surfaced once its lower end is up, a rigid piece once its upper end is
         way = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
             way = top if piece < head_count(line) else top + way

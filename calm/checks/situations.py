@@ -93,7 +93,7 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 def solved(name: str, design: Design) -> Situations:
     """Solve a design in a named situation."""
 
-    # all environments of a mooring that are as deep and dense have still water in common
+    # environments of equal depth and density share the solution in still water
     environment = replace(design.environment, name=None)
     given = name, replace(design.file, environment=environment), design.for_surface
     for known, before in list(_STILL):

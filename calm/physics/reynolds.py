@@ -14,11 +14,11 @@ from calm.physics.drag import LONG_CYLINDER_CN, SPHERE_CX, finite_length_factor,
 
 # fmt: off
 _CYLINDER = (
-    # Wieselsberger, as measured
+    # measurements by Wieselsberger
     (3.18, 4.87), (8.01, 2.94), (17.7, 2.12), (31.7, 1.73), (63.6, 1.48), (196, 1.27),
     (356, 1.15), (892, 0.964), (2.27e3, 0.886), (5.15e3, 0.944), (9.18e3, 1.06), (1.5e4, 1.14),
     (3.03e4, 1.16), (6.55e4, 1.17), (1.07e5, 1.17), (1.61e5, 1.18),
-    # DNV, as recommended
+    # recommendation by DNV
     (2.1e5, 1.21), (2.31e5, 1.20), (2.72e5, 1.17), (2.97e5, 1.11), (3.25e5, 1.01), (3.62e5, 0.894),
     (4.10e5, 0.709), (4.75e5, 0.532), (5.25e5, 0.408), (5.79e5, 0.327), (6.38e5, 0.284),
     (7.44e5, 0.297), (1.07e6, 0.389), (1.39e6, 0.470), (1.83e6, 0.539), (2.26e6, 0.584),
@@ -153,7 +153,7 @@ def varying_share(
         found = _turned(ax, ay, az, k * drag_variation(smooth, s), s, vx, vy, vz) - across
         if abs(found) <= 1e-14 * across:
             break
-        # the secant keeps to one side of the root unless the other side is made light of
+        # the secant stays on one side of the root unless the value at the other end is reduced
         if found > 0.0:
             high, above, below = s, found, below * (0.5 if side > 0 else 1.0)
             side = 1

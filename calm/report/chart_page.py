@@ -169,7 +169,7 @@ def _draw_family(
     loci.remove()
     for value, segments in zip(values, loci.allsegs, strict=True):
         for segment in segments:
-            # A line that cannot be named would only confuse.
+            # A line without a label would be confusing, so it is not drawn.
             if labels.along(f"{value:g}".replace("-", "−"), segment, family.colour, 7.0):
                 axes.plot(*segment.T, color=family.colour, linewidth=0.6)
 
@@ -247,7 +247,7 @@ class Labels:
         lengths = _lengths(line)
         if lengths[-1] < _SHORTEST * self._points:
             return False
-        # From the middle outwards.
+        # Try positions from the middle outwards.
         offsets = np.linspace(0.0, 0.46, _TRIALS // 2 + 1)
         shares = np.unique(np.concatenate([0.5 - offsets, 0.5 + offsets]))
         for share in sorted(shares, key=lambda share: abs(share - 0.5)):

@@ -56,7 +56,7 @@ def _rows(result: Result) -> Iterator[list[object]]:
         figures = (getattr(component, one.name) for one in own)
         yield [result.name, "component", *figures, *beside]
         for clamp in clamps:
-            # a clamp has one figure where a component has one for each end
+            # a clamp has one value for each quantity of which a component has one per end
             names = (one.name.removesuffix("_top").removesuffix("_bottom") for one in own)
             figures = (getattr(clamp, name, None) for name in names)
             yield [result.name, "clamp", *figures, *beside]

@@ -297,7 +297,7 @@ def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     The required factor on the breaking load is `checks.safety_factor` for a surface mooring, a
     synthetic cable, or steel. Unknown factors (NaN) are not marked.
     """
-    # a leg of several shown as a whole is not asked what it is meant for
+    # the intended purpose of a single leg is irrelevant if the whole net is shown
     alone = not (result.several or result.towed)
     meant = alone and reaches_the_surface(result.legs[0].leg)
     surface = meant or result.type == "surface"

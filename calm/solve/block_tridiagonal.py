@@ -60,7 +60,7 @@ def _solved(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -
     inside = _dense(
         diagonals[..., :-1, :, :], uppers[..., : CHUNK - 1, :, :], lowers[..., : CHUNK - 1, :, :]
     )
-    # right-hand sides: the block above the chunk, the block below it, what is given
+    # right-hand sides: the block above the chunk, the block below the chunk, the given right side
     beside = np.zeros((*inside.shape[:-1], 2 * size + right.shape[-1]), inside.dtype)
     beside[..., 1:, :size, :size] = lowers[..., :-1, -1, :, :]
     beside[..., -size:, size : 2 * size] = uppers[..., -2, :, :]

@@ -94,7 +94,7 @@ def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
     count, samples[0][0] = 1, upright
     samples[1][0] = coarse_miss(search, unknown, upright)
     if samples[1][0] < 0.0 < upright:
-        # the current's pull stretches the line further
+        # the drag of the current stretches the line further
         samples[0][1], samples[1][1] = upright, samples[1][0]
         samples[0][0], samples[1][0] = 0.0, coarse_miss(search, unknown, 0.0)
         count = 2

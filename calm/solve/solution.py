@@ -226,20 +226,20 @@ class Status(Enum):
 
 (
     FOUND,
-    # a march stopped: its value is why, see `calm.physics.line`
+    # a march stopped; the value is the reason, see `calm.physics.line`
     MARCH_STOPPED,
-    # no closed shape near a coarser one; one that misses its end, by its value [m]; one that hangs
-    # on the last digits of the buoyancy in use
+    # no closed shape near a coarse one; a shape that misses its end by the value [m]; one that
+    # depends on the last digits of the used buoyancy
     NO_SHAPE_NEAR, MISSES, SLACK_ON_DIGITS,
-    # without current, longer than the water is deep; floats that do not keep the line in the water
+    # no current and a line longer than the water depth; floats that do not stay in the water
     SLACK_AT_REST, TOO_MANY_AFLOAT, RISES,
-    # dragged down to the seabed; not lying there after all; nothing that holds it up
+    # dragged down to the seabed; no touchdown found after all; nothing that supports the line
     DRAGGED_DOWN, NOT_LYING, UNSUPPORTED,
     # a piece below the seabed, or above the surface, by its value [m]
     BELOW_SEABED, ABOVE_SURFACE,
     # loads that do not balance, or an element out of balance (the residual of the audit as value)
     NOT_CLOSED, OUT_OF_BALANCE,
-    # it folds in still water
+    # the line folds in still water
     FOLDED,
 ) = range(16)  # fmt: skip
 

@@ -198,7 +198,7 @@ def mooring_in_sea(
     moments: list[list[tuple[float, Floats]]] = [[] for _ in cases]
     for piece in leg.file.pieces[:-1]:
         at, node = piece.index, int(line.piece_node[piece.index])
-        # the upper end of pieces on top of the float carries no tension
+        # pieces on top of the float have no tension at their upper end
         on_top = at < line.top_pieces
         end = (line.top_pieces - 1, 1) if on_top else (at, 0)
         mean, own = float(solution.tension[int(solution.piece_nodes[end])]), _springs(line, at)
