@@ -36,7 +36,6 @@ def motion(
     without: str | None = None,
     cross_validate: bool = False,
     correct: str | None = None,
-    prior: Path | None = None,
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
@@ -82,9 +81,6 @@ def motion(
         What to correct where a sensor is found wrong, separated by commas: clock,
         gain, offset, drift; air, where pressures are absolute. The history of the
         output says what was corrected.
-    prior
-        A record of currents near the mooring, of any time, such as a hindcast: without
-        --currents the shapes of its profiles are taken, not their strength.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -129,11 +125,11 @@ def motion(
     currents = currents or []
     files = [split_label(text)[1] for text in (*currents, *pressures)]
     files += [path for path in (sea_level, onto) if path is not None]
-    inputs, copy = [file, *files, *filter(None, [prior])], output
+    inputs, copy = [file, *files], output
     if onto is not None and onto.is_dir():
         check_folder(output)
         if output.resolve() == onto.resolve():
-            raise UsageError(f"{output} is an input; it is kept")
+            raise UsageError(f"{output} is an input and is not overwritten")
     else:
         check_output(output, *inputs)
     if onto is not None:
@@ -153,7 +149,7 @@ def motion(
 
     recovery = RecoveredMooring(
         mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
-        cross_validate, _separated(correct), sea_level, flags, apart, turned, prior,
+        cross_validate, _separated(correct), sea_level, flags, apart, turned,
         _separated(without),
     )  # fmt: skip
     for card in recovery.cards:

@@ -151,7 +151,7 @@ class _Reader:
             message = f"tags (`{event.tag}`) are not allowed"
             if event.anchor is not None:
                 self._anchors.add(event.anchor)
-                message = "anchors (&) and aliases (*) are not allowed; write it out"
+                message = "YAML anchors (&) and aliases (*) are not supported; repeat the value"
             event.anchor = event.tag = None
             return self._refused(event, depth, message)
         kind = _KINDS[type(event)]

@@ -32,6 +32,7 @@ from calm.motion.line_response import (
 from calm.motion.matching import serials_of
 from calm.motion.measured_currents import CurrentSmoother
 from calm.motion.measurements import FREE, MooringMeasurements, by_neighbours, level_names
+from calm.motion.remarks import Fault
 from calm.motion.unknown_currents import unknown_state
 from calm.physics.line import Floats
 from calm.records.card import ReadCard
@@ -196,13 +197,15 @@ BLOCK = 512
 class Task:
     """Input of the estimate; `measured` contains only the sensors that are used.
 
-    `smoother` is the solution for the whole record if currents were measured, else None.
+    `smoother` is the solution for the whole record if currents were measured, else None. `faults`
+    are the diagnosed faults; None if they are still to be diagnosed.
     """
 
     mooring: Design
     measured: MooringMeasurements
     common: Common
     smoother: CurrentSmoother | None = None
+    faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
         """Return the line in the most likely currents at several times, and the other estimates.
@@ -230,7 +233,10 @@ class Task:
                 smoother.way(times),
             )
             surface = smoother.surface[times]
-        likely = forward.solve(way.level, way.u, way.v)
+        # inferred currents may exceed the limit of measured ones, which is for errors in files
+        limit = self.mooring.file.environment.maximum_speed
+        share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(way.u, way.v), 1e-9))
+        likely = forward.solve(way.level, share * way.u, share * way.v)
         clamps = likely.clamp_depth.shape[1]
         shift = depth - points(likely)
         down = depth - surface[:, None] - forward.still

@@ -55,8 +55,11 @@ A factor for the quality flag multiplies both.
 """
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 """Default factors on the meter error, by quality flag."""
-FLAG_RANGE, FEWEST = (0.3, 15.0), 20
-"""Limits of the estimated factor on the meter error, and the least number of readings."""
+FLAG_RANGE, FEWEST = (0.6, 15.0), 20
+"""Limits of the estimated factor on the meter error, and the least number of readings.
+
+The current at a meter differs from that on the line around it, however good the meter is.
+"""
 STUDENT = 4.0
 """Degrees of freedom of Student's law for readings."""
 ALIKE_HOURS = 1.0
@@ -66,8 +69,12 @@ LEAST_SPREAD = 0.02
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Initial correlation time [h] and correlation depth [m] of the current."""
 HOURS = (4.0, 16.0)
-"""Limits of the estimated correlation time [h]."""
+"""Limits of the estimated correlation time of the current [h]; a longer time would damp tides."""
 WIDER = 2.0
+"""Factor on the prior deviation of the currents from which the drag is estimated.
+
+Smoothing by the prior of the depths would damp the strongest currents, and raise the drag.
+"""
 METERS_ALIKE = 0.02
 """Error common to all meters of a record, as a share of the speed."""
 
@@ -77,8 +84,8 @@ line, and the local error of a point as a share of its own knockdown.
 """
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""
-TIDE_HOURS = 6.0
-"""Correlation time of tide and air pressure [h]."""
+TIDE_HOURS = 2.4
+"""Correlation time of the tide [h]: the autocorrelation of a semidiurnal tide falls to 1/e."""
 STEP = 0.02
 """Typical hourly step of the datum and offsets [m].
 
@@ -223,11 +230,11 @@ class CurrentSmoother:
         spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
-        usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
+        by_flag = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
         self._most_tide = (
             common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
         )
-        self.scales = ErrorScales(usual, tide=self._most_tide)
+        self.scales = ErrorScales(by_flag, tide=self._most_tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
@@ -235,7 +242,7 @@ class CurrentSmoother:
         self.meter_weight = np.ones(one.u.shape)
         self.sensor_weight = np.ones(one.depth.shape)
         usual = [common_unknowns.DATUM * self.seabed, *[common_unknowns.OFFSET] * sensors]
-        self.begin = np.square(usual)
+        self.begin: Floats = np.square(usual)
         self.first = self.begin.copy()
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
@@ -243,7 +250,6 @@ class CurrentSmoother:
         self.common_covariance = np.diag([*known, *self.begin])
         step = np.diff(self.hours, prepend=self.hours[:1])
         self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
-        self.stepped = self.usual.copy()
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
         self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
@@ -419,8 +425,17 @@ class CurrentSmoother:
 
     # --- iterations
 
-    def solve(self) -> None:
-        """Iterate until the depths converge."""
+    def solve(self, slips: Sequence[tuple[int, int, float]] = ()) -> None:
+        """Iterate until the depths converge.
+
+        Parameters
+        ----------
+        slips : sensor, time and size [m] of steps to begin with; of two or three sensors, the
+            iterations may otherwise end with an offset of one and a step of another
+        """
+        self.stepped = self.usual.copy()
+        for sensor, time, size in slips:
+            self.stepped[time, 1 + sensor] = 0.5 * (self.stepped[time, 1 + sensor] + size**2)
         before = np.full((len(self.measured.time), len(self.still)), np.inf)
         for turn in range(TURNS):
             there = self.linear()
@@ -484,7 +499,7 @@ class CurrentSmoother:
 
     def _heavy(self, square: Floats) -> Floats:
         """Return initial variances by Student's law, from the expected squares."""
-        return np.maximum(self.begin, 0.5 * (self.begin + square))
+        return np.asarray(np.maximum(self.begin, 0.5 * (self.begin + square)), np.float64)
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
         one, at, count = self.measured, self.columns, len(self.measured.time)
@@ -607,7 +622,7 @@ class CurrentSmoother:
         after = np.clip(np.searchsorted(known, self.hours), 0, len(known) - 1)
         before = np.maximum(after - 1, 0)
         near = np.minimum(np.abs(known[after] - self.hours), np.abs(known[before] - self.hours))
-        return np.asarray(near > self.scales.hours)
+        return np.asarray(near > CURRENT_HOURS)
 
     @property
     def current_factor(self) -> Floats:

@@ -118,7 +118,6 @@ class RecoveredMooring:
     flags : accepted quality flags of the pressures, separated by commas
     gap : longest gap over which values are interpolated
     declination : added to the directions of the currents [degrees]
-    prior : record of currents with the profile shapes to use, if none were measured, or None
     without : labels of sensors to ignore
     moved : common step in the depths of all sensors, if currents were not measured
     measured, notes, source : measurements, notes on them and the source files
@@ -142,7 +141,6 @@ class RecoveredMooring:
     flags: str = "1,2"
     gap: np.timedelta64 = GAP
     declination: float | None = None
-    prior: Path | None = None
     without: Sequence[str] = ()
     moved: tuple[Fault, ...] = field(default=(), init=False)
     _faults: tuple[Fault, ...] = field(default=(), init=False)
@@ -156,14 +154,6 @@ class RecoveredMooring:
         self.names = fitted(self.fit, bool(self.currents))
         self.hidden = [*self.hold_out]
         self._read()
-        self.shapes: list[CurrentMeasurements] = []
-        if self.prior is not None:
-            if self.currents:
-                raise UsageError("--prior is for pressures alone; here --currents are given")
-            limit = self.mooring.file.environment.maximum_speed
-            depth = float(self.mooring.water.depth)
-            self.shapes = read_currents([self.prior], depth, None, self.declination, limit)
-            self.notes += [f"{one.source}: {note}" for one in self.shapes for note in one.notes]
         if self.cross_validate:
             several(self.measured, self.hidden)
 
@@ -247,8 +237,6 @@ class RecoveredMooring:
         off += ["all sensors: 10.13 dbar, the pressure of the air"] * absolute
         if off:
             self.source["corrected"] = "taken off: " + "; ".join(off)
-        if self.prior is not None:
-            self.source["prior"] = hashed(self.prior)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
         """Return the points of the sensors in use. Labels to ignore must exist."""
@@ -261,7 +249,7 @@ class RecoveredMooring:
         return {i: at for i, at in points.items() if labels[at] not in self.without}
 
     def _prepared(self, tell: Callable[[str], None]) -> Task:
-        return prepare(self.mooring, self.measured, self.names, self.hidden, tell, self.shapes)
+        return prepare(self.mooring, self.measured, self.names, self.hidden, tell)
 
     def estimate(
         self,
@@ -290,7 +278,6 @@ class RecoveredMooring:
             "hold_out": sorted(self.hidden),
             "without": sorted(self.without),
             "correct": self.source.get("corrected", ""),
-            "prior": self.source.get("prior", ""),
             "sensors": list(self.measured.label),
         }
         text = resolved_input(self.mooring, self.measured.time, {"options": options})
@@ -322,7 +309,7 @@ class RecoveredMooring:
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
         if self.cross_validate:
             each = cross_validated(
-                self.mooring, self.measured, self.names, self.hidden, tell, workers, self.shapes
+                self.mooring, self.measured, self.names, self.hidden, tell, workers
             )
             held = {**study.held_out, **{one.label: one for one in each}}
             study = replace(study, held_out=held)
@@ -343,7 +330,6 @@ def estimate_motion(
     gap: float | None = None,
     declination: float | None = None,
     correct: Sequence[str] = (),
-    prior: str | Path | None = None,
     without: Sequence[str] = (),
     workers: int | None = None,
 ) -> MotionEstimate:
@@ -366,7 +352,6 @@ def estimate_motion(
     gap : longest gap over which values are interpolated [s]; two hours by default
     declination : added to the directions of the currents [degrees]
     correct : faults to correct: `clock`, `gain`, `offset`, `drift`, or `air` for absolute pressures
-    prior : record of currents with the profile shapes to use, without `currents`
     without : labels of sensors to ignore
     workers : number of threads; by default one for each available processor
 
@@ -391,7 +376,6 @@ def estimate_motion(
             ",".join(map(str, flags)),
             GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
             declination,
-            None if prior is None else Path(prior),
             without,
         )
         output = folder / "motion.nc"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from calm.case import Design
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
+from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.matching import without
 from calm.motion.measured_currents import CurrentSmoother
-from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, level_names
+from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
     BAND,
@@ -156,7 +157,6 @@ def prepare(
     names: Sequence[str],
     hidden: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
-    prior: Sequence[CurrentMeasurements] = (),
 ) -> Task:
     """Estimate the common unknowns of the record from the sensors in use.
 
@@ -166,7 +166,7 @@ def prepare(
     measured : measurements, including the sensors that are hidden
     names : names of the factors to estimate
     hidden : labels of sensors that are not used
-    tell, prior : see `calm.motion.unknown_currents.learn_currents`, for records without currents
+    tell : receives progress messages
 
     Raises
     ------
@@ -183,9 +183,20 @@ def prepare(
     if used.u.shape[1]:
         smoother = CurrentSmoother(mooring, used, names)
         smoother.solve()
-        return Task(mooring, used, smoother.common(), smoother)
+        task = Task(mooring, used, smoother.common(), smoother)
+        found = diagnosed(task)
+        slips = [one for one in found if one.kind == "slip" and one.certain]
+        if slips:
+            begin = np.searchsorted(used.time, [one.since for one in slips]).tolist()
+            sensors = [used.label.index(one.label) for one in slips]
+            smoother.solve(
+                [(j, t, one.value) for j, t, one in zip(sensors, begin, slips, strict=True)]
+            )
+            task = Task(mooring, used, smoother.common(), smoother)
+            found = diagnosed(task)
+        return replace(task, faults=found)
     used = with_knots(used, mooring)
-    return Task(mooring, used, learn_currents(mooring, used, names, tell, prior))
+    return Task(mooring, used, learn_currents(mooring, used, names, tell))
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
@@ -301,13 +312,12 @@ def cross_validated(
     hidden: Sequence[str],
     tell: Callable[[str], None],
     workers: int | None = None,
-    prior: Sequence[CurrentMeasurements] = (),
 ) -> list[HeldOut]:
     """Hide each used sensor in turn, besides the hidden sensors, and judge the estimate.
 
     Parameters
     ----------
-    mooring, measured, names, hidden, prior : see `prepare`
+    mooring, measured, names, hidden : see `prepare`
     tell : receives progress messages
     workers : number of threads
 
@@ -320,7 +330,7 @@ def cross_validated(
     held = []
     for label in several(measured, hidden):
         tell(f"estimating without {label}")
-        task = prepare(mooring, measured, names, [*hidden, label], prior=prior)
+        task = prepare(mooring, measured, names, [*hidden, label])
         point = int(measured.point[measured.label.index(label)])
         depth, spread = estimate_in_memory(task, [point], workers)
         held.append(judge_hidden(measured, task.measured, label, depth[:, 0], spread[:, 0], still))

@@ -12,7 +12,7 @@ The fits of the learning times are stored. Every other time starts from the stor
 nearest depths, with the slopes of that fit.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,7 +30,7 @@ from calm.motion.common_unknowns import (
 from calm.motion.currents_law import Linear, ReadCurrents, SpeedLaw
 from calm.motion.estimate import CurrentsState, Posterior, posterior
 from calm.motion.line_response import Forward, LineResponse
-from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
+from calm.motion.measurements import FREE, MooringMeasurements
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
@@ -49,12 +49,6 @@ share of the knots over which these are correlated.
 """
 PRIOR = 20.0
 """Weight of the prior law, in times of the record."""
-SHAPED, OTHER, FEWEST_PROFILES = 60.0, 0.2, 20
-"""Weight of given shapes, in times of the record; tolerance of their logarithms; and the least
-number of profiles for a shape.
-"""
-APART = 25.0
-"""Distance beyond the levels of a profile to which its end values extend [m]."""
 MOST_TIMES, TURNS, FIRST = 240, 12, 2
 """Number of learning times, all iterations, and iterations before the law changes."""
 STRONGER = 0.5
@@ -113,55 +107,11 @@ def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
     return mean, ALL**2 + EACH**2 * near
 
 
-def shaped_law(
-    measured: MooringMeasurements, record: Sequence[CurrentMeasurements], still: Mapping[str, float]
-) -> tuple[Floats, Floats]:
-    """Return the prior law with the profile shapes of a record; its mean strength is not used.
-
-    Knots outside the levels of the record keep their prior.
-
-    Parameters
-    ----------
-    record : currents from any place and time
-    still : depths of the parts of the line in still water, by label [m]
-    """
-    knots, (mean, covariance) = measured.level_depth[0], assumed_law(measured)
-    rows = []
-    for one in record:
-        place = np.array([still.get(label, np.nan) for label in one.label])
-        depth, speed = np.where(np.isfinite(place), place, one.depth), np.hypot(one.u, one.v)
-        known = np.isfinite(depth) & np.isfinite(speed)
-        times = np.flatnonzero(known.sum(axis=1) >= 2)
-        for i in times[:: max(len(times) // MOST_TIMES, 1)]:
-            z, order = depth[i, known[i]], np.argsort(depth[i, known[i]], kind="stable")
-            row = np.interp(knots, z[order], speed[i, known[i]][order])
-            inside = (knots >= z.min() - APART) & (knots <= z.max() + APART)
-            rows.append(np.where(inside, np.log(np.maximum(row, LEAST)), np.nan))
-    logs = np.array(rows).reshape(-1, len(knots))
-    seen = np.isfinite(logs).sum(axis=0) >= FEWEST_PROFILES
-    if seen.sum() < 2:
-        raise UsageError(
-            "--prior: its profiles show no shape: two levels or more are needed, at twenty times, "
-            "at depths of the mooring"
-        )
-    whole = logs[np.isfinite(logs[:, seen]).all(axis=1)][:, seen]
-    shape = whole - whole.mean(axis=1, keepdims=True)
-    mean = mean.copy()
-    mean[seen] = mean[seen].mean() + shape.mean(axis=0)
-    part = np.ix_(seen, seen)
-    covariance = covariance.copy()
-    covariance[part] = ALL**2 + shape.T @ shape / len(shape) - np.outer(*[shape.mean(axis=0)] * 2)
-    covariance[part] += OTHER**2 * np.eye(int(seen.sum()))
-    covariance[np.ix_(seen, ~seen)] = covariance[np.ix_(~seen, seen)] = ALL**2
-    return mean, covariance
-
-
 def learn_currents(
     mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
-    prior: Sequence[CurrentMeasurements] = (),
 ) -> Common:
     """Learn the law of the speeds jointly with the common unknowns.
 
@@ -171,16 +121,9 @@ def learn_currents(
     measured : measurements with the knots as levels
     names : names of the factors to estimate
     tell : receives progress messages
-    prior : currents of another record, for their profile shapes; if empty, the default prior
-        applies
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
-    if prior:
-        labels, still = line_response.labels_of(mooring), Forward(mooring, {}).still
-        places = dict(zip(labels, still.tolist(), strict=True))
-        mean, covariance = shaped_law(part, prior, places)
-    worth = SHAPED if prior else PRIOR
     high = raised(mooring, part)
     datum = max(SEABED * float(mooring.water.depth), HIGH_KNOWN * abs(high))
     begun = common_beforehand(dict.fromkeys(names, 1.0), datum, len(part.label), high)
@@ -223,7 +166,7 @@ def learn_currents(
         left = covariance - taken @ np.linalg.solve(found.expected[used], taken.transpose(0, 2, 1))
         centre = mine.mean(axis=0)
         spread = np.einsum("nk,nl->kl", mine - centre, mine - centre) + left.sum(axis=0)
-        covariance = (spread + worth * before) / (len(mine) + worth)
+        covariance = (spread + PRIOR * before) / (len(mine) + PRIOR)
         mean, logs = mean + centre, logs - centre
     return replace(common, law=SpeedLaw(mean, covariance, _with_mean(fit, at)))
 

@@ -21,6 +21,7 @@ from calm.physics.line import Floats
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import reader_of
 from calm.units import QuantityError, unit_factor, unit_line
+from calm.whole_file import no_such_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +82,7 @@ def holds_arrays(path: Path) -> bool:
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
     if not path.is_file():  # opening a pipe or a device could block
-        raise refused(path, "is not a regular file" if path.exists() else "no such file")
+        raise refused(path, "is not a regular file" if path.exists() else no_such_file(path))
     with path.open("rb") as file:
         head = file.read(_SHELL)
     begun = [kind for begin, kind in _KINDS.items() if head.startswith(begin)]
@@ -116,7 +117,7 @@ def reading(path: Path) -> Iterator[None]:
 def opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a dataset; its errors are InputErrors that list the contents of the file."""
     if not path.exists():
-        raise refused(path, "no such file")
+        raise refused(path, no_such_file(path))
     if not holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with reading(path), open_current(path) as dataset, saying_what_it_holds(dataset):

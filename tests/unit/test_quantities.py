@@ -42,6 +42,26 @@ def test_sentences_and_data_sheets():
     assert QUANTITIES["weight"].figure(0.009807) == "0.009807 N"
 
 
+@pytest.fixture
+def shown_afterwards():
+    before = shown_units()
+    yield
+    show_in(before)
+
+
+def test_a_force_in_a_sentence_is_in_newtons_below_a_kilonewton(shown_afterwards):
+    """Two values of a sentence share the unit of the larger one; a chosen unit always holds."""
+    load = QUANTITIES["load"]
+    assert [load.say(force) for force in (12_345.0, 1000.0, 999.4, 74.1, 3.061, -2400.0)] == [
+        "12.35 kN", "1.00 kN", "999 N", "74 N", "3.06 N", "-2.40 kN",
+    ]  # fmt: skip
+    assert load.say(330.0, -2350.0) == "0.33 kN"
+    assert load.number_and_unit(199.0, 500.0) == ("199", "N")
+    assert load.format(199.0) == "0.20"
+    show_in({"force": "kN"})
+    assert load.say(199.0) == "0.20 kN"
+
+
 def test_every_quantity_has_a_meaning_and_is_found_by_its_own_name():
     for name, quantity in QUANTITIES.items():
         assert quantity.name == name

@@ -1,8 +1,7 @@
 """Twins: a mooring whose drag, offsets and currents are made, and measured with errors and gaps.
 
-Depths must lie within their bands as often as these say. The intervals of the drag are too narrow
-where, as here, the meters of a time share an error: see docs/explanation/estimating-motion.md. The
-line is that of docs/field/dune2; everything that was measured is made.
+Drag and depths must lie within their intervals as often as these say. The line is that of
+docs/field/dune2; everything that was measured is made.
 """
 
 from pathlib import Path
@@ -101,11 +100,12 @@ def twin(mooring, seed, used=USED, slip=None):
 
 
 def recovered(mooring, seed, used=USED, slip=None):
-    """Of one twin: errors of the factors, logarithms; which depths are in their bands; doubts."""
+    """Of one twin: errors of the factors in deviations; which depths are in their bands; doubts."""
     measured, logs, depth = twin(mooring, seed, used, slip)
     task = prepare(mooring, measured, NAMES, ())
     common = task.common
-    missed = np.log(list(common.factors.values())) - logs
+    deviation = np.sqrt(np.diag(common.covariance))[: len(NAMES)]
+    missed = (np.log(list(common.factors.values())) - logs) / deviation
     profiles, more = task.columns(0, TIMES)
     labels = labels_of(mooring)
     hidden = [labels.index(label) for label in BETWEEN if label not in used]
@@ -116,21 +116,16 @@ def recovered(mooring, seed, used=USED, slip=None):
 
 def test_a_twin_is_recovered(mooring):
     missed, inside, said = recovered(mooring, 3)
-    assert (np.abs(missed) < 0.5).all()
+    assert (np.abs(missed) < 3.0).all()
     assert inside.mean() > 0.9 and not said
 
 
-OFTEN_ELSEWHERE = pytest.mark.xfail(
-    strict=True,
-    reason="of two or three sensors the smoother may take a slip for an offset of that sensor "
-    "throughout and a step of another: it is named, but the bands before or after are too narrow",
-)
 SLIPS = (12.0, -9.0, 20.0, -15.0)  # down the line [m]
 
 
 @pytest.mark.parametrize(("label", "down", "start", "said"), [
     pytest.param("Aquadopp 226", 12.0, 0, "m off throughout", marks=pytest.mark.thorough),
-    pytest.param("Aquadopp 626", -9.0, 40, "a clamp that slipped", marks=OFTEN_ELSEWHERE),
+    ("Aquadopp 626", -9.0, 40, "a clamp that slipped"),
 ])  # fmt: skip
 def test_a_sensor_that_is_not_where_the_file_says_is_named_and_bends_nothing(
     mooring, label, down, start, said
@@ -138,7 +133,7 @@ def test_a_sensor_that_is_not_where_the_file_says_is_named_and_bends_nothing(
     missed, inside, doubted = recovered(mooring, 0, THREE, (label, down, start))
     found, *_ = (one for one in doubted if one.startswith(f"{label}: "))
     assert said in found and "cannot tell" not in found
-    assert (np.abs(missed) < 0.5).all()
+    assert (np.abs(missed) < 3.0).all()
     assert inside.mean() > 0.9
 
 
@@ -147,16 +142,15 @@ def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest
     _, plain, _ = recovered(mooring, 0)
     missed, inside, doubted = recovered(mooring, 0, USED, ("Aquadopp 26", -9.0, 0))
     assert any("Aquadopp 26: " in one for one in doubted)
-    assert (np.abs(missed) < 0.5).all()
+    assert (np.abs(missed) < 3.0).all()
     assert inside.mean() >= plain.mean() - 0.05
 
 
-@OFTEN_ELSEWHERE
 @pytest.mark.thorough
 def test_a_slip_in_strong_currents_is_not_taken_for_their_errors(mooring):
     missed, inside, doubted = recovered(mooring, 414, USED, ("Aquadopp 626", 20.0, 44))
     assert doubted[0].startswith("Aquadopp 626: ") and "below its place" in doubted[0]
-    assert (np.abs(missed) < 0.5).all()
+    assert (np.abs(missed) < 3.0).all()
     assert inside.mean() > 0.9
 
 
@@ -167,6 +161,7 @@ def test_100_twins_with_a_sensor_elsewhere_lie_within_their_intervals(mooring, b
         (THREE[seed % 3], recovered(mooring, seed, THREE, (THREE[seed % 3], down, begins(seed))))
         for seed, down in enumerate(SLIPS * 25)
     ]
+    assert (np.abs([one[0] for _, one in twins]) <= 1.96).mean() >= 0.88
     assert np.mean([one[1] for _, one in twins]) >= 0.92
     assert np.mean([any(label in said for said in one[2]) for label, one in twins]) >= 0.95
 
@@ -174,6 +169,7 @@ def test_100_twins_with_a_sensor_elsewhere_lie_within_their_intervals(mooring, b
 @pytest.mark.slow
 def test_200_twins_lie_within_their_intervals(mooring):
     twins = [recovered(mooring, seed) for seed in range(200)]
+    assert 0.90 <= (np.abs([one[0] for one in twins]) <= 1.96).mean() <= 0.99
     assert 0.92 <= np.mean([one[1] for one in twins]) <= 0.995
 
 

@@ -141,7 +141,7 @@ def test_what_is_read(parser: None, text: str) -> None:
     assert (root and root.data) == READ[text]
 
 
-ANCHORED = "anchors (&) and aliases (*) are not allowed; write it out"
+ANCHORED = "YAML anchors (&) and aliases (*) are not supported; repeat the value"
 NO_YAML = "is not valid YAML: "
 TAB = "a tab; YAML is indented with spaces"
 

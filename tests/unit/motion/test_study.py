@@ -144,6 +144,7 @@ def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkey
     estimate = np.stack([READ[:, 0] + 1.0, np.full(TIMES, 0.3)])
     smoother = SimpleNamespace(solve=lambda: None, common=lambda: common(np.zeros(1)))
     monkeypatch.setattr(module, "CurrentSmoother", lambda *_: smoother)
+    monkeypatch.setattr(module, "diagnosed", lambda task: ())
 
     def in_memory(task, points, workers):
         seen.append((task.measured.label, points))

@@ -70,6 +70,7 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
     surface = 2.0 + np.array([0.3, -0.2, 0.0, 0.1])
     offset = np.array([[0.5, -0.4], [0.5, -0.3], [0.6, -0.4], [0.7, 0.1]])
     speeds = np.where(np.isfinite(U), U, 0.2)
+    speeds[0, 0] = 40.0
     smoother = SimpleNamespace(
         best=Line(), offset=offset, depth=depth, deviation=0.1 * depth, surface=surface,
         way=lambda times: ReadCurrents(np.full((4, 2), 7.0), speeds, V, np.zeros((4, 0, 0))),
@@ -78,8 +79,12 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
     )  # fmt: skip
     monkeypatch.setattr(module, "Forward", lambda mooring, factors: Line() if not factors else None)
     one = measured(false=np.array([False, True, True, False]))
-    profiles, more = Task(None, one, common(), smoother).columns(0, 4)
-    likely = Line().solve(np.full((4, 2), 7.0), speeds, V)
+    environment = SimpleNamespace(maximum_speed=5.0)
+    mooring = SimpleNamespace(file=SimpleNamespace(environment=environment))
+    profiles, more = Task(mooring, one, common(), smoother).columns(0, 4)
+    # an estimated current is solved at most at the limit, so that its time is not left empty
+    share = np.minimum(5.0 / np.hypot(speeds, V), 1.0)
+    likely = Line().solve(np.full((4, 2), 7.0), share * speeds, share * V)
     lost = np.array([1.0, 1.0, np.nan, 1.0])[:, None]
     assert profiles.clamp_depth == pytest.approx(depth[:, :2] * lost, nan_ok=True)
     assert profiles.depth_top == pytest.approx(depth[:, 2:] * lost, nan_ok=True)

@@ -18,7 +18,13 @@ from calm.report.check_report import check_report, mooring_section, short_sectio
 from calm.report.check_tables import named
 from calm.report.folder import printed
 from calm.report.load_cases import load_cases
-from calm.report.open_items import open_items, percent_text, plain, verdict_sentence
+from calm.report.open_items import (
+    groups_of,
+    open_items,
+    percent_text,
+    plain,
+    verdict_sentence,
+)
 from tests.judged import LINES, judged, judged_hostile, unaccepting
 
 _DOCUMENT = """document:
@@ -316,3 +322,23 @@ def test_labels_that_follow_are_named_as_a_run():
     assert named(["a 1", "a 3", "b", "c", "d 7", "d 8"]) == "a 1, a 3, b and 3 more"
     assert named(["300 m", "500 m"]) == "300 m, 500 m"
     assert named(["d 7", "d 8"]) == "d 7 and 8"
+
+
+def test_a_line_without_equilibrium_is_one_cause(tmp_path):
+    """What needs an equilibrium is not reported again by the rules on launch and ascent."""
+    text = (LINES / "upward-adcp-300m.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "sinking.yaml"
+    sinking = text.replace("label: ADCP float}", "label: ADCP float, buoyancy: 100 N}")
+    path.write_text(sinking.replace("glass-cluster-4", "shackle-13"), encoding="utf-8")
+    assessment = judged(path)
+    caused = [one.rule for one in assessment.all_findings() if "quilibrium" in one.message]
+    assert "equilibrium" in {one.rule for one in assessment.all_findings()}
+    assert not {"launch-strength", "launch-speed", "recovery"} & {*caused}
+
+
+def test_forces_of_any_size_share_an_item(assessments):
+    """Findings that differ only in component and values are one cause, in N or in kN."""
+    one = next(assessments("upward-adcp-300m").every_finding())
+    weak = replace(one, rule="slack", message="Minimum tension is 932 N.", state=State.WARN)
+    strong = replace(weak, message="Minimum tension is 1.70 kN.", value=1700.0)
+    assert len(groups_of([weak, strong], {})) == 1
