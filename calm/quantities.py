@@ -160,7 +160,7 @@ _TABLE = (
     Quantity("weight", "weight in water", "N",
              "Net force in sea water of 1025 kg/m³, downward.", 2),
     Quantity("net_buoyancy", "net force in water", "N",
-             "Net force in sea water of 1025 kg/m³, upward, by weight or by mass and volume.", 0),
+             "Upward net force in sea water of 1025 kg/m³, from weight or mass and volume.", 0),
     Quantity("dry_mass", "mass in air", "kg", "Mass of a piece in air."),
     Quantity("wet_weight", "weight in water", "N", "Net force of a piece, downward.", 0),
     Quantity("lift_mass", "mass of the lift", "kg", "Mass of a piece with its clamps."),

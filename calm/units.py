@@ -100,7 +100,7 @@ _MASS_AND_FORCE = {"kg": "kgf", "g": "gf", "t": "tf", "lb": "lbf", "kg/m": "kgf/
 _MASS_AND_FORCE |= {"kg/km": "kgf/km", "lb/ft": "lbf/ft"}
 _TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items()}
 
-_FATHOM = ("is no length at sea; a fathom is `fathom`", "fathom")
+_FATHOM = ("is ambiguous; write `fathom` for a fathom", "fathom")
 _TON = ("may be of 907, 1000 or 1016 kg; a tonne is `t`, its force `tf`", None)
 _MILE = ("may be of 1609 or 1852 m; write `mi` or `nmi`", None)
 _MISTAKEN: Mapping[str, tuple[str, str | None]] = {
@@ -128,6 +128,15 @@ _UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*(?![A-Za-z_µ°%])|[*/()]|\^
 _SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 _LONGEST = 60
 _LARGEST = 1e30  # limit that keeps products of a few values finite
+
+
+_POINTS = (
+    *("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE"),
+    *("S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"),
+)
+_COMPASS = {name: 22.5 * number for number, name in enumerate(_POINTS)}
+_COMPASS |= {"NORTH": 0.0, "EAST": 90.0, "SOUTH": 180.0, "WEST": 270.0}
+"""Points of the compass [deg], which are suggested as angles."""
 
 
 class QuantityError(ValueError):
@@ -342,7 +351,10 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
     if not number:
         if re.match(r"[+-]?\.?(nan|inf)", text, re.IGNORECASE):
             raise QuantityError("is not a finite number")
-        raise QuantityError(f"is not {_described(wanted)}")
+        bearing = _COMPASS.get(text.upper()) if wanted.unit == "deg" else None
+        raise QuantityError(
+            f"is not {_described(wanted)}", None if bearing is None else f"{bearing:g} deg"
+        )
     return float(number[0]), text[number.end() :].strip()
 
 

@@ -1,6 +1,7 @@
 """Read and write files as a whole: a reader sees either the old or the new content."""
 
 import contextlib
+import difflib
 import glob
 import os
 import stat
@@ -21,6 +22,9 @@ UNFINISHED = ".calm-part"
 _LONGEST = 40
 _STALE = 600.0  # seconds: an older temporary file is not being written by any process
 _TOGETHER = 32  # number of files flushed at once, since waiting for each in turn is slow
+
+_ALIKE = 0.75
+"""Similarity of two names of files above which one may be meant by the other."""
 
 GRAIN = 2.0
 """Resolution of file times: a file younger than this may change without a new time [s]."""
@@ -164,11 +168,28 @@ def _regular(path: Path) -> Iterator[None]:
         if path.is_dir():
             raise refused(path, "is a folder; a file is needed")
         if not path.is_file():
-            raise refused(path, "is not a regular file" if path.exists() else "no such file")
+            what = "is not a regular file" if path.exists() else no_such_file(path)
+            raise refused(path, what)
         yield
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise refused(path, f"cannot be read: {reason}") from None
+
+
+def no_such_file(path: Path) -> str:
+    """Return the message about a file that does not exist, with the file of its folder and suffix
+    that is most alike in name. Without a suffix, or with .yml, a .yaml file may be meant.
+    """
+    with contextlib.suppress(OSError, ValueError):
+        suffix = {"": ".yaml", ".yml": ".yaml"}.get(path.suffix, path.suffix)
+        listed = sorted(name for name in os.listdir(path.parent) if not name.startswith("."))
+        names = [name for name in listed if Path(name).suffix == suffix]
+        stems = {Path(name).stem.casefold() for name in names}
+        alike = difflib.get_close_matches(path.stem.casefold(), stems, 1, _ALIKE)
+        found = [path.with_name(name) for name in names if Path(name).stem.casefold() in alike]
+        if found and found[0].is_file():
+            return f"no such file; did you mean `{found[0]}`?"
+    return "no such file"
 
 
 def decoded(path: Path, content: bytes) -> str:

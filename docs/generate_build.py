@@ -1,7 +1,7 @@
 """Draw the screens of the line builder that `docs/reference/build.md` shows.
 
 python docs/generate_build.py            # draw them
-python docs/generate_build.py --check    # exit 1 where one is out of date
+python docs/generate_build.py --check    # exit 1 if one is out of date
 """
 
 import asyncio

@@ -1,7 +1,7 @@
 """Write `docs/reference/command-line.md` and `docs/calm.1`, the manual page, from the help.
 
 python docs/generate_command_line.py            # write them
-python docs/generate_command_line.py --check    # exit 1 where one is out of date
+python docs/generate_command_line.py --check    # exit 1 if one is out of date
 """
 
 import contextlib

@@ -1,7 +1,7 @@
 """Write the table of the rules of the design check into `docs/reference/check.md`.
 
 python docs/generate_rules.py            # write it
-python docs/generate_rules.py --check    # exit 1 where it is out of date
+python docs/generate_rules.py --check    # exit 1 if it is out of date
 """
 
 import sys

@@ -1,7 +1,7 @@
 """Write `docs/reference/schematic.md` and its pictures from lines of `lines/`.
 
 python docs/generate_schematic.py            # write them
-python docs/generate_schematic.py --check    # exit 1 where one is out of date
+python docs/generate_schematic.py --check    # exit 1 if one is out of date
 """
 
 import sys
@@ -57,11 +57,11 @@ picture = schematic_svg(result.file, result)
 assert picture.startswith("<svg")
 ```
 
-The SVG is made for A4. A long line is drawn smaller to fit, and one with more than about 60 rows
-needs a longer sheet. Texts never overlap and none is cut: a long one wraps. A longer wire is drawn
-longer, a little for each tenfold length. The same input gives the same bytes.
+The SVG has the size of A4. A long line is drawn smaller to fit, and a line with more than about 60
+rows needs a longer sheet. Texts never overlap and are never cut: long texts wrap. A wire of ten
+times the length is drawn slightly longer. The same input gives the same bytes.
 
-A float at the surface rides on it; a tow hangs from its ship, or from its helicopter:
+Surface moorings are drawn with the surface, and tows with their ship or helicopter:
 
 ![{second}](../images/schematic-{drawn[1]}.svg)
 
@@ -71,7 +71,7 @@ A float at the surface rides on it; a tow hangs from its ship, or from its helic
 
 - **Depths** are those of the result: in the current, under load. Without a result,
   `schematic_svg(file)`, they are those of the upright, unstretched line, and unknown in a tow and
-  where a float is at the surface.
+  if a float is at the surface.
 - **Lengths** are cut lengths, before any load.
 - **Symbols** follow the kind and the role of a component, then its id, name, note and label:
   *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is recognised by its `material`.

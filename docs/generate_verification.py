@@ -35,22 +35,22 @@ HEAD = """# Verification
 
 Printed by `python docs/generate_verification.py`; do not edit.
 
-`calm verify` computes {verifying} figures that are known without CALM, and compares them. The exit
-code is 1 when one is outside its tolerance. `calm verify cdms tension` selects the figures whose
-source or name contains both words; `--json -` gives every digit. The cases are in
+`calm verify` compares {verifying} values computed by CALM with values known without CALM. The exit
+code is 1 if a value is out of tolerance. `calm verify cdms tension` selects the values whose
+source or name contains both words; `--json -` gives all digits. The cases are in
 `calm/verification/`, and the tests run them.
 
-How much agreement proves depends on where a figure comes from, so every figure has a kind:
+Agreement proves more or less depending on the origin of the value, so every value has a kind:
 
 | kind | figures | meaning |
 | --- | ---: | --- |
 {kinds}
 
-{copied} more figures are met **by construction**: points that a curve of CALM is drawn through,
-figures that a law is fitted to, figures of a library that CALM calls. Agreement there guards only
-against copying errors. They are checked, but not counted.
+{copied} more values agree **by construction**: points on a curve of CALM, values to which a law is
+fitted, values of a library that CALM calls. Their agreement only excludes
+copying errors. They are checked, but not counted.
 
-Beside `calm verify`, the tests compare every mooring of `lines/` and hundreds of random moorings
+In addition, the tests compare every mooring of `lines/` and hundreds of random moorings
 with an independent integration of the differential equations.
 
 {contents}
@@ -61,8 +61,8 @@ FIGURES_HEAD = """# Verification: every figure
 
 Printed by `python docs/generate_verification.py`; do not edit.
 
-The figures that `calm verify` compares. [Verification](../explanation/verification.md) says what
-agreement proves, and who printed or derived the figures. Above each table are its kind and the
+The values that `calm verify` compares. [Verification](../explanation/verification.md) explains what
+agreement proves, and gives the sources of the values. Above each table are its kind and the
 reason for its tolerance. The values of CALM and the differences are rounded a digit or two beyond
 the tolerance. C1 to C23 are names of cases in the code and the tests.
 """

@@ -8,9 +8,9 @@ A page runs from top to bottom in a folder with nothing but `lines/` and `docs/f
 checkout:
 
 - a block ``sh`` runs in bash; ``python`` runs, too;
-- a block ``text`` right below one is what it prints on standard output, and it must print
-  something. A line `…` stands for any lines, `…` in a line for any words; writing takes the lines
-  that begin as those shown;
+- a block ``text`` right below one is what it prints on standard output, which must not be empty. A
+  line `…` stands for any lines, `…` in a line for any words; writing takes the lines that begin
+  as those shown;
 - a block of any language below `<!-- file: NAME -->` is written to that file;
 - a block ``diff`` below `<!-- edit: NAME -->` changes lines of that file, those with - to those
   with +;

@@ -1,4 +1,4 @@
-"""Closed-form solutions for lines and cables, independent of the march and used to validate it.
+"""Closed-form solutions for lines and cables, which are independent of the march and validate it.
 
 `catenary`: a line in still water; `uniform`: lines in a uniform stream, without weight and heavy,
 and Pode's cable functions; `villain_guillot`: towed cables whose drag is linear or quadratic in

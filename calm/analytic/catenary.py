@@ -1,4 +1,4 @@
-"""The catenary: a line in still water, inextensible or elastic, clear of the seabed or not.
+"""Catenary: a line in still water, inextensible or elastic, suspended or partly on the seabed.
 
 With the horizontal pull H, the vertical pull V at the upper end and V₀ = V − w s at a distance s
 below it (unstretched), an inextensible line of weight w per metre spans
@@ -23,7 +23,8 @@ from calm.analytic.hodograph import Floats
 def position(
     arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Position of a point of an inextensible line, relative to a point with known pull.
+    """Return the position of a point on an inextensible line, relative to a point with known
+    tension.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ def position(
 
 @dataclass(frozen=True)
 class Catenary:
-    """A line that hangs between two points, given by the pull at its upper end.
+    """A line suspended between two points, defined by the forces at its upper end.
 
     Parameters
     ----------
@@ -115,7 +116,8 @@ class Catenary:
         return np.hypot(self.horizontal, self.vertical_bottom)
 
     def position(self, arc: ArrayLike) -> tuple[Floats, Floats]:
-        """Horizontal distance and height from the lower end [m] at an unstretched arc [m].
+        """Return horizontal distance and height from the lower end [m], for an unstretched arc
+        length [m].
 
         Parameters
         ----------
@@ -140,7 +142,7 @@ class Catenary:
 
     @property
     def end(self) -> tuple[Floats, Floats]:
-        """Horizontal distance and height of the upper end from the lower end [m]."""
+        """Horizontal distance and height of the upper end, from the lower end [m]."""
         return self.position(self.length)
 
 
@@ -153,7 +155,7 @@ def between(
     *,
     seabed: bool = False,
 ) -> Catenary:
-    """Find the catenary between two points.
+    """Find the catenary between two given points.
 
     Parameters
     ----------
@@ -191,9 +193,7 @@ def between(
 
 
 def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: float) -> None:
-    """Raise ValueError for a line so long that it hangs straight down and lies slack on the
-    seabed.
-    """
+    """Raise ValueError for a line so long that it hangs vertically and lies slack on the seabed."""
     if not z > 0.0:
         raise ValueError(f"the upper end must be above the seabed: its height is {z:g} m")
     # hanging plumb: z = l + w l²/(2 EA), l the unstretched length
@@ -206,7 +206,9 @@ def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: f
 
 
 def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, float]:
-    """Pull (H, V) over the line's weight, for a line of length 1 and compliance w L/EA."""
+    """Solve for the horizontal and vertical force (H, V), relative to the line's weight, for a line
+    of length 1 and compliance w L/EA.
+    """
     chord = hypot(x, z)
     if chord < 1.0:
         sag = sqrt(max(3.0 * ((1.0 - z * z) / (x * x) - 1.0), 1e-300))
@@ -239,7 +241,9 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
 def _miss(
     h: float, v: float, x: float, z: float, compliance: float, seabed: bool
 ) -> tuple[float, float, tuple[float, float, float]]:
-    """Miss of the upper end and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V, for unit length and weight."""
+    """Return the position error of the upper end and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V, for unit length
+    and weight.
+    """
     lifted = min(1.0, v) if seabed else 1.0
     bottom = v - lifted
     over, under = hypot(h, v), hypot(h, bottom)

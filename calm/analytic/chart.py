@@ -1,4 +1,4 @@
-"""Uniform current: solve for a cable from three of its seven quantities.
+"""Cable in a uniform current, determined by three of its seven quantities.
 
 The cable hangs in the plane of a uniform current, with drag only in the normal direction. A is its
 lower end, B its upper end. The problems that H. Braconnot's charts solve graphically are solved
@@ -45,7 +45,7 @@ class ChartSolution:
 
 @dataclass(frozen=True)
 class ChartAnswer:
-    """Cables for three given quantities, or the reason why there is none.
+    """Cables that have three given quantities, or the reason why there is none.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def chart_solve(
     distance: float | None = None,
     length: float | None = None,
 ) -> ChartAnswer:
-    """Find every cable with three given quantities, to 1e-9, or the reason why there is none.
+    """Find every cable that has three given quantities, to 1e-9, or the reason why there is none.
 
     A cable that turns by less than a hundredth of a radian is almost straight, so its tension is
     less accurate than the given shape (angles, height, distance, length).
@@ -123,7 +123,7 @@ def chart_solve(
 
 
 def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | NoEquilibrium:
-    """Solve for sinking cables, with tensions over w; buoyant cables have been mirrored before."""
+    """Solve for sinking cables, with tensions divided by w; buoyant cables are mirrored before."""
     refusal = contradiction(known)
     if refusal:
         return refusal
@@ -146,7 +146,7 @@ def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolutio
 def _on_branch(
     branch: Branch, ends: Mapping[str, tuple[Branch, float] | None], sizes: Mapping[str, float]
 ) -> list[ChartSolution]:
-    """Find every cable that is a piece of one branch."""
+    """Find every cable that is part of one branch of the curve."""
     places = [end for end in ends.values() if end is not None]
     if any(place[0].sign != branch.sign for place in places):
         return []
@@ -180,7 +180,7 @@ _SCALES = ("length", "tension_b", "height", "tension_a", "distance")
 
 
 def _cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSolution | None:
-    """Scale the piece to its given size; None if this would need a negative scale."""
+    """Scale a part of the curve to its given size; None if the scale would be negative."""
     unit = {name: float(size_of(branch, name, *piece)) for name in SIZES}
     name = next(name for name in _SCALES if name in sizes)
     scale = sizes[name] / unit[name] if unit[name] else 0.0
@@ -205,7 +205,7 @@ GIVENS = (*ANGLES, *SIZES)
 
 
 def check(known: Mapping[str, float], weight: float) -> None:
-    """Raise UsageError unless there are three quantities within their ranges."""
+    """Raise UsageError unless exactly three quantities are given, each within its range."""
     if len(known) != 3:
         names = ", ".join(known) or "none"
         raise UsageError(f"three of {', '.join(GIVENS)} are needed; given: {names}")
@@ -248,12 +248,13 @@ _LEAST_SLACK = 1e-12
 
 
 def family(what: str) -> NoEquilibrium:
-    """Return the outcome for quantities that do not determine the cable."""
+    """Return the outcome for quantities that many cables share."""
     return NoEquilibrium("one-parameter-family", what, "Replace one of these by another quantity.")
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Find a contradiction among the quantities of a sinking cable, independent of K; None without.
+    """Find a contradiction among the quantities of a sinking cable that holds for every K; None
+    without contradiction.
 
     Buoyant cables are mirrored before. The messages apply to buoyant and to sinking cables.
     """
@@ -281,13 +282,14 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
 
 
 def is_taut(known: Mapping[str, float]) -> bool:
-    """Whether the cable is, to rounding, no longer than the distance between its ends."""
+    """Return whether the cable is no longer than the distance between its ends, within rounding."""
     chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
 def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
-    """Find the reason why no cable has the given quantities, which do not contradict each other.
+    """Find the reason why no cable has the given quantities, although they do not contradict each
+    other.
 
     Parameters
     ----------
@@ -333,7 +335,7 @@ def _none(message: str, advice: str) -> NoEquilibrium:
 
 
 def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
-    """The straight cable at the critical angle, which is not on a branch of the curve.
+    """Return the straight cable at the critical angle, which is not part of a branch of the curve.
 
     It matches three quantities [rad, m] to 1e-9, with tensions over w. The result is a refusal if
     they do not determine its size, and None if there is no such cable.

@@ -1,4 +1,4 @@
-"""A branch of the curve that a cable takes in a uniform current, in units of H₀ and wH₀.
+"""One branch of the curve of a cable in a uniform current, in units of H₀ and wH₀.
 
 Plane, uniform current, drag normal to the cable only, w > 0 [N/m] the weight in water, φ the angle
 of the cable to the current, s the arc counted upwards along the curve::
@@ -42,7 +42,7 @@ _NODES = _NODES + 0.5
 
 
 def critical_angle(k: ArrayLike) -> Floats:
-    """Angle to the current at which a cable is straight [rad], 90° for K = 0.
+    """Return the angle to the current at which a cable is straight [rad], 90° for K = 0.
 
     K ≥ 0, an array or a number, is the drag per metre normal to the current over the weight per
     metre.
@@ -51,7 +51,7 @@ def critical_angle(k: ArrayLike) -> Floats:
 
 
 def check_k(k: float) -> float:
-    """Return K, or raise `UsageError` if it is not between 0 and 100."""
+    """Return K, or raise UsageError if K is not between 0 and 100."""
     if not 0.0 <= k <= GREATEST_K:
         raise UsageError(f"K is {k:.6g}; the charts hold for K from 0 to {GREATEST_K:g}")
     return float(k)
@@ -59,7 +59,8 @@ def check_k(k: float) -> float:
 
 @dataclass(frozen=True)
 class Branch:
-    """One branch of the curve, turned so that its apex is at angle ψ = 0 and it runs downstream.
+    """One branch of the curve, rotated so that its apex is at angle ψ = 0 and it extends
+    downstream.
 
     Points are given by λ, negative before the apex. ψ is φ on the first branch and 180° − φ on the
     second, whose distances are counted upstream.
@@ -75,7 +76,8 @@ class Branch:
 
     @classmethod
     def holding(cls, k: float, phi: float) -> tuple[Self, float] | None:
-        """Find the branch and the λ of an angle φ [rad], or None for the critical angle.
+        """Find the branch that contains an angle φ [rad], and λ at this angle; None for the
+        critical angle.
 
         Raises UsageError for an angle beyond ±180°.
         """
@@ -100,17 +102,17 @@ class Branch:
 
     @cached_property
     def limit(self) -> float:
-        """Cosine of ψ towards which the branch straightens beyond the apex, and with opposite sign
-        before the apex.
+        """Cosine of ψ that the branch approaches beyond its apex; before the apex it approaches the
+        negative of this value.
         """
         return float(-self.sign * _leaning(self.k))
 
     def log_tension(self, parameter: ArrayLike) -> Floats:
-        """Logarithm of the tension, ln(T/wH₀)."""
+        """Return the logarithm of the tension, ln(T/wH₀)."""
         return self.exponent * log_cosh(parameter)
 
     def angle(self, parameter: ArrayLike) -> Floats:
-        """Angle ψ [rad]."""
+        """Return the angle ψ [rad]."""
         size = np.abs(np.asarray(parameter, dtype=np.float64))
         limit = np.where(np.asarray(parameter) < 0.0, -self.limit, self.limit)
         sech = _sech(size)
@@ -119,7 +121,7 @@ class Branch:
         return np.asarray(np.sign(parameter) * 2.0 * np.arctan(np.sqrt(squared_tangent)))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """Parameter λ of angles ψ [rad] between the two critical angles."""
+        """Return the parameter λ of angles ψ [rad] between the two critical angles."""
         signed = np.asarray(angle, dtype=np.float64)
         limit = np.where(signed < 0.0, -self.limit, self.limit)
         size, critical = np.abs(signed), np.arccos(limit)
@@ -129,14 +131,16 @@ class Branch:
         return np.asarray(np.copysign(size, signed))
 
     def from_apex(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
-        """s′ and y′ (downstream on either branch) of points."""
+        """Return s′ and y′ of points, from the apex and downstream on either branch."""
         signed = np.asarray(parameter, dtype=np.float64)
         arc, distance = self.span(np.minimum(signed, 0.0), np.maximum(signed, 0.0))
         side = np.sign(signed)
         return side * arc, side * self.sign * distance
 
     def span(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
-        """Arc and distance between two points with start ≤ end, in units of H₀ (vectorised)."""
+        """Return arc length and distance between two points with start ≤ end, in units of H₀
+        (vectorised).
+        """
         first, last = (
             np.asarray(side, dtype=np.float64) for side in np.broadcast_arrays(start, end)
         )
@@ -147,7 +151,9 @@ class Branch:
         return total[0], total[1]
 
     def _span(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """(2, …) arc and distance between two points on the same side, 0 ≤ start ≤ end."""
+        """Return (2, …) arc length and distance between two points on one side of the apex, 0 ≤
+        start ≤ end.
+        """
         # a short piece is integrated directly, since the difference of two long ones loses digits
         short = end - start <= _PANEL
         whole = self._cumulative[limit]
@@ -166,7 +172,9 @@ class Branch:
         return total
 
     def _panel(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """(2, …) arc and distance from `start` to `end`, at most a panel apart or both far out."""
+        """Return (2, …) arc length and distance from `start` to `end`, at most a panel apart or
+        both far from the apex.
+        """
         width = end - start
         places = start + width * _NODES.reshape(-1, *([1] * start.ndim))
         arc, cosine = self._rates(limit, places)
@@ -181,7 +189,7 @@ class Branch:
         return total
 
     def _rates(self, limit: Floats | float, parameter: Floats) -> tuple[Floats, Floats]:
-        """ds′/dλ and cos ψ on the side λ ≥ 0 whose cosine tends to `limit`."""
+        """Return ds′/dλ and cos ψ on the side λ ≥ 0 on which the cosine approaches `limit`."""
         sech = _sech(parameter)
         divisor = 1.0 + limit - limit * (1.0 - limit) * sech
         cosine = ((1.0 - limit) * sech + limit * (1.0 + limit)) / divisor
@@ -191,7 +199,7 @@ class Branch:
 
     @cached_property
     def _cumulative(self) -> dict[float, Floats]:
-        """Arc and distance up to the end of each panel, for each side."""
+        """Return arc length and distance from the apex to the end of each panel, for each side."""
         edges: Floats = np.arange(_PANELS + 1) * np.float64(_PANEL)
         tables = {}
         for limit in (self.limit, -self.limit):
@@ -201,14 +209,14 @@ class Branch:
 
 
 def log_cosh(parameter: ArrayLike) -> Floats:
-    """Logarithm of cosh λ without overflow or loss of digits."""
+    """Return the logarithm of cosh λ without overflow or loss of digits."""
     size = np.abs(np.asarray(parameter, dtype=np.float64))
     near = np.log1p(2.0 * np.sinh(np.minimum(size, 1.0) / 2.0) ** 2)
     return np.where(size < 1.0, near, size + np.log1p(np.exp(-2.0 * size)) - np.log(2.0))
 
 
 def inverse_log_cosh(value: ArrayLike) -> Floats:
-    """λ ≥ 0 for a given ln cosh λ ≥ 0."""
+    """Return λ ≥ 0 for a given ln cosh λ ≥ 0."""
     given = np.asarray(value, dtype=np.float64)
     excess = np.expm1(np.minimum(given, 1.0))
     near = np.log1p(excess + np.sqrt(excess * (excess + 2.0)))
@@ -220,7 +228,7 @@ _STRAIGHT = 1e-12
 
 
 def _leaning(k: ArrayLike) -> Floats:
-    """−cos φ_c: the root of x² K + x = K, free of cancellation."""
+    """Return −cos φ_c, the root of x² K + x = K, without cancellation."""
     twice = 2.0 * np.asarray(k, dtype=np.float64)
     return np.asarray(twice / (1.0 + np.hypot(1.0, twice)))
 
@@ -232,7 +240,7 @@ def _sech(size: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class CurvePoints:
-    """Points of the curve in units of H₀ and wH₀, arrays of one shape.
+    """Points of the curve in units of H₀ and wH₀, as arrays of equal shape.
 
     Parameters
     ----------
@@ -252,7 +260,7 @@ class CurvePoints:
 
 
 def curve(k: float, phi: ArrayLike) -> CurvePoints:
-    """Points of the curve for K at given angles (vectorised), to 1e-12 of the arc.
+    """Return points of the curve for K at given angles (vectorised), to 1e-12 of the arc length.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Search a branch of the curve for all cables that match the given quantities.
+"""Search on a branch of the curve for all cables that match the given quantities.
 
 A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. With λ_B > |λ_A| its upper end is B;
 λ_A < 0 if it dips below its lower end. The ratio of two given sizes (tensions over w, height,
@@ -29,7 +29,9 @@ Piece = tuple[float, float]
 Path = Callable[[Floats], tuple[Floats, Floats]]
 
 _FINEST = 1e-10
-"""Smallest share of the range in a grid; shorter pieces are straight to rounding."""
+"""Smallest step of a grid, as a fraction of its range; shorter parts of the curve are straight
+within rounding.
+"""
 
 _POINTS = 240
 _NOISE = 1e-13
@@ -39,7 +41,7 @@ _WINDOW = 2 * _AROUND + 1
 
 @dataclass(frozen=True)
 class ChartSearch:
-    """Search a branch for given sizes.
+    """Search on a branch for cables with given sizes.
 
     Parameters
     ----------
@@ -52,7 +54,7 @@ class ChartSearch:
     sizes: Mapping[str, float]
 
     def pieces(self, start: float | None, end: float | None) -> list[Piece]:
-        """Find all pieces with the given ends, if any, and the given sizes.
+        """Find all parts of the branch with the given end angles, if any, and the given sizes.
 
         Without a given end, two of the sizes must determine the ratio of the tensions.
         """
@@ -91,11 +93,13 @@ class ChartSearch:
         return None
 
     def _raised(self, start: ArrayLike, ratio: float) -> Floats:
-        """λ_B at which the tension is exp(ratio) times the tension at `start`."""
+        """Return λ_B, at which the tension is exp(ratio) times the tension at `start`."""
         return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
 
     def _residual(self, path: Path, places: Floats) -> Floats:
-        """Residual between −1 and 1 that vanishes if the ratio of two given sizes is right."""
+        """Return a residual between −1 and 1 that vanishes if two given sizes have the required
+        ratio.
+        """
         start, end = path(places)
         # with more than two sizes, the path has used the tensions; one of them and the other size
         # remain
@@ -115,7 +119,7 @@ _ORDER = (*_TENSION_NAMES, "distance", "length")
 
 
 def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
-    """Find all zeros of a vectorised function that a grid can resolve.
+    """Find all zeros of a vectorised function that a grid resolves.
 
     Changes of sign are refined to rounding. Minima close to zero without a change of sign are
     resolved more and more finely, in case two zeros lie between two grid points.
@@ -138,15 +142,17 @@ def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
 
 
 def graded(length: float, points: int = _POINTS) -> Floats:
-    """Distances from an edge up to `length`: first with a constant ratio, then also evenly
-    spaced.
+    """Return distances from an edge up to `length`: with a constant ratio near the edge, evenly
+    spaced farther away.
     """
     near = np.geomspace(_FINEST * length, length, points)
     return merged(near, np.linspace(0.0, min(length, 40.0), 2 * points)[1:])
 
 
 def merged(*grids: Floats) -> Floats:
-    """Merge grids, without points that nearly coincide, since a scan needs distinct neighbours."""
+    """Merge grids; points that nearly coincide are removed, since a scan needs distinct
+    neighbours.
+    """
     points = np.unique(np.concatenate(grids))
     gaps = np.diff(points)
     kept = np.ones(points.size, dtype=bool)
@@ -155,12 +161,16 @@ def merged(*grids: Floats) -> Floats:
 
 
 def reach(branch: Branch) -> float:
-    """λ beyond which, to rounding, only tension and arc still change, and in proportion."""
+    """Return the λ beyond which, within rounding, only tension and arc length change, in proportion
+    to each other.
+    """
     return 40.0 / branch.exponent + 20.0
 
 
 def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floats:
-    """One size of pieces, in units of H₀: a tension (over wH₀), height, distance or length."""
+    """Return one size of parts of the curve, in units of H₀: a tension (over wH₀), height, distance
+    or length.
+    """
     if name == "tension_a":
         return np.exp(branch.log_tension(start))
     if name == "tension_b":
@@ -173,7 +183,7 @@ def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floa
 
 
 def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) -> Floats:
-    """Zeros of a vectorised function between points of opposite sign, to rounding."""
+    """Refine zeros of a vectorised function between points of opposite sign, to rounding."""
     from scipy.optimize.elementwise import find_root
 
     found = np.asarray(find_root(function, (left, right)).x) if left.size else left
@@ -181,14 +191,16 @@ def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) ->
 
 
 def steps_with_zero(value: Floats) -> NDArray[np.intp]:
-    """Steps of a scan, by the index of their first point, in which the sign changes."""
+    """Return the steps of a scan in which the sign changes, by the index of their first point."""
     change = (np.sign(value[:-1]) != np.sign(value[1:])) & (value[:-1] != 0.0)
     change &= np.maximum(np.abs(value[:-1]), np.abs(value[1:])) > _NOISE
     return np.flatnonzero(change)
 
 
 def dips(value: Floats) -> NDArray[np.intp]:
-    """Points of a scan at which the value comes so close to zero that it may touch zero."""
+    """Return the points of a scan at which the value is so close to zero that the function may
+    touch zero.
+    """
     size = np.abs(value)
     before, here, after = size[:-2], size[1:-1], size[2:]
     dip = (here <= before) & (here < after) & (here > _NOISE)
@@ -207,7 +219,7 @@ _LEAST_RISE = 1.0 + 1e-13
 
 @dataclass(frozen=True)
 class LengthSearch:
-    """Search a branch for a mean cosine D/L, and a third size as a share of the length.
+    """Search on a branch for a mean cosine D/L, and a third size as a fraction of the length.
 
     Parameters
     ----------
@@ -223,7 +235,7 @@ class LengthSearch:
     share: float
 
     def pieces(self) -> list[Piece]:
-        """Find all pieces that match."""
+        """Find all parts of the branch that match."""
         if not -1.0 < self.cosine < 1.0:
             return []
         outward = graded(reach(self.branch), _POINTS_OF_ENDS)
@@ -243,7 +255,7 @@ class LengthSearch:
         return [piece for piece in found if piece is not None]
 
     def _polished(self, start: float, end: float) -> Piece | None:
-        """Root that Powell's method reaches from a starting point, or None."""
+        """Find the root that Powell's method reaches from a starting point, or None."""
         from scipy.optimize import root
 
         least, farthest = abs(start) * _LEAST_RISE, 3.0 * reach(self.branch)
@@ -256,7 +268,9 @@ class LengthSearch:
             return first, abs(first) * _LEAST_RISE + float(above)
 
         def miss(at: Floats) -> Floats:
-            """Mean cosine and logarithm of the third share, minus their required values."""
+            """Return the mean cosine and the logarithm of the third fraction, minus their required
+            values.
+            """
             place = piece(at)
             arc, distance = self.branch.span(*place)
             third = size_of(self.branch, self.third, *place)

@@ -35,14 +35,16 @@ Law = Literal["constant", "square"]
 
 
 def cosine_of_critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """Cosine of the critical angle, √(1 + p²/4) − p/2, without cancellation, for p ≥ 0 [-]."""
+    """Return the cosine of the critical angle, √(1 + p²/4) − p/2, without cancellation, for p ≥ 0
+    [-].
+    """
     half = 0.5 * np.asarray(weight_ratio, float)
     return 1.0 / (half + np.sqrt(1.0 + half * half))
 
 
 @dataclass(frozen=True)
 class Hodograph:
-    """One branch of the shapes of a heavy line.
+    """One branch of the possible shapes of a heavy line.
 
     Parameters
     ----------
@@ -89,7 +91,9 @@ class Hodograph:
         return float(np.arctan2(self._sine, self._u))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """Parameter m of an angle [rad] of this branch, inf at φc, and nan on the other branch."""
+        """Return the parameter m of an angle [rad] on this branch: inf at φc, nan on the other
+        branch.
+        """
         half = 0.5 * np.asarray(angle, float)
         a, sine, cosine = self._a, np.sin(half), np.cos(half)
         # e^(2m) = (1 + tanh m)/(1 − tanh m), where 1 − tanh m is a sine of φ − φc
@@ -100,31 +104,31 @@ class Hodograph:
         return np.where(away < 0.0, nan, np.where(away == 0.0, inf, m))
 
     def _half_angle(self, m: Floats) -> tuple[Floats, Floats]:
-        """Numbers in the ratio sin(φ/2) : cos(φ/2)."""
+        """Return two numbers in the ratio sin(φ/2) : cos(φ/2)."""
         tanh = np.tanh(m)
         one = np.ones_like(tanh)
         return (self._a * one, tanh) if self.steep else (self._a * tanh, one)
 
     def direction(self, m: ArrayLike) -> tuple[Floats, Floats]:
-        """Cosine and sine of φ."""
+        """Return cosine and sine of φ."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         square = sine * sine + cosine * cosine
         return (cosine - sine) * (cosine + sine) / square, 2.0 * sine * cosine / square
 
     def angle(self, m: ArrayLike) -> Floats:
-        """Angle φ [rad]."""
+        """Return the angle φ [rad]."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         return 2.0 * np.arctan2(sine, cosine)
 
     @cached_property
     def _upright(self) -> float:
-        """Parameter m at φ = 90°, where the friction has a kink; 0 on the branch without this
+        """Parameter m at φ = 90°, where the friction has a kink; 0 for the branch without this
         angle.
         """
         return float(np.arctanh(self._a)) if self.steep else 0.0
 
     def log_tension(self, m: ArrayLike) -> Floats:
-        """Logarithm of the tension, up to a constant."""
+        """Return the logarithm of the tension, up to a constant."""
         m = np.asarray(m, float)
         decay, a4 = np.exp(-2.0 * m), self._a**4
         less, more = -np.expm1(-2.0 * m), 1.0 + decay
@@ -142,7 +146,7 @@ class Hodograph:
         return weight + self.friction * np.abs(here - upright)
 
     def _rubbing(self, m: Floats) -> Floats:
-        """Increasing function ∫ F/(f R D) dφ down from φ, up to a constant."""
+        """Return the increasing function ∫ F/(f R D) dφ, integrated from φ and up to a constant."""
         u, a = self._u, self._a
         sine, cosine = self._half_angle(m)
         straight = 2.0 * m / self._sine
@@ -154,18 +158,18 @@ class Hodograph:
         return (u**3 * straight - bend / u) / (1.0 + u * u) + angle
 
     def slope(self, m: ArrayLike) -> Floats:
-        """R/T ds/dm; positive, so that the arc increases with m."""
+        """Return (R/T) ds/dm, which is positive, so that the arc length increases with m."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         u, s2, c2 = self._u, sine * sine, cosine * cosine
         # 1 + u cos φ, without cancellation where both are near 1
         return 2.0 * u * (s2 + c2) / (self._sine * (1.0 + u) * (c2 + self._a**2 * s2))
 
     def arc(self, start: float, step: float) -> float:
-        """σ = ∫ R ds/T₀ over a step of m, with T₀ the tension at `start`."""
+        """Return σ = ∫ R ds/T₀ over a step of m, with T₀ the tension at `start`."""
         return self._integral(start, step, None, 0.0)
 
     def reach(self, start: float, step: float) -> tuple[float, float]:
-        """ξ and η: distance upstream and height over a step of m, in units of T₀/R."""
+        """Return ξ and η: distance upstream and height over a step of m, in units of T₀/R."""
         # either may vanish although the arc does not
         floor = 1e-13 * abs(self.arc(start, step))
         xi, eta = (self._integral(start, step, share, floor) for share in (0, 1))
@@ -182,8 +186,8 @@ class Hodograph:
         return integrated(part, self._panels(start, step), floor)
 
     def _panels(self, start: float, step: float) -> list[float]:
-        """Divide a step at the kink of the friction, and on both sides of the kink by factors of 4
-        in m.
+        """Divide a step of m at the kink of the friction, and by factors of 4 in m on both sides of
+        the kink.
 
         The line turns within the first few parts; quadrature over the whole of a long step would
         miss this.
@@ -197,8 +201,8 @@ class Hodograph:
         return [0.0, *(cuts if step > 0.0 else reversed(cuts)), step]
 
     def advance(self, start: float, arc: float) -> float:
-        """Step of m for a given arc in units of T₀/R, or −`start` if the line becomes horizontal
-        first.
+        """Return the step of m for a given arc length in units of T₀/R, or −`start` if the line
+        becomes horizontal before.
 
         The start is a finite m. The arc counts up the line and is negative downwards.
         """
@@ -249,7 +253,7 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 
 
 class Station(NamedTuple):
-    """A point of a line in a stream, relative to the given end.
+    """A point on a line in a stream, relative to the given end.
 
     Attributes
     ----------

@@ -1,5 +1,4 @@
-"""A line in a uniform horizontal stream, with drag quadratic in the normal velocity: R sin²φ per
-metre.
+"""Shape of a line in a uniform horizontal stream, with a quadratic normal drag R sin²φ per metre.
 
 R is the drag per metre of a line normal to the stream, ½ρ Cn D V². The same frame serves towed
 cables and moorings (see `Station`). With s up the line, the equations are
@@ -36,7 +35,7 @@ from calm.analytic.hodograph import Floats, Hodograph, Law, Station, cosine_of_c
 def neutral_line(
     arc: ArrayLike, tension: ArrayLike, angle: ArrayLike, normal_drag: ArrayLike
 ) -> Station:
-    """Shape of a line without weight: cot φ = cot φ₀ + R s/T, T constant.
+    """Return the shape of a line without weight: cot φ = cot φ₀ + R s/T, T constant.
 
     x = (T/R) (√(1 + c²) − √(1 + c₀²)), z = (T/R) (asinh c − asinh c₀), c = cot φ.
 
@@ -66,7 +65,7 @@ def neutral_line(
 
 
 def critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """Angle φc at which a line is straight: cos φc = √(1 + p²/4) − p/2 [rad].
+    """Return the angle φc at which a line is straight: cos φc = √(1 + p²/4) − p/2 [rad].
 
     Parameters
     ----------
@@ -85,7 +84,7 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
 
 
 def critical_weight_ratio(angle: ArrayLike) -> Floats:
-    """Inverse of `critical_angle`: p = w/R = sin φc tan φc [-].
+    """Return p = w/R = sin φc tan φc, the inverse of `critical_angle` [-].
 
     Parameters
     ----------
@@ -106,7 +105,7 @@ def critical_weight_ratio(angle: ArrayLike) -> Floats:
 def tension_ratio(
     angle: ArrayLike, start: float, weight_ratio: float, friction: float = 0.0, law: Law = "square"
 ) -> Floats:
-    """Ratio of the tensions of a heavy line at two angles, in closed form.
+    """Return the ratio of a heavy line's tensions at two angles, in closed form.
 
     Without friction and from 90° it is [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)), u = cos
     φc.
@@ -144,8 +143,8 @@ def heavy_line(
     tangential_drag: float = 0.0,
     law: Law = "square",
 ) -> Station:
-    """Shape of a heavy line. The tension is in closed form; arc, distance and height need
-    quadrature.
+    """Return the shape of a heavy line. The tension is in closed form; arc length, distance and
+    height need quadrature.
 
     Parameters
     ----------
@@ -209,8 +208,8 @@ def heavy_line(
 
 
 def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> Hodograph:
-    """Branch of shapes that an angle belongs to [rad]; the critical angle belongs to the steep
-    branch.
+    """Return the branch of shapes that contains an angle [rad]; the critical angle belongs to the
+    steep branch.
     """
     _checked(start)
     if law not in ("constant", "square"):
@@ -227,7 +226,7 @@ def _checked(angle: ArrayLike) -> Floats:
 
 
 class CableFunctions(NamedTuple):
-    """Pode's functions, each of the shape of the angles.
+    """Values of Pode's functions, as arrays of the shape of the angles.
 
     Attributes
     ----------
@@ -244,7 +243,7 @@ class CableFunctions(NamedTuple):
 
 
 def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0) -> CableFunctions:
-    """Tension, arc, distance and height between 90° and an angle.
+    """Compute tension, arc length, distance and height between 90° and an angle.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Villain-Guillot's towed cable: drag linear or quadratic in each component of the velocity.
+"""Towed cable by Villain-Guillot: drag linear or quadratic in each velocity component.
 
 A cable of weight μg per metre in the fluid (water or air) is towed at a speed V; α is the angle of
 its upward direction above the direction of tow, and s is counted from its lower end. The drag per
@@ -29,7 +29,7 @@ from calm.analytic.uniform import critical_angle, heavy_line
 
 
 def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floats, Floats]:
-    """Tension [N] and angle [rad] of the cable at a towed body.
+    """Return tension [N] and angle [rad] of the cable at a towed body.
 
     T₀ = √((W − F_P)² + F_T²), tan α₀ = (W − F_P)/F_T; arrays broadcast.
 
@@ -51,7 +51,8 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
 
 
 def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[1, 2]) -> Floats:
-    """Angle α_d at which a cable is towed straight [rad], with tan α_d = μg/(k_n V) for D = 1.
+    """Return the angle α_d at which a cable is towed straight [rad], with tan α_d = μg/(k_n V) for
+    D = 1.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[
 def linear_cable(
     arc: ArrayLike, tension: ArrayLike, angle: ArrayLike, weight: ArrayLike, drag: ArrayLike
 ) -> Station:
-    """Shape of a towed cable for D = 1 and k_t = k_n = k (arrays broadcast).
+    """Return the shape of a towed cable for D = 1 and k_t = k_n = k (arrays broadcast).
 
     With ℓ = T₀/√((μg)² + (kV)²) and a = α₀ − α_d: tan(α − α_d) = sin a/(s/ℓ + cos a),
     T = T₀ √((s/ℓ)² + 2 (s/ℓ) cos a + 1).
@@ -118,7 +119,8 @@ def quadratic_cable(
     normal_drag: float,
     tangential_drag: float,
 ) -> Station:
-    """Shape of a towed cable for D = 2, with elementary tension and quadrature for the coordinates.
+    """Return the shape of a towed cable for D = 2, with elementary tension and quadrature for the
+    coordinates.
 
     Parameters
     ----------
@@ -145,7 +147,7 @@ def quadratic_cable(
 def straight_cable(
     arc: Floats, tension: float, angle: float, weight: float, rubbing: float
 ) -> Station:
-    """A cable that is straight at α_d, for instance from a free end.
+    """Return a cable that is straight at α_d, for instance one with a free end.
 
     Parameters
     ----------
@@ -161,7 +163,7 @@ def straight_cable(
 
 
 def check_arc(arc: Floats, tension: Floats) -> None:
-    """Raise ValueError if an arc or a tension is negative or infinite."""
+    """Raise ValueError if an arc length or a tension is negative or infinite."""
     if not all(np.all((value >= 0.0) & (value < np.inf)) for value in (arc, tension)):
         raise ValueError("the arc and the tension of a towed cable must not be negative")
 
@@ -173,7 +175,8 @@ def linear_tension_ratio(
     normal_drag: ArrayLike,
     tangential_drag: ArrayLike,
 ) -> Floats:
-    """Tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1 (arrays broadcast).
+    """Return the tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1 (arrays
+    broadcast).
 
     Parameters
     ----------
@@ -199,7 +202,7 @@ def linear_tension_ratio(
 def _powers(
     weight: ArrayLike, normal_drag: ArrayLike, tangential_drag: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Exponents A and B of `linear_tension_ratio`."""
+    """Return the exponents A and B of `linear_tension_ratio`."""
     w, n, t = (np.asarray(value, float) for value in (weight, normal_drag, tangential_drag))
     if not np.all(t >= 0.0):
         raise ValueError("the tangential drag must not be negative")
@@ -215,8 +218,8 @@ def unequal_cable(
     normal_drag: float,
     tangential_drag: float,
 ) -> Station:
-    """Shape of a towed cable for D = 1 and k_t ≠ k_n, with elementary tension and quadrature for
-    the coordinates.
+    """Return the shape of a towed cable for D = 1 and k_t ≠ k_n, with elementary tension and
+    quadrature for the coordinates.
 
     Parameters (with V in place of V²) and errors are those of `quadratic_cable`; the angle must be
     within π of α_d.

@@ -24,17 +24,15 @@ from calm.physics.strumming import BourgetMarichal
 from calm.records.profile_tables import components
 
 TOWED_SPHERE_CX = 0.90
-"""Cx of a sphere at the free end of a tow, which oscillates; a fixed sphere has 0.45 (Bourget &
-Marichal).
+"""Drag coefficient Cx of a sphere at the free end of a tow, which oscillates; a fixed sphere has
+0.45 (Bourget & Marichal).
 """
 
 DEEPEST = 11_000.0
-"""Default water depth of a tow [m], more than the deepest trench."""
+"""Default water depth of a tow [m], larger than that of the deepest trench."""
 
 LINEAR_WITHIN = 1e-5
-"""Allowed relative deviation of the density of sea water from linear interpolation between
-levels.
-"""
+"""Allowed relative error of linear interpolation of the sea water density between levels."""
 
 AIR_VISCOSITY = 1.46e-5
 """Kinematic viscosity of air [m²/s], in the standard atmosphere at sea level."""
@@ -65,7 +63,7 @@ def assemble_line(
 
 
 _ASSEMBLED: deque[tuple[object, Line]] = deque(maxlen=32)
-"""The latest lines, with what they were built from."""
+"""Cache of the latest lines, with the inputs from which they were built."""
 
 
 def _assembled(pieces: Sequence[files.Piece], solver: Solver, gravity: float) -> Line:
@@ -111,7 +109,7 @@ def _assembled(pieces: Sequence[files.Piece], solver: Solver, gravity: float) ->
 
 
 def _drag_curve(component: files.Component, solver: Solver) -> DragCurve | None:
-    """Drag curve of a smooth sphere or cylinder; None if the component has its own drag
+    """Return the drag curve of a smooth sphere or cylinder; None if the component specifies a drag
     coefficient.
     """
     if solver.drag == "constant":
@@ -136,7 +134,9 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a line whose clamps have their drag in axial flow, as in a fall or a rise."""
+    """Return a copy of a line whose clamps have their drag in axial flow, as during descent or
+    ascent.
+    """
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -147,7 +147,7 @@ def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
 
 
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
-    """Law by which strumming increases the Cn of cables; None if the file has none."""
+    """Return the law by which strumming increases the Cn of cables; None if the file sets none."""
     keys = solver.strumming
     if not isinstance(keys, strumming_keys.BourgetMarichalKeys):
         return None
@@ -190,7 +190,9 @@ def assemble_floating(
 
 
 def _volume(component: RigidComponent) -> float | None:
-    """Volume of the whole hull [m³]: the component's own, or the last row of its table."""
+    """Return the volume of the whole hull [m³]: that of the component, or the last row of its
+    table.
+    """
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
         return component.hull.displacement[-1][1]
     return component.displaced_volume
@@ -215,8 +217,8 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Build the water: current and density on the union of their levels, viscosity on its own
-    levels, all linear in between.
+    """Build the water. Current and density have the levels of both profiles, viscosity has its own
+    levels; all are linear between levels.
     """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
@@ -245,7 +247,7 @@ def assemble_water(environment: Environment) -> Water:
 
 
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
-    """Depths [m] and kinematic viscosities [m²/s], at the levels of the density.
+    """Return depths [m] and kinematic viscosities [m²/s], at the levels of the density.
 
     Without temperature and salinity, the viscosity is that of sea water of 10 °C and salinity 35.
     """
@@ -269,7 +271,9 @@ def _gravity(environment: Environment) -> float:
 
 
 def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
-    """Surface drift that the wind adds to the current; an empty list if there is none."""
+    """Return the wind-driven surface drift that is added to the current; an empty list if there is
+    none.
+    """
     wind = environment.wind
     if wind is None or wind.surface_drift == 0.0:
         return []
@@ -279,7 +283,7 @@ def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
 
 
 def _density(environment: Environment) -> tuple[Floats, Floats]:
-    """Levels [m] and densities at these levels [kg/m³]."""
+    """Return levels [m] and densities at these levels [kg/m³]."""
     given = environment.density
     if isinstance(given, DepthTable):
         return np.array(given.depth), np.array(given.value)
@@ -299,7 +303,7 @@ def _density(environment: Environment) -> tuple[Floats, Floats]:
 
 
 def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
-    """Temperature [°C] and practical salinity at depths of any shape [m]."""
+    """Return temperature [°C] and practical salinity at depths of any shape [m]."""
     temperature, salinity = sea.temperature, sea.salinity
     return (
         np.interp(depth, temperature.depth, temperature.value),
@@ -308,8 +312,8 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Bisect levels until `values` is linear in between; kinks are allowed only at the given
-    levels.
+    """Bisect levels until `values` is linear between them; the given levels remain, where `values`
+    may have kinks.
     """
     while True:
         thickness = np.diff(levels)[:, np.newaxis]

@@ -21,27 +21,33 @@ from calm.units import QuantityError, parse_quantity
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 _OTHER_FIELD_RANK = 4
-"""Rank of a component whose id does not contain all words."""
+"""Rank of a component whose id does not contain all words of the search."""
 _SEPARATORS = re.compile(r"[\s_-]+")
 _SIZE = re.compile(
     r"(?<![\w.,/])((?:\d+[ -])?\d+/\d+|\d+(?:[.,]\d+)?)[ -]?"
     r"(mm|cm|inch(?:es)?|in|\"|″|(?<=/\d)|(?<=/\d\d))(?!\w)"
 )
-"""A number with its unit; a fraction without a unit is in inches."""
+"""Pattern of a number with its unit; a fraction without a unit is in inches."""
 _OF_A_SIZE = 0.02
-"""Relative difference up to which sizes count as equal, such as rounded millimetres and inches."""
+"""Relative difference up to which sizes are treated as equal, such as rounded millimetres and
+inches.
+"""
 _USE_KEY = re.compile(r"\buse: *([\w-]+)")
 _MIN_SIMILARITY = 0.8
-"""Similarity above which a word counts as misspelt: `releese` and `release` have 0.86."""
+"""Similarity above which an unknown word is treated as misspelt: `releese` and `release`
+have 0.86.
+"""
 _MIN_SIMILARITY_SHORT = 0.75
-"""Similarity above which a word of `_SHORT` letters counts as misspelt: `wyre` and `wire`."""
+"""Similarity above which a word of `_SHORT_WORD` letters is treated as misspelt: `wyre` and
+`wire`.
+"""
 _SHORT_WORD = 4
-"""Number of letters below which an unknown word does not count as misspelt."""
+"""Number of letters below which an unknown word is never treated as misspelt."""
 
 
 @dataclass(frozen=True)
 class Listed:
-    """A component as shown in the list."""
+    """A component as an entry of the list."""
 
     id: str
     name: str
@@ -63,14 +69,14 @@ class Listed:
 
     @cached_property
     def searched(self) -> str:
-        """Complete searchable text, with synonyms and the source."""
+        """Complete searchable text of the entry, with synonyms and the source."""
         plain = self.own_words.replace("-", " ")
         synonyms = (words for pattern, words in _FOUND if pattern.search(plain))
         return " ".join([plain, *synonyms, self.own_words, self.source])
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
-        """Diameter, and sizes found in the name [m]."""
+        """Diameter of the component, and sizes found in its name [m]."""
         named = tuple(
             _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
         )
@@ -107,7 +113,7 @@ class Index:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Values of a component by the keys of their columns."""
+        """Return the values of a component by the keys of their columns."""
         if id not in self._figures:
             self._figures[id] = figures_of(self.catalogue, id)
         return self._figures[id]
@@ -145,7 +151,7 @@ class Index:
     def nearly(
         self, text: str, kinds: Iterable[str] | None = None, *, first: Sequence[str] = ()
     ) -> tuple[list[Listed], list[str]]:
-        """Find the components that contain most words of a text, and meet all its limits.
+        """Find the components that contain most words of a text, and meet all limits in the text.
 
         Returns
         -------
@@ -173,7 +179,9 @@ class Index:
     def _ranked(
         self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
     ) -> list[Listed]:
-        """Sort by `_rank` in the terms that a component matches, with the ids of `first` first."""
+        """Sort components by `_rank` for the terms that they match; components whose ids are in
+        `first` come first.
+        """
         places = {id: number for number, id in enumerate(first)}
 
         def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
@@ -188,7 +196,7 @@ class Index:
         return sorted(hits, key=order)
 
     def spelt(self, text: str) -> str:
-        """Replace each word that no component contains by the most similar word that one
+        """Replace each word that no component contains by the most similar word that a component
         contains.
         """
         every = " ".join(each.searched for each in self._listed.values())
@@ -208,14 +216,14 @@ class Index:
 
 @dataclass(frozen=True)
 class Term:
-    """A word of a search, or a size of one or several words with its value [m]."""
+    """A word of a search, or a size in one or several words with its value [m]."""
 
     text: str
     words: tuple[str, ...]
     size: float | None = None
 
     def matches(self, each: Listed) -> bool:
-        """Whether a component has the size, or contains the words."""
+        """Return whether a component has the size, or contains the words."""
         size = self.size
         if size is not None and any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes):
             return True
@@ -223,7 +231,7 @@ class Term:
 
 
 def _terms(plain: str) -> list[Term]:
-    """Split a text without limits into its words and sizes."""
+    """Split a text without limits into words and sizes."""
     words = [Term(word, (word,)) for word in _words(_SIZE.sub(" ", plain))]
     sizes = [
         Term(found[0], tuple(_words(found[0])), _metres(*found.groups()))
@@ -233,7 +241,7 @@ def _terms(plain: str) -> list[Term]:
 
 
 def _parsed(text: str) -> tuple[str, list[Wanted]]:
-    """Split a text into its plain words, in lower case, and its limits."""
+    """Split a text into plain words, in lower case, and limits."""
     parsed = [(word.casefold(), wanted(word)) for word in text.split()]
     limits = [limit for _, limit in parsed if limit is not None]
     return " ".join(word for word, limit in parsed if limit is None), limits
@@ -244,21 +252,21 @@ def _words(text: str) -> list[str]:
 
 
 def _metres(number: str, unit: str) -> float:
-    """Convert a size to metres: `1 1/4` or `1-1/4` inches are one and a quarter."""
+    """Convert a size to metres: `1 1/4` and `1-1/4` inches are 1.25 inches."""
     value = sum(float(Fraction(each.replace(",", "."))) for each in _words(number))
     return value * {"mm": 1e-3, "cm": 1e-2}.get(unit, 0.0254)
 
 
 @cache
 def _uses() -> Counter[str]:
-    """Number of uses of each component in the shipped lines."""
+    """Count the uses of each component in the lines shipped with CALM."""
     files = sorted(shipped_folder("lines").glob("*.yaml"))
     return Counter(id for file in files for id in _USE_KEY.findall(file.read_text("utf-8")))
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
-    """Rank of a match: exact id, start or end of the id, all words in the id, all words in the
-    entry's own text, or in its synonyms.
+    """Return the rank of a match: exact id, start or end of the id, all words in the id, all words
+    in the entry's own text, or all words with synonyms included.
 
     Among ids with all words, an id that begins with the first word ranks higher. `others` are the
     words without sizes.
@@ -334,7 +342,7 @@ _FOUND = tuple(
 
 @dataclass(frozen=True)
 class CatalogueColumn:
-    """A value of components: its key, heading, dimension, and displayed unit."""
+    """A column of component values: key, heading, dimension, and displayed unit."""
 
     key: str
     heading: str
@@ -344,7 +352,7 @@ class CatalogueColumn:
     decimals: int = 0
 
     def shown(self, value: float | None) -> str:
-        """Formatted value; empty if unknown."""
+        """Return the formatted value; empty if unknown."""
         return "" if value is None else f"{value * self.scale:.{self.decimals}f}"
 
 
@@ -356,8 +364,8 @@ COLUMNS = (
     CatalogueColumn("drag", "drag N", "force", "N", 1.0, 1),
     CatalogueColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
 )
-"""Net buoyancy in water, positive up; loads; depth rating; normal drag at 1 m/s; mass in air. All
-except loads and depth are per metre for a cable or chain.
+"""Columns of the component list: net buoyancy in water, positive up; loads; depth rating; normal
+drag at 1 m/s; mass in air. For a cable or chain all values are per metre, except loads and depth.
 """
 
 
@@ -378,7 +386,7 @@ Figures = dict[str, float | None]
 
 
 def figures_of(catalogue: Catalogue, id: str) -> Figures:
-    """Values of a component or assembly by the keys of `COLUMNS`, in SI units."""
+    """Return the values of a component or assembly by the keys of `COLUMNS`, in SI units."""
     from calm.assemble.component_forces import datasheet
 
     try:
@@ -398,14 +406,14 @@ def figures_of(catalogue: Catalogue, id: str) -> Figures:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A limit on a value, such as ``breaking>50kN``."""
+    """A limit on a value in a search, such as ``breaking>50kN``."""
 
     key: str
     relation: str
     limit: float
 
     def holds(self, figures: Figures) -> bool:
-        """Whether the limit is met; false if the value is unknown."""
+        """Return whether a value meets the limit; false if the value is unknown."""
         value = figures.get(self.key)
         return value is not None and bool(_RELATIONS[self.relation](value, self.limit))
 

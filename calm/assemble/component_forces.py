@@ -1,4 +1,4 @@
-"""Forces of components: net buoyancy, mass and drag, and their sums for assemblies."""
+"""Forces on components: net buoyancy, mass and drag, and their sums for assemblies."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -18,15 +18,16 @@ from calm.units import QuantityError, parse_quantity
 
 
 def net_buoyancy(component: files.Component, gravity: float) -> float:
-    """Net buoyancy in reference water, positive up [N, N/m], as specified or from masses and
-    gravity [m/s²].
+    """Return the net buoyancy in reference water, positive up [N, N/m], as specified or from masses
+    and gravity [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
 def mass_in_air(component: files.Component) -> float | None:
-    """Mass, per metre for a cable or chain, as specified or from the weight in water [kg, kg/m].
+    """Return the mass, per metre for a cable or chain, as specified or from the weight in water
+    [kg, kg/m].
 
     The weight in water is converted with the displaced volume, or with the density of the material;
     steel is the default for a chain or an anchor. None if neither is known.
@@ -48,7 +49,8 @@ def mass_in_air(component: files.Component) -> float | None:
 
 
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Kn, Kt [N/(m/s)², per metre for cable or chain], and whether the drag depends on the axis.
+    """Return the drags Kn, Kt [N/(m/s)², per metre for cable or chain], and whether the drag
+    depends on the axis.
 
     Parameters
     ----------
@@ -97,7 +99,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 
 
 def axial_drag_of(component: files.Component) -> float:
-    """K of a clamped component in flow along the line [N/(m/s)²].
+    """Return the drag K of a clamped component in flow along the line [N/(m/s)²].
 
     This is its tangential drag, or its drag in any direction if it does not depend on the axis.
     """
@@ -106,7 +108,7 @@ def axial_drag_of(component: files.Component) -> float:
 
 
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
-    """Kn and Kt per metre of cable or chain [N/(m/s)²].
+    """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes strumming; with Bourget & Marichal's law it is the value at rest, which
     the march increases. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or chain has no Ct,
@@ -145,7 +147,7 @@ def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
 
 
 def _mass(cable: Cable) -> float:
-    """Mass per metre [kg/m], if necessary from the weight in water and the diameter."""
+    """Return the mass per metre [kg/m], if necessary from the weight in water and the diameter."""
     if cable.mass is not None:
         return cable.mass
     displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
@@ -157,7 +159,8 @@ _PART_KEYS = {"use", "label", "length", "count", "clamps", "at"}
 
 @dataclass(frozen=True)
 class Datasheet:
-    """Derived values in sea water of `CATALOGUE_DENSITY`, per metre for a cable or chain.
+    """Derived values of a component in sea water of density `CATALOGUE_DENSITY`, per metre for a
+    cable or chain.
 
     Attributes
     ----------
@@ -174,7 +177,7 @@ class Datasheet:
 
 
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
-    """Return the derived values of a definition, or their sums over the parts of an assembly.
+    """Return the derived values of a definition, or for an assembly their sums over its parts.
 
     None for an outline, and for an assembly whose parts override values of a component or are
     missing in the catalogue (`catalogue` None: no catalogue at all).
@@ -214,7 +217,7 @@ def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Com
 
 
 def _of_component(component: files.Component, metres: float) -> Datasheet:
-    """Return the values of a length of cable or chain, or of a rigid piece."""
+    """Return the values for a length of cable or chain, or for a rigid piece."""
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component)

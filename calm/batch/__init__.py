@@ -1,1 +1,1 @@
-"""Many cases of one mooring: every profile of a record."""
+"""Solutions of one mooring for many current profiles: every profile of a record."""

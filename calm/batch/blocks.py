@@ -1,4 +1,4 @@
-"""Solve blocks of times in threads, and write the blocks in order."""
+"""Solution of blocks of times in threads, and output of the blocks in order."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from calm.dataset.netcdf import Chunks, ResultLayout, packed, write_netcdf
 from calm.records.record import Levels
 
 IN_PROGRESS = 2
-"""Blocks in progress for each worker. This bounds the memory of a batch."""
+"""Largest number of blocks in progress per worker, which bounds the memory of a batch."""
 
 Task = TypeVar("Task")
 Done = TypeVar("Done", covariant=True)
@@ -27,7 +27,7 @@ Done = TypeVar("Done", covariant=True)
 
 @dataclass(frozen=True)
 class Progress:
-    """Count the profiles that a batch has solved.
+    """Numbers of profiles that a batch has solved so far.
 
     Attributes
     ----------
@@ -41,14 +41,14 @@ class Progress:
 
 
 class SolvedBlock(NamedTuple):
-    """A solved block: its chunks for the file, and the status (n,) of each profile."""
+    """A solved block: its chunks for the result file, and the status (n,) of each profile."""
 
     status: NDArray[np.int8]
     chunks: Chunks
 
 
 class BlockTask(NamedTuple):
-    """Profiles of a block, and the layout of their result.
+    """Profiles of a block, and the layout of the result file.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class BlockTask(NamedTuple):
 
 
 def solve_block(batch: Batch, task: BlockTask) -> SolvedBlock:
-    """Solve the profiles of a block by one thread."""
+    """Solve the profiles of a block in one thread."""
     depth, u, v, w = task.levels
     profiles = batch.solve(u, v, depth, w, workers=1)
     arrays = laid_out(task.layout, task.time, vars(profiles))
@@ -72,7 +72,7 @@ def solve_block(batch: Batch, task: BlockTask) -> SolvedBlock:
 
 
 class Promise(Protocol[Done]):
-    """Stand for work in progress, in a thread or on another machine."""
+    """Work in progress, in a thread or on another machine."""
 
     def result(self) -> Done:
         """Wait for the work, and return its result."""
@@ -82,7 +82,7 @@ class Promise(Protocol[Done]):
 def in_order(
     submit: Callable[[Task], Promise[Done]], tasks: Iterable[Task], ahead: Callable[[], int]
 ) -> Iterator[Done]:
-    """Yield the results of tasks, in the order of the tasks.
+    """Yield the results of tasks in the order of the tasks, whatever the order of completion.
 
     Parameters
     ----------

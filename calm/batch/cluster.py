@@ -1,4 +1,4 @@
-"""Solve the blocks of a batch on the workers of a dask scheduler, on one machine or many."""
+"""Solution of the blocks of a batch on the workers of a dask scheduler, on one machine or many."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from calm.errors import UsageError
 from calm.version import __version__
 
 PATIENCE = "20s"
-"""Timeout for an answer of the scheduler."""
+"""Timeout for an answer of the dask scheduler."""
 
 
 def on_cluster(
@@ -28,7 +28,7 @@ def on_cluster(
     tasks: Iterator[BlockTask],
     tell: Callable[[str], None],
 ) -> Generator[SolvedBlock]:
-    """Solve blocks on the workers of a scheduler, and yield the results in order.
+    """Solve blocks on the workers of a dask scheduler, and yield the results in order.
 
     Workers may join and leave. Another worker solves the blocks of a lost one, and the call waits
     for the first worker.
@@ -78,11 +78,13 @@ def on_cluster(
 
 
 def solve_there(mooring: Design, task: BlockTask) -> SolvedBlock:
-    """Solve a block on a worker."""
+    """Solve a block on a worker of the dask scheduler."""
     return solve_block(_ready(mooring), task)
 
 
 @lru_cache(maxsize=2)
 def _ready(mooring: Design) -> Batch:
-    """Return the batch of a mooring, which every block brings: a batch is slow to make."""
+    """Return the prepared batch of a mooring, which is cached, since every block needs it and
+    preparation is slow.
+    """
     return Batch(mooring)

@@ -1,4 +1,4 @@
-"""The result of a batch before it is solved, and its blocks as arrays."""
+"""Layout of a batch result before the solution, and its blocks as arrays."""
 
 from __future__ import annotations
 
@@ -21,14 +21,18 @@ from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
 _COORDINATES = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
-"""Label and depth variables of each dimension, the coordinates of its variables."""
+"""Names of the label and depth variables that are the coordinates of variables with a given
+dimension.
+"""
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
 def laid_out(
     layout: ResultLayout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """Arrays of a range of times, by name, for the time-dependent variables of a layout."""
+    """Return the arrays of all time-dependent variables of a layout for a range of times,
+    by name.
+    """
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)
     known = {**columns, layout.variables[0].name: since // dict(_TIME_UNITS)[unit]}
@@ -39,7 +43,7 @@ def laid_out(
 
 
 def layout_of(mooring: Design, record: Record) -> ResultLayout:
-    """Create the layout of the result for a mooring and a record."""
+    """Create the layout of the result file for a mooring and a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
     sizes = {"time": record.count, "component": len(pieces)}
@@ -99,8 +103,8 @@ def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
 
 
 def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
-    """Describe the mooring as a station, at the position of the currents if its file has no
-    position.
+    """Describe the mooring as a station; if its file has no position, at the position of the
+    currents.
     """
     name, position = mooring.file.name or "mooring", mooring.file.position
     if position is not None:
@@ -111,7 +115,7 @@ def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
 
 
 def _time_unit(time: NDArray[np.datetime64]) -> str:
-    """Coarsest unit in which all times are whole numbers."""
+    """Find the coarsest unit in which all times are whole numbers."""
     since = time.astype("datetime64[ns]", copy=False).view(np.int64)
     parts = [since[start : start + 65536] for start in range(0, len(since), 65536)]
     return next(

@@ -1,4 +1,4 @@
-"""Access to a finished result of a batch: its labels, its parts and its statuses."""
+"""Access to a finished batch result: its labels, its parts and its statuses."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TOP = "top"
 
 
 def open_result(path: Path) -> Dataset:
-    """Open a result of `calm batch`, without loading its data.
+    """Open a result of `calm batch` without loading its data.
 
     Raises UsageError if the result cannot be read.
     """
@@ -31,7 +31,7 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Context manager that turns read errors of a finished result into helpful messages.
+    """Convert errors while reading a finished result to helpful messages (context manager).
 
     Raises UsageError instead of any exception of the libraries.
     """
@@ -48,12 +48,15 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
-    """Labels in a result, such as `clamp_label`; empty if there are no such parts."""
+    """Return the labels stored in a result, such as `clamp_label`; empty if there are no such
+    parts.
+    """
     return tuple(map(str, dataset[name].values)) if name in dataset else ()
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Find the variables of a part of the line in a result: their prefix, and the column.
+    """Find the variables for a part of the line in a result: the prefix of their names, and the
+    column.
 
     Parameters
     ----------
@@ -76,7 +79,7 @@ def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
 
 
 def status_names(dataset: Dataset) -> tuple[str, ...]:
-    """Names of the numbers in `status` of a result, beginning with 0.
+    """Return the names of the status numbers in a result, beginning with status 0.
 
     Raises UsageError if the dataset is not a result of `calm batch`.
     """
@@ -89,7 +92,7 @@ def status_names(dataset: Dataset) -> tuple[str, ...]:
 
 
 def statuses_of(dataset: Dataset) -> dict[str, int]:
-    """Number of profiles of a result with each status that occurs.
+    """Count the profiles of a result by status; statuses without profiles are omitted.
 
     Raises UsageError if the dataset is not a result of `calm batch`.
     """

@@ -1,4 +1,4 @@
-"""Many current profiles of a net of legs, solved by the compiled search of
+"""Solution of a net of legs for many current profiles, by the compiled search of
 `calm.solve.leg_marches`.
 
 The search for each profile starts from the net in still water, or if there is no equilibrium in
@@ -41,16 +41,16 @@ from calm.solve.problem import CHOSEN, FINE
 from calm.solve.solution import FOUND
 
 TOLERANCE = 1e-6
-"""Tolerance of lengths and forces, in shares, larger than in a single run to save time."""
+"""Relative tolerance of lengths and forces, larger than in a single run to save time."""
 BLOCK = 256
-"""Number of profiles that a thread takes at a time."""
+"""Number of profiles that a thread solves at a time."""
 SOLVE_ALONE = 1
-"""Outcome of a profile that has to be solved alone."""
+"""Outcome of a profile that has to be solved on its own, as in `calm run`."""
 Column = tuple[float, ...]
 
 
 class NetRows(NamedTuple):
-    """Results of n profiles.
+    """Results of a net for n profiles.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class NetRows(NamedTuple):
 
 
 class NetArrays(NamedTuple):
-    """Work arrays and start of the search for profiles.
+    """Work arrays and start of the search for the profiles of a net.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ def solve_net_rows(
     rows: NetRows,
     endings: Any,
 ) -> None:
-    """Solve profiles, and write the results to their rows.
+    """Solve profiles of a net, and write the results to the rows of the profiles.
 
     Parameters
     ----------
@@ -130,8 +130,8 @@ def solve_net_rows(
 
 
 def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
-    """Whether a solution is valid: no leg is out of the water or below the seabed, no anchor is
-    lifted, and the net is held horizontally.
+    """Return whether a solution is valid: no leg is out of the water or below the seabed, no anchor
+    is lifted, and the net is held horizontally.
     """
     near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
@@ -152,7 +152,7 @@ def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
 
 
 def write_net(net: NetProblem, arrays: NetArrays, rows: NetRows, case: int) -> None:
-    """Write the results of a profile to its row."""
+    """Write the results of a profile to the row of this profile."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
         count = int(net.state[i][leg_numbers.COUNT])
@@ -190,13 +190,13 @@ class NetProfiles:
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Return the water of the net with another current."""
+        """Return the water of the net with another current profile."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
     @cached_property
     def still(self) -> NetSolution | None:
-        """The net in still water; None without equilibrium."""
+        """Solution of the net in still water; None without equilibrium."""
         settings = replace(self.net.settings, compiled=True)
         try:
             return solve_together(self.net.legs, self.net.water.still(), settings, None)
@@ -205,7 +205,7 @@ class NetProfiles:
 
     @cached_property
     def at_rest(self) -> Result | None:
-        """Results in still water; None if a check fails."""
+        """Results of the net in still water; None if a check fails."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return result_together(self.net, self.still, self.still.legs)
@@ -213,15 +213,17 @@ class NetProfiles:
 
     @cached_property
     def base(self) -> NetSolution | None:
-        """Start of the search: the net in still water, or else in the current of its file."""
+        """Start of the search: the solution of the net in still water or, if there is none, in the
+        current of its file.
+        """
         with suppress(NoEquilibrium):
             return self.still or self.net.standing
         return None
 
     @cached_property
     def slopes(self) -> tuple[Floats, Floats] | None:
-        """Slopes of the net at the start, and their scales; None if profiles must be solved
-        alone.
+        """Jacobian of the net at the start, and its scales; None if each profile must be solved on
+        its own.
         """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
@@ -242,8 +244,8 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """Solve profiles, and return their columns by name; outcomes are written to `status` if
-        that is 0.
+        """Solve profiles, and return their columns by name; outcomes are written to `status` for
+        profiles whose status is 0.
 
         Parameters
         ----------
@@ -302,7 +304,7 @@ class NetProfiles:
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:
-        """Compute the columns from the rows."""
+        """Compute the result columns from the rows."""
         file, count = self.net.file, len(rows.shares)
         pieces, clamps, legs = (row.shape[1] for row in rows)
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
@@ -370,7 +372,7 @@ class NetProfiles:
         self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
         status: NDArray[np.int8],
     ) -> None:  # fmt: skip
-        """Solve a profile as in `calm run`."""
+        """Solve a profile on its own, as in `calm run`."""
         (depth, u, v, w), still = current, self.still
         read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]

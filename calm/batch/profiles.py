@@ -1,4 +1,4 @@
-"""Many current profiles of one mooring: arrays in, arrays out."""
+"""Solution of one mooring for many current profiles, with arrays as input and output."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from calm.records.record import Levels
 
 BLOCK = 1024
-"""Number of profiles that a worker takes at a time."""
+"""Number of profiles that a worker solves at a time."""
 
 _IMPLAUSIBLE = STATUSES.index("implausible-current")
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
@@ -50,7 +50,7 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 class Profiles(Columnar):
-    """Results of a mooring in n profiles, with NaN if `status` is not 0.
+    """Results of a mooring for n profiles, with NaN if `status` is not 0.
 
     If the profiles were given as an array with more dimensions, n stands for all of these. Depths,
     offsets and knockdown are in m, tensions and forces in N, tilt in degrees; the p components are
@@ -72,13 +72,15 @@ class Profiles(Columnar):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Names of the columns, in their order."""
+        """Names of the columns, in table order."""
         own = (one.variable for columns in cls.columns().values() for one in columns)
         return ["component_label", "clamp_label", *own, "status"]
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """Batch columns by dimension: `component`, `clamp`, or empty for the ends."""
+        """Definitions of the batch columns of one dimension: `component`, `clamp`, or empty for the
+        ends.
+        """
         return {
             "component": Components.columns(Output.BATCH),
             "clamp": Clamps.columns(Output.BATCH),
@@ -89,7 +91,7 @@ class Profiles(Columnar):
     def made(
         cls, pieces: Sequence[Piece], status: NDArray[np.int8], columns: Mapping[str, Floats]
     ) -> Profiles:
-        """Build the profiles of a line, with labels and derived columns."""
+        """Build the results for the profiles of a line, with labels and derived columns."""
         parts: dict[str, Sequence[Piece | Clamp]] = {
             "component": pieces,
             "clamp": clamps_down(pieces),
@@ -155,7 +157,7 @@ def solve_profiles(
     *,
     workers: int | None = None,
 ) -> Profiles:
-    """Solve a mooring in many current profiles.
+    """Solve a mooring for many current profiles.
 
     Each profile replaces the current of the file; density, wind and everything else stay the same.
     Profiles are independent: neither their order, nor other profiles, nor `workers` changes a
@@ -197,7 +199,7 @@ def solve_profiles(
 
 
 def _recorded(mooring: Design, given: Any) -> Levels:
-    """Depth, u, v, w of all profiles of a record."""
+    """Return depth, u, v, w of all profiles of a record."""
     from calm.records.current_file import open_record
     from calm.records.current_terms import Terms
 
@@ -216,7 +218,7 @@ class Batch:
 
     @cached_property
     def water(self) -> Water:
-        """Water of the mooring, with wind-driven current only."""
+        """Water of the mooring, with no current except that driven by the wind."""
         return assemble_water(replace(self.mooring.file.environment, current=_STILL))
 
     @cached_property
@@ -232,7 +234,7 @@ class Batch:
         *,
         workers: int | None = None,
     ) -> Profiles:
-        """Solve profiles (see `solve_profiles`)."""
+        """Solve profiles of the prepared mooring (see `solve_profiles`)."""
         if workers is not None and workers < 1:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
@@ -271,8 +273,8 @@ class Batch:
         return _measured(leg, rows, status)
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
-        """Whether each profile (n,) has a level that is faster than any current or deeper than any
-        sea.
+        """Return whether each profile (n,) has a level with an impossible speed, or deeper than any
+        ocean.
         """
         greatest = self.mooring.file.environment.maximum_speed
         depth, u, v, w = current
@@ -298,7 +300,7 @@ class Batch:
 
     @cached_property
     def _starts(self) -> Floats:
-        """Start values of the search for every profile of a line."""
+        """Return the start values of the search for every profile of a line."""
         leg = self.mooring.moored
         line, none = leg.line, np.zeros((0, 1))
         rows = Results(
@@ -341,7 +343,7 @@ class Batch:
         room: int,
         starts: Floats | None,
     ) -> Floats:
-        """Solve profiles from known starts, or first compute the starts, and return the starts."""
+        """Solve profiles from given starts; without starts, compute and return them first."""
         line, water = leg.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
@@ -376,8 +378,8 @@ def processors() -> int:
 def _checked(
     u: ArrayLike, v: ArrayLike, depth: ArrayLike, w: ArrayLike | None
 ) -> tuple[tuple[int, ...], tuple[Floats, Floats, Floats, Floats]]:
-    """Check the arrays, and return the shape of the profiles, and depth, u, v, w as two-dimensional
-    arrays.
+    """Check the input arrays; return the shape of the profiles, and depth, u, v, w as
+    two-dimensional arrays.
     """
     east, north, down = _numbers(u), _numbers(v), _numbers(depth)
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
@@ -400,7 +402,7 @@ def _checked(
 
 
 def _numbers(values: ArrayLike) -> NDArray[Any]:
-    """Convert to an array, with NaN for masked values."""
+    """Convert the input to an array, with NaN for masked values."""
     array: NDArray[Any] = np.ma.filled(values, np.nan) if np.ma.isMA(values) else np.asarray(values)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"the current must be numeric, not {array.dtype}")
@@ -408,7 +410,7 @@ def _numbers(values: ArrayLike) -> NDArray[Any]:
 
 
 def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
-    """Return the profiles in their original dimensions."""
+    """Return the results of the profiles in the dimensions of the input."""
     columns: dict[str, Any] = {
         name: array.reshape(shape + array.shape[1:])
         for name, array in vars(profiles).items()
@@ -418,7 +420,9 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
-    """Build the profiles with the anchor, and with the knockdown from the shape in still water."""
+    """Build the results of the profiles, with the anchor, and with the knockdown relative to the
+    shape in still water.
+    """
     pieces, clamps, ends = rows
     above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)

@@ -1,4 +1,4 @@
-"""Describe the complete input of a result as JSON, and hash it with the measured values."""
+"""Complete input of a batch result as JSON, and a hash over this input and the measured values."""
 
 import hashlib
 import json
@@ -15,20 +15,22 @@ from calm.dataset.netcdf import Attributes
 from calm.version import __version__
 
 RESOLVED, HASH = "input_resolved", "input_sha256"
-"""Attributes of a result: its input as JSON, and the SHA-256 of the input and the measurements."""
+"""Names of the attributes of a result file: its input as JSON, and the SHA-256 of the input and the
+measurements.
+"""
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
     | {"doubts", "named"}
     | {"sources", "searched", "prefer", "waves", "seas"}
 )
-"""Keys of a mooring file that do not affect the results of a batch; `current` is replaced by the
-profiles.
+"""Keys of a mooring file that do not affect batch results; `current` is included because profiles
+replace it.
 """
 
 
 class InputHash:
-    """SHA-256 of an input: of its text, followed by the measured values."""
+    """SHA-256 over the text of an input, followed by the measured values."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
@@ -41,7 +43,7 @@ class InputHash:
                 self._digest.update(array.tobytes())
 
     def attributes(self) -> dict[str, str]:
-        """Return the attribute of a result with the hash."""
+        """Return the attribute of a result file that contains the hash."""
         return {HASH: self._digest.hexdigest()}
 
 
@@ -66,7 +68,9 @@ def resolved_input(
 
 
 def with_input(text: str) -> Attributes:
-    """Return the attributes of an input; the hash keeps its length when it is completed."""
+    """Return the attributes for an input whose measured values are not hashed yet; the length of
+    the hash is final.
+    """
     return {RESOLVED: text, **InputHash(text).attributes()}
 
 

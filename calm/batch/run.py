@@ -1,4 +1,4 @@
-"""Solve every profile of a record in blocks, and write one file, whole or not at all."""
+"""Solution of every profile of a record in blocks, and output as one file, complete or none."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -17,7 +17,9 @@ from calm.errors import UsageError
 from calm.records.record import Record
 
 BLOCK, BLOCK_OF_NET = 4096, 64
-"""Number of profiles in a block, which a thread usually solves in less than a second."""
+"""Number of profiles in a block, for a line and for a net; a thread usually solves a block in less
+than a second.
+"""
 
 
 def run_batch(
@@ -31,7 +33,7 @@ def run_batch(
     progress: Callable[[Progress], None] | None = None,
     tell: Callable[[str], None] = lambda _: None,
 ) -> dict[str, int]:
-    """Solve a mooring in every profile of a record, and write the result.
+    """Solve a mooring for every profile of a record, and write the result file.
 
     The file gets its name when it is complete. If the work ends earlier, no file is left, and an
     older result stays.

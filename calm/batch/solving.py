@@ -1,4 +1,4 @@
-"""Solution of successive profiles by the search of `calm.solve`, and their results.
+"""Solution of successive profiles by the search of `calm.solve`, and calculation of the results.
 
 A profile is solved roughly: to a millionth of the depth, and without an audit. The results are
 extrapolated from the shapes on cuts and on halved cuts.
@@ -29,14 +29,14 @@ OF_ENDS = (
 )  # fmt: skip
 
 NO_CURRENT, LEVELS_COINCIDE, HEAPED, LACKS_ROOM = range(100, 104)
-"""Outcomes of a profile in addition to those of `calm.solve.solution`: no level with a value, two
-levels at one depth, more than chain on the seabed below a sub-surface line, and too many segments
-for the work arrays.
+"""Outcomes of a profile in addition to those in `calm.solve.solution`: no level with a value; two
+levels at one depth; a piece other than chain on the seabed, for a sub-surface line; too many
+segments for the work arrays.
 """
 
 
 class Results(NamedTuple):
-    """Rows of results of the profiles: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6)."""
+    """Rows of results, one per profile: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6)."""
 
     pieces: Floats
     clamps: Floats
@@ -63,7 +63,7 @@ class ProfileLevels(NamedTuple):
 
 
 def levels_for(count: int, water: Water) -> ProfileLevels:
-    """Create work arrays for profiles with `count` levels, in the water of a mooring."""
+    """Create work arrays for profiles of `count` levels, with the water of a mooring."""
     most = count + len(water.level)
     intervals: Any = np.zeros(most + 2, record_type(Interval))
     fixed = np.column_stack([water.level, water.u, water.v, water.density])
@@ -78,7 +78,7 @@ def levels_for(count: int, water: Water) -> ProfileLevels:
 
 
 class ProfileArrays(NamedTuple):
-    """Work arrays of a profile and its shape.
+    """Work arrays for a profile and the shape of the line.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ def solve_rows(
     results: Results,
     endings: Integers,
 ) -> None:
-    """Solve profiles, and write the results to their rows.
+    """Solve profiles, and write the results to the rows of the profiles.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return the problem in the water of the last profile."""
+    """Return the problem with the water of the profile that was read last."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -172,7 +172,9 @@ def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem
 
 
 def refused_at_once(limits: Limits) -> int:
-    """Outcome of a line that is rejected without a search; FOUND if a search is needed."""
+    """Return the outcome of a line that is rejected without a search; FOUND if a search is
+    needed.
+    """
     refused = limits.refused_at_rest if limits.at_rest else limits.refused
     if refused == SUPPORTED:
         return FOUND
@@ -180,7 +182,7 @@ def refused_at_once(limits: Limits) -> int:
 
 
 def is_heap(problem: LineProblem, arrays: ProfileArrays) -> bool:
-    """Whether a sub-surface line has a piece on the seabed that may not lie there."""
+    """Return whether a sub-surface line has a piece on the seabed that may not lie there."""
     found, record = problem.work.found, problem.work.records[FINE]
     if found[SOUGHT] != BELOW:
         return False
@@ -191,14 +193,14 @@ def is_heap(problem: LineProblem, arrays: ProfileArrays) -> bool:
 
 
 def tilt_of(x: float, y: float, z: float) -> float:
-    """Angle of a vector from the vertical [degrees], 0 for a zero vector."""
+    """Return the angle of a vector from the vertical [degrees], 0 for a zero vector."""
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
 def measure(
     problem: LineProblem, referee: Referee, arrays: ProfileArrays, results: Results, case: int
 ) -> None:
-    """Write the results of a profile's shape to its row."""
+    """Write the results of a profile's shape to the row of the profile."""
     found, record = problem.work.found, problem.work.records[FINE]
     nodes = int(found[NODES])
     find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
@@ -240,7 +242,9 @@ def lean_of_head(
 
 
 def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:
-    """Extrapolated position relative to the line's end [m], and force [N] at a node."""
+    """Return the extrapolated position relative to the line's end [m], and the force [N], at a
+    node.
+    """
     x, y, z = record[BETTER], record[BETTER + 1], record[BETTER + 2]
     fx, fy, fz = record[BETTER + 3], record[BETTER + 4], record[BETTER + 5]
     end = nodes - 1
@@ -269,7 +273,7 @@ def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
 
 
 def used_buoyancy(problem: LineProblem) -> float:
-    """Share in use of the buoyancy of the floats at the surface."""
+    """Return the used fraction of the surface floats' buoyancy."""
     found = problem.work.found
     sought = int(found[SOUGHT])
     if sought == BELOW:
@@ -284,8 +288,8 @@ def used_buoyancy(problem: LineProblem) -> float:
 
 
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
-    """Copy the valid levels at or below the surface, sorted; return their number, or -1 if two
-    coincide.
+    """Copy the valid levels of a profile at or below the surface, sorted by depth. Return their
+    number, or -1 if two coincide.
     """
     count = 0
     for j in range(depth.size):
@@ -307,7 +311,7 @@ def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -
 
 
 def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Column of a table at a depth, for which the first deeper level is k."""
+    """Interpolate a column of a table at a depth, for which the first deeper level is k."""
     if k == 0:
         return float(table[0, c])
     if k == count:
@@ -368,7 +372,9 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Column of a table at a depth (see `between`), exact at the k-th level."""
+    """Return a column of a table at a depth (see `between`), without interpolation error at level
+    k.
+    """
     if k < count and table[k, 0] == depth:
         return float(table[k, c])
     return between(table, count, k, depth, c)

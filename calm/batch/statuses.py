@@ -1,4 +1,4 @@
-"""Endings of the profiles of a batch, and their use in statistics."""
+"""Statuses of the profiles in a batch, and their use in statistics."""
 
 from collections.abc import Mapping
 from enum import Enum
@@ -16,7 +16,7 @@ from calm.solve.finish import STATUS_OF
 
 
 class Ending(Enum):
-    """Category of a status in statistics."""
+    """Category of a profile's status in statistics."""
 
     SOLVED = "solved"
     NO_EQUILIBRIUM = "without equilibrium"
@@ -26,11 +26,11 @@ class Ending(Enum):
 
 STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide",
             "implausible-current")  # fmt: skip
-"""Names of the numbers in `status`, beginning with 0."""
+"""Names of the status numbers, beginning with 0."""
 
 IN_WEAK_CURRENT = frozenset({Status.SLACK.label, Status.ABOVE_SURFACE.label})
-"""Statuses of a line that the current is too weak to pull tight or to keep in the water. Such
-profiles do not contain the extremes of the response; profiles with other failures may.
+"""Statuses of a line if the current is too weak to pull it tight or to keep it in the water. Such
+profiles do not contain the extremes of a response; profiles with other failures may.
 """
 
 _ENDINGS = {
@@ -43,23 +43,25 @@ _ENDINGS = {
 
 
 OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
-"""Status of a profile without a current, by its outcome."""
+"""Status of a profile without a usable current, by outcome."""
 
 
 def status_of(leg: Leg, ending: int) -> int:
-    """Index in `STATUSES` of the solver's outcome for a profile of a mooring."""
+    """Return the index in `STATUSES` for an outcome of the solver, for a profile of a mooring."""
     if ending == HEAPED:
         return STATUSES.index(leg.heaped("a piece").status)
     return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)
 
 
 def ending_of(status: str) -> Ending:
-    """Category of a status of `STATUSES`."""
+    """Return the category of a status in `STATUSES`."""
     return _ENDINGS.get(status, Ending.NO_EQUILIBRIUM)
 
 
 def endings(counts: Mapping[str, int]) -> dict[Ending, int]:
-    """Number of profiles in each category, from their numbers by status; 0 for empty categories."""
+    """Count the profiles in each category, from the numbers of profiles by status; empty categories
+    have 0.
+    """
     ended = dict.fromkeys(Ending, 0)
     for status, count in counts.items():
         ended[ending_of(status)] += count
@@ -72,7 +74,8 @@ _AT_ONCE = 8192
 def implausible(
     depth: Floats, u: Floats, v: Floats, w: Floats | None, maximum_speed: float
 ) -> NDArray[np.bool_]:
-    """Whether each level (n, k) is faster than `maximum_speed` [m/s], or deeper than any sea.
+    """Return whether each level (n, k) is faster than `maximum_speed` [m/s], or deeper than any
+    ocean.
 
     An infinite speed counts as too fast. Levels above the surface and levels without a value are
     ignored.
@@ -85,7 +88,7 @@ def implausible(
 
 
 def first_implausible(record: Record, maximum_speed: float) -> str:
-    """Describe the first implausible time, level and value of a record.
+    """Describe the first implausible value of a record: its time, level and size.
 
     Raises InputError if the file is damaged.
     """

@@ -1,4 +1,4 @@
-"""Reading, assembling, solving and checking of a file, as every command does."""
+"""Read, assemble, solve and check a mooring file, for every command."""
 
 from calm.case.design import Design as Design
 from calm.case.design import Result as Result

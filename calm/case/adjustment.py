@@ -1,4 +1,4 @@
-"""Changes that may size a mooring: ``LABEL.buoyancy``, ``.length`` or ``.count``.
+"""Parameters that `calm size` can vary: ``LABEL.buoyancy``, ``.length`` or ``.count``.
 
 A change is made in the models of the file, as if the file contained the new value; all derived
 values follow.
@@ -16,20 +16,20 @@ from calm.files.pieces import numbered, placed
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0
-"""Largest factor on the buoyancy of a float, unless a range is given."""
+"""Largest factor on the buoyancy of a float, unless the user gives a range."""
 MOST_LENGTH = 2.0
-"""Largest length of a piece in water depths, unless a range is given."""
+"""Largest length of a piece, in water depths, unless the user gives a range."""
 LEAST_LENGTH = 0.01
 """Smallest length of a cable or chain [m]."""
 MOST_COUNT = 1000
-"""Largest count of a component, unless a range is given."""
+"""Largest count of a component, unless the user gives a range."""
 
 Parts = tuple[Piece | Clamp, ...]
 
 
 @dataclass(frozen=True)
 class Adjustment:
-    """One number of a mooring file that may be changed.
+    """A parameter of a mooring file that may be varied.
 
     Attributes
     ----------
@@ -58,12 +58,12 @@ class Adjustment:
 
     @property
     def unit(self) -> str:
-        """SI unit of the number."""
+        """SI unit of the parameter."""
         return DIMENSIONS[self.dimension].unit
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Labels of the parts that change."""
+        """Labels of the parts that the parameter changes."""
         return tuple(part.label for part in self.parts)
 
 
@@ -111,7 +111,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     """Change the unstretched length of a cable or chain [m]; clamps keep their distances from its
-    top.
+    upper end.
     """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts) or not isinstance(pieces[0].component, Flexible):
@@ -133,7 +133,7 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Change the number of copies of a component in line, each with its own clamps."""
+    """Change the number of copies of an in-line component; each copy has its own clamps."""
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
         raise LookupError("only pieces in line have a count, not clamped instruments")
@@ -172,7 +172,7 @@ _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
 
 
 def parse_change(text: str, file: MooringFile) -> Adjustment:
-    """Parse the name of a value to change, e.g. ``top float.buoyancy``.
+    """Parse the name of a parameter to vary, e.g. ``top float.buoyancy``.
 
     Parameters
     ----------
@@ -198,7 +198,8 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """Parse the range of a change, each end with its unit; by default the range of the adjustment.
+    """Parse the range of a parameter, each limit with its unit; the default is the range of the
+    adjustment.
 
     Raises UsageError if an end has a wrong dimension, or the ends are in the wrong order.
     """

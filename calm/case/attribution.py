@@ -1,4 +1,4 @@
-"""Shares of each drag in a mooring's shape.
+"""Attribution of a mooring's knockdown and excursion to the drag of each part.
 
 Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
 multiplied by λ_i. The share of drag i is that of Aumann and Shapley,
@@ -30,35 +30,39 @@ from calm.solve.mooring import Nearby
 from calm.solve.net import NearbyNet
 
 STAGES = (4, 8)
-"""Numbers of Gauss points in t; the second is used if the first has an error above
+"""Numbers of Gauss points in t. The second number is used if the first leaves an error above
 `LARGEST_MISS`.
 """
 LARGEST_MISS = 0.01
 LEAST_DRAG = 1e-3
-"""Share of the drag at which the shares begin, for a line whose shape is not unique without
-drag.
+"""Fraction of the drag at which the integration begins, for a line whose shape is not unique
+without drag.
 """
 
 _STEP = 2e-4
-"""Relative increase of a drag for its derivative, large against the tolerance of the solver."""
+"""Relative increase of a drag for the finite-difference derivative, large against the tolerance of
+the solver.
+"""
 SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
-"""Coarse settings, since the shares are scaled to the total in the end."""
+"""Coarse solver settings; they suffice because the contributions are scaled to the total in the
+end.
+"""
 
 
 SolverPart = tuple[int, int, int]
-"""Number of a leg (0 for a single line), index of a piece in the leg, and index of a clamp or
--1.
+"""Place of a part in the solver: number of its leg (0 for a single line), index of its piece, and
+index of its clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
-"""Function that returns the values (3,) of `Attribution` if the leg with a given number has another
-line.
+"""Function that returns the three values of `Attribution` after the line of one numbered leg is
+replaced.
 """
 
 
 @dataclass(frozen=True)
 class Attribution:
-    """Shares of p drags, each on a piece or on a clamped instrument.
+    """Contributions of p drags, each on a piece or on a clamped instrument.
 
     The columns of `start` and `shares` are depth and excursion of a point of the line [m], and the
     share in use of the buoyancy at the surface.
@@ -83,7 +87,7 @@ def attribute(
     start: Floats | None,
     whole: Floats,
 ) -> Attribution:
-    """Attribute a point's depth and excursion, and the buoyancy in use, to the drags.
+    """Attribute the depth and excursion of a point, and the used buoyancy, to the drags.
 
     Parameters
     ----------
@@ -117,8 +121,8 @@ def attribute(
 
 
 def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None = None) -> Line:
-    """Return the line with multiplied drags; the clamps have the same factor unless another is
-    given.
+    """Return the line with its drags multiplied by factors; clamps have the same factors unless
+    others are given.
     """
     return replace(
         line,
@@ -129,7 +133,7 @@ def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None 
 
 
 def _parts_with_drag(line: Line) -> list[tuple[int, int]]:
-    """Parts with drag, down the line, each piece followed by its clamps."""
+    """List the parts with drag, down the line, each piece followed by its clamps."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
     parts = [(int(p), -1) for p in pieces] + [(int(line.clamp_piece[m]), int(m)) for m in clamps]
@@ -152,7 +156,7 @@ def _integral(
     least: float,
     stages: int,
 ) -> Floats:
-    """(p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
+    """Compute (p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
     low = np.sqrt(least)
     half = 0.5 * (1.0 - low)
@@ -169,7 +173,9 @@ def _integral(
 
 
 def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Observe a point of a single line: the top of a piece, or a clamp."""
+    """Return a function that solves variants of a single line, and observes the top of a piece or a
+    clamp.
+    """
 
     def near(lines: Sequence[Line]) -> Varied:
         nearby = Nearby(lines[0], water, SETTINGS)
@@ -180,7 +186,9 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
 
 
 def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Observe a point of a net: the top of a piece, or a clamp."""
+    """Return a function that solves variants of a net, and observes the top of a piece or a
+    clamp.
+    """
 
     def near(lines: Sequence[Line]) -> Varied:
         legs, nodes = net_legs(net.with_lines(lines).legs), len(nodes_of(net.file.legs))

@@ -1,4 +1,4 @@
-"""The entry of a result column: title, unit, description, computation and outputs.
+"""Definition of a result column: title, unit, description, computation and outputs.
 
 The entries are in `calm.case.result_tables`, one for each column. Tables, JSON, CSV, NetCDF,
 batches, the builder and the manual read them, so a new entry appears in every output it names.
@@ -20,16 +20,18 @@ if TYPE_CHECKING:
 
 _ENTRY = "column"
 _CF_UNITS = {"": "1", "deg": "degree", "m/s": "m s-1"}
-"""CF spelling of the units that results spell differently."""
+"""CF spelling of the units that CALM spells differently."""
 
 
 class Output(Flag):
-    """Outputs of a column. In Python every column is an array of its table, even without any."""
+    """Outputs in which a column appears. In Python every column is available as an array of its
+    table.
+    """
 
     JSON = auto()
     CSV = auto()
     NETCDF = auto()
-    """NetCDF and `to_xarray` of one equilibrium."""
+    """NetCDF file or `to_xarray` of one equilibrium."""
     BATCH = auto()
     """Results of many profiles: `calm batch`, `calm motion`, `calm.solve_profiles`."""
     MOORING_TABLE = auto()
@@ -95,7 +97,7 @@ class ResultColumn:
 
     @property
     def unit(self) -> str:
-        """SI unit, or degrees. Text and pure numbers have an empty unit."""
+        """SI unit, or degrees; empty for text and pure numbers."""
         return "" if self.quantity is None else self.quantity.unit
 
     @property
@@ -105,13 +107,15 @@ class ResultColumn:
 
     @property
     def described(self) -> Attributes:
-        """Attributes of the NetCDF variable; text has no unit."""
+        """Attributes of the NetCDF variable; a text variable has no unit."""
         unit, meaning, more = self.term
         units = {} if self.quantity is None else {"units": unit}
         return {**units, "long_name": meaning, **more}
 
     def value(self, row: Any, file: MooringFile) -> Any:
-        """Value shown for a row; None if the row lacks the column, as clamps lack a length."""
+        """Return the value to show for a row; None if the row has no such value, as clamps have no
+        length.
+        """
         return self.of_row(row, file) if self.of_row else getattr(row, self.name, None)
 
 
@@ -126,7 +130,7 @@ def column(
     default: Any = MISSING,
     **more: Any,
 ) -> Any:
-    """Declare a dataclass field as a result column; the field gives the column its name.
+    """Declare a dataclass field as a result column with the name of the field.
 
     Parameters
     ----------
@@ -153,7 +157,7 @@ _known: dict[type[Any], tuple[ResultColumn, ...]] = {}
 
 
 def columns_of(record: type[Any]) -> tuple[ResultColumn, ...]:
-    """The columns of a dataclass, in the order of its fields.
+    """Return the columns of a dataclass, in the order of its fields.
 
     Fields declared without `column` take title and meaning from `QUANTITIES`.
     """
@@ -172,17 +176,17 @@ def _columns_of(record: type[Any]) -> Iterator[ResultColumn]:
 
 
 def shown_in(columns: Iterable[ResultColumn], output: Output) -> list[ResultColumn]:
-    """The columns that an output shows."""
+    """Return the columns that an output shows."""
     return [one for one in columns if output in one.outputs]
 
 
 def terms(columns: Iterable[ResultColumn]) -> dict[str, tuple[str, str, Attributes]]:
-    """CF unit, description and attributes of each variable, by its name."""
+    """Return the CF unit, description and attributes of each variable, by name."""
     return {one.variable: one.term for one in columns}
 
 
 def derive(columns: Iterable[ResultColumn], known: Mapping[str, Any]) -> dict[str, Any]:
-    """Compute the derived columns, by name.
+    """Compute the derived columns of a table, by name.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Designs read from files, and their results.
+"""Designs read from files, and the results of solving them.
 
 A mooring is one leg with a free top and an anchor, a tow is one leg held at the ship, a net has
 several legs that join at nodes.
@@ -92,7 +92,9 @@ class Design:
     origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Design], tuple[object, ...]]:
-        """Pickle the fields and the cut lines; all other attributes are recomputed."""
+        """Pickle the fields and the line at its cut lengths; all other attributes are
+        recomputed.
+        """
         legs = vars(self).get("legs", ())
         known = tuple(leg.line for leg in legs if "line" in vars(leg))
         lines = known if known and len(known) == len(legs) else self.lines
@@ -102,7 +104,7 @@ class Design:
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
-        """The legs in the order of the file."""
+        """Legs in the order of the file."""
         keys = legs_of(self.file)
         # each leg of a net has the water depth at its own anchor
         water = None if self.several else self.given_water
@@ -118,19 +120,19 @@ class Design:
 
     @property
     def leg(self) -> Leg:
-        """The leg of a mooring or a tow; UsageError for several legs."""
+        """Leg of a mooring or a tow; raises UsageError for several legs."""
         refuse_several(self.file)
         return self.legs[0]
 
     @property
     def moored(self) -> Leg:
-        """The leg of a mooring; UsageError for a tow and for several legs."""
+        """Leg of a mooring; raises UsageError for a tow and for several legs."""
         refuse_all_but_moorings(self.file)
         return self.legs[0]
 
     @property
     def line(self) -> Line:
-        """The line of a mooring or a tow as arrays."""
+        """Line of a mooring or a tow, as arrays."""
         return self.leg.line
 
     @property
@@ -150,13 +152,15 @@ class Design:
 
     @cached_property
     def water(self) -> Water:
-        """Depth, current and density by level."""
+        """Water depth, and current and density by level."""
         if self.given_water is not None:
             return self.given_water
         return self.water_of(self.environment) if self.several else self.legs[0].water
 
     def water_of(self, environment: Environment) -> Water:
-        """Water of an environment, with still air above the surface if a leg is held there."""
+        """Return the water of an environment; if a leg is held above the surface, with still air
+        there.
+        """
         if not self.several:
             return assemble_water(environment)
         if isinstance(environment.seabed, SeabedGrid):  # its plane belongs to one position
@@ -180,7 +184,7 @@ class Design:
     def with_(
         self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
     ) -> Design:
-        """Return a design with some values of the file changed; this design stays as it is.
+        """Return a copy of the design with changed values of the file.
 
         Values are written as in the file, with their units: ``with_("wire 1", length="480 m")``,
         ``with_(tow={"speed": "4 kn"})``,
@@ -208,19 +212,23 @@ class Design:
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
-        """Return the design with other lines for its legs, and optionally other water."""
+        """Return a copy of the design with other lines for its legs, and optionally other water."""
         near = self.standing if self.several else None
         return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
 
     def with_length(self, index: int, length: float) -> Design:
-        """Return the design with another unstretched length [m] of one piece of the file."""
+        """Return a copy of the design with another unstretched length [m] of one piece of
+        the file.
+        """
         number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
         own = index - self.legs[number].keys.first
         lines[number] = lines[number].with_length(own, length)
         return self.with_lines(lines)
 
     def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
-        """Return the design with other pieces in its legs, stand-ins for anchors included."""
+        """Return a copy of the design with other pieces in its legs, including stand-ins for
+        anchors.
+        """
         if not self.several:
             return Design(
                 replace(self.file, pieces=tuple(pieces[0])), self.for_surface, self.memory
@@ -238,26 +246,30 @@ class Design:
 
     @cached_property
     def standing(self) -> NetSolution:
-        """Equilibrium of several legs in the water of the file; raises NoEquilibrium."""
+        """Equilibrium of several legs in the water of the file. Raises NoEquilibrium if there is
+        none.
+        """
         return self.together(self.water, self.near)
 
     def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
-        """Solve several legs in some water, first near another solution; raises NoEquilibrium."""
+        """Solve several legs in given water, starting from another solution if given; raises
+        NoEquilibrium.
+        """
         from calm.case.net import solve_together
 
         return solve_together(self.legs, water, self.settings, near)
 
     @property
     def solutions(self) -> tuple[Solution, ...]:
-        """Solutions of the legs in the water of the file; raises NoEquilibrium."""
+        """Solutions of the legs in the water of the file. Raises NoEquilibrium if there is none."""
         if self.several:
             return self.standing.legs
         return (self.leg.equilibrium(self.water),)
 
     @cached_property
     def typed_legs(self) -> tuple[Leg, ...]:
-        """Legs with `for_surface` set: a leg counts as a surface leg if it floats at the surface in
-        still water.
+        """Legs with `for_surface` set, which is true for a leg that floats at the surface in still
+        water.
         """
         if not self.several:
             return self.legs
@@ -315,7 +327,7 @@ def solved_alone(leg: Leg) -> LegResult:
 
 
 def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
-    """Build the result of several legs.
+    """Build the result of several legs that were solved together.
 
     Raises NoEquilibrium if a leg would lift its anchor or penetrate the slope.
 
@@ -396,7 +408,7 @@ class Result:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings, those of the file first."""
+        """All warnings; those of the file come first."""
         if not self.several:
             return self.leg.warnings
         return (
@@ -423,12 +435,12 @@ class Result:
 
     @property
     def file(self) -> MooringFile:
-        """The file of the design."""
+        """File of the design."""
         return self.design.file
 
     @property
     def name(self) -> str:
-        """The name of the design."""
+        """Name of the design."""
         return self.file.name
 
     @property
@@ -453,7 +465,7 @@ class Result:
 
     @property
     def leg(self) -> LegResult:
-        """Result of the leg of a mooring or a tow; UsageError for several legs."""
+        """Result for the leg of a mooring or a tow; raises UsageError for several legs."""
         if self.several:
             raise UsageError(
                 f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
@@ -468,19 +480,19 @@ class Result:
 
     @property
     def anchor(self) -> AnchorLoad:
-        """Load on the anchor of the leg; UsageError for a tow."""
+        """Load on the anchor of the leg; raises UsageError for a tow."""
         if self.leg.anchor is None:
             raise UsageError(f"{self.name} has no anchor")
         return self.leg.anchor
 
     @property
     def tow_point(self) -> TowPoint:
-        """Load of a tow on the ship; UsageError for a leg that is not towed."""
+        """Load of a tow on the ship; raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.tow_point, self.name)
 
     @property
     def body(self) -> TowedBody:
-        """Towed body; UsageError for a leg that is not towed."""
+        """Towed body; raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.body, self.name)
 
     @property
@@ -490,22 +502,22 @@ class Result:
 
     @property
     def still_shape(self) -> Shape | None:
-        """Shape of the leg in still water; None without a unique shape."""
+        """Shape of the leg in still water; None if this shape is not unique."""
         return self.leg.still_shape
 
     @property
     def profilers(self) -> tuple[ProfilerTravel, ...]:
-        """Profilers of the leg at their places."""
+        """Positions and wire tensions of the profilers of the leg."""
         return self.leg.profilers
 
     @property
     def strumming(self) -> Strumming | None:
-        """Strumming of the cables; None without a law of strumming."""
+        """Strumming of the cables; None if the file sets no strumming law."""
         return self.leg.strumming
 
     @property
     def strumming_band(self) -> StrummingBand | None:
-        """The leg with more drag on its cables; solved on first use."""
+        """Results of the leg with more drag on its cables, solved on first use."""
         return self.leg.strumming_band
 
     @property
@@ -515,7 +527,7 @@ class Result:
 
     @cached_property
     def components(self) -> Components:
-        """The pieces of the file, leg by leg."""
+        """Pieces of the file, leg by leg."""
         if not self.several:
             return self.leg.components
         tables = [leg.components.head(len(leg.leg.pieces)) for leg in self.legs]
@@ -525,7 +537,7 @@ class Result:
 
     @cached_property
     def clamps(self) -> Clamps:
-        """The clamps of the file, leg by leg."""
+        """Clamps of the file, leg by leg."""
         if not self.several:
             return self.leg.clamps
         tables = [
@@ -536,7 +548,7 @@ class Result:
 
     @property
     def ends(self) -> dict[str, Floats]:
-        """Columns of the ends, one value for each leg; see `MOORED_ENDS`."""
+        """Values at the ends of the legs, one value per leg and column; see `MOORED_ENDS`."""
         return {
             one.name: np.array([one.found(leg) for leg in self.legs])
             for one in MOORED_ENDS
@@ -544,7 +556,7 @@ class Result:
         }
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the line from the side on axes of matplotlib, and return them.
+        """Draw the line from the side on matplotlib axes, and return the axes.
 
         Without `ax` the axes are those of a new figure. UsageError: matplotlib is not installed.
         """
@@ -560,7 +572,9 @@ class Result:
         return self.components.to_pandas()
 
     def to_xarray(self) -> Any:
-        """The dataset that `calm run -o FILE.nc` writes: components, clamps, shape, with units."""
+        """Return the dataset that `calm run -o FILE.nc` writes: components, clamps, shape, with
+        units.
+        """
         from io import BytesIO
 
         from xarray import load_dataset
@@ -593,7 +607,7 @@ class Result:
         return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
 
     def _ends(self) -> dict[str, dict[str, Any]]:
-        """Figures of both ends of the leg, by name."""
+        """Return the values at both ends of the leg, by name."""
         if self.towed:
             return {"tow_point": asdict(self.tow_point), "body": asdict(self.body)}
         return {"top": asdict(self.top), "anchor": asdict(self.anchor)}
@@ -652,7 +666,7 @@ class Result:
 
 
 AnyResult: TypeAlias = Result | LegResult
-"""Result of a design or of a single leg."""
+"""Result of a design, or of a single leg."""
 
 
 def load(
@@ -684,8 +698,8 @@ def load_in(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> list[Design]:
-    """Read a file as `load` does in several environments; None selects the default environment and
-    all environments of the file.
+    """Read a file as `load` does, in several environments. None selects the default environment and
+    all other environments of the file.
 
     Raises InputError with the mistakes of all environments.
     """

@@ -1,4 +1,4 @@
-"""Draws of the inputs of a mooring that are uncertain, and the mooring in each draw.
+"""Random draws of a mooring's uncertain inputs, and the mooring for each draw.
 
 The draws are a scrambled Sobol' sequence, with one number for each cause: all cables are too long
 by the same share, and the current is too fast by the same factor at all depths.
@@ -32,7 +32,9 @@ _ANGLE = "direction"
 
 
 class Draw(NamedTuple):
-    """One draw of all causes: factors on the given values, and an angle [degrees]."""
+    """One draw of all uncertain inputs: factors on the specified values, and a direction change
+    [degrees].
+    """
 
     current: float = 1.0
     direction: float = 0.0
@@ -46,7 +48,8 @@ class Draw(NamedTuple):
 
 
 def checked_samples(samples: int) -> int:
-    """Return the number of samples if it is valid: a power of two within limits.
+    """Return the number of samples if it is a power of two within the limits, else raise
+    UsageError.
 
     Raises
     ------
@@ -61,8 +64,8 @@ def checked_samples(samples: int) -> int:
 
 
 def normals_of(samples: int, seed: int) -> Floats:
-    """Standard normal numbers (samples, causes) from a scrambled Sobol' sequence; `samples` is a
-    power of two.
+    """Return standard normal numbers (samples, causes) from a scrambled Sobol' sequence; `samples`
+    is a power of two.
     """
     from scipy.special import ndtri
     from scipy.stats import qmc
@@ -102,7 +105,7 @@ def _factors(spread: Spread, normal: Floats) -> Floats:
 
 
 def drawn_line(line: Line, draw: Draw) -> Line:
-    """Return the line in a draw."""
+    """Return the line with the inputs of a draw."""
     cable, rises = line.flexible, line.buoyancy > 0.0
     drag = np.where(cable, draw.cable_drag, draw.rigid_drag)
     lift = np.where(cable, draw.cable_weight, np.where(rises, draw.buoyancy, 1.0))
@@ -130,7 +133,7 @@ def drawn_line(line: Line, draw: Draw) -> Line:
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:
-    """Return the water in a draw, with levels at the same depths below the surface."""
+    """Return the water with the inputs of a draw; levels keep their depths below the surface."""
     turn = radians(draw.direction)
     east, north = draw.current * cos(turn), draw.current * sin(turn)
     return replace(
@@ -143,7 +146,9 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(NoMemory):
-    """Solver for small changes of a mooring, from its equilibrium, or anew if that fails."""
+    """Solver for moorings close to a solved one: starts from its equilibrium, else solves from
+    scratch.
+    """
 
     def __init__(self, leg: Leg) -> None:
         self._leg = leg
@@ -151,7 +156,7 @@ class Neighbours(NoMemory):
         self._still: Nearby | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return the result of the solver."""
+        """Call a solver; `solve_mooring` starts from the known equilibrium."""
         if solver is solve_mooring:
             solved: Any = self._solved
             return cast("T", solved(*given, **named))
@@ -174,7 +179,7 @@ class Neighbours(NoMemory):
 
 
 def drawn(leg: Leg, draws: Iterable[Draw]) -> Iterator[Leg]:
-    """Yield the leg of a mooring in each draw, solved from the original equilibrium.
+    """Yield the leg of a mooring for each draw, solved from the equilibrium of the original leg.
 
     Raises NoEquilibrium if the original mooring has no equilibrium.
     """

@@ -24,7 +24,7 @@ from calm.solve import Solution
 
 
 def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:
-    """Load of a leg on its anchor; NaN for a leg without an anchor."""
+    """Return the load of a leg on its anchor; NaN for a leg without an anchor."""
     if not leg.anchored:
         return AnchorLoad(**{each.name: nan for each in fields(AnchorLoad)})
     force, friction = solution.force[-1], leg.file.anchor_friction
@@ -43,7 +43,9 @@ def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:
 
 
 def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
-    """Error estimates of the solver, and the resulting error of the required anchor weight."""
+    """Return the error estimates of the solver, and the resulting error of the required anchor
+    weight.
+    """
     if leg.towed:
         return Accuracy(solution.depth_error, solution.tension_error)
     lift, pull = solution.lift_error, solution.pull_error
@@ -57,7 +59,7 @@ def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
 
 
 def top_of(solution: Solution, still: Solution | None) -> Top:
-    """Upper end of a leg; `still` is None without a unique shape in still water."""
+    """Return the upper end of a leg; `still` is None if the shape in still water is not unique."""
     riding, upper = solution.riding, -1 if solution.line.towed else 0
     x, y, z = solution.position[upper]
     return Top(
@@ -73,7 +75,7 @@ def top_of(solution: Solution, still: Solution | None) -> Top:
 
 
 def tow_point_of(solution: Solution) -> TowPoint:
-    """Load of a tow on the ship."""
+    """Return the load of a tow on the ship."""
     force = solution.force[-1]
     backward = hypot(force[0], force[1])
     return TowPoint(
@@ -85,7 +87,7 @@ def tow_point_of(solution: Solution) -> TowPoint:
 
 
 def body_of(solution: Solution) -> TowedBody:
-    """Towed body, or the free end of a bare cable."""
+    """Return the towed body, or the free end of a bare cable."""
     node = solution.body_node
     x, y, z = solution.position[node]
     pull = -solution.force[node]
@@ -100,7 +102,7 @@ def body_of(solution: Solution) -> TowedBody:
 
 
 def end_loads(leg: Leg, components: Components, solution: Solution) -> Iterator[EndLoad]:
-    """Loads of a leg on its anchor and on other fixed ends."""
+    """Return the loads of a leg on its anchor and on other fixed ends."""
     last = len(leg.pieces) - 1
     if leg.top.held is not None:
         # a leg that hangs from its upper end is marched from its lower end

@@ -1,4 +1,6 @@
-"""Explanation of a mooring's equilibrium: contribution of each drag, and effect of changes."""
+"""Explanation of a mooring's equilibrium: contribution of each drag, and effect of changed
+inputs.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
@@ -20,10 +22,10 @@ from calm.physics.line import Floats, Line, Water
 from calm.solve import CompiledPart, expect_many
 
 SOLVES = 100.0
-"""Approximate number of equilibria per explanation, by computing time."""
+"""Approximate number of equilibria that one explanation costs in computing time."""
 
 CHANGE = 0.1
-"""Relative change of buoyancy, drag and current."""
+"""Relative change of buoyancy, drag and current in the what-if cases."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,7 @@ class Cause:
 
 
 class Causes(ColumnTable[Cause]):
-    """The p pieces and clamped instruments that have drag, in file order.
+    """Contributions of the p pieces and clamped instruments that have drag, in file order.
 
     Attributes
     ----------
@@ -57,7 +59,9 @@ class Causes(ColumnTable[Cause]):
 
 @dataclass(frozen=True)
 class WhatIf:
-    """A named change, and the resulting values or the reason why there is no equilibrium."""
+    """A named change of an input, and the resulting values or the reason why there is no
+    equilibrium.
+    """
 
     name: str
     figures: Figures | None = None
@@ -66,7 +70,7 @@ class WhatIf:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Causes of the knockdown and excursion of a mooring, and the effects of changes.
+    """Causes of the knockdown and excursion of a mooring, and the effects of changed inputs.
 
     Attributes
     ----------
@@ -91,9 +95,7 @@ class Explanation:
     notes: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the object `explain` of the JSON results, in SI units, with null for unknown
-        values.
-        """
+        """Return the object `explain` of the JSON results, in SI units; unknown values are null."""
         causes = None
         if self.causes is not None:
             names = ("index", "label", "clamped", "drag", *self.quantities)
@@ -185,7 +187,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
 
 
 _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
-"""Quantities in the columns of an `Attribution`."""
+"""Names of the three columns of an `Attribution`."""
 
 
 def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Iterator[str]:
@@ -228,7 +230,7 @@ def _shares(
 
 
 def _point(result: Result, place: Place) -> attribution.SolverPart:
-    """Indices of leg, piece and clamp (or -1) of a part in the solver."""
+    """Return the indices of leg, piece and clamp (or -1) of a part in the solver."""
     leg = leg_at(result, place)
     pieces, own = leg.file.pieces, replace(place, clamp=-1)
     index = next(piece.index for piece in pieces if piece.place == own)
@@ -256,7 +258,7 @@ def _causes(result: Result, shares: attribution.Attribution) -> Causes:
 
 
 def _drags(result: Result, parts: list[attribution.SolverPart]) -> Floats:
-    """(p,) horizontal force of the water on each part [N]."""
+    """Compute (p,) horizontal force of the water on each part [N]."""
     solutions = result.design.solutions
     found = []
     for leg, p, m in parts:

@@ -1,4 +1,6 @@
-"""A leg of a design: its pieces from the upper to the lower end, and the supports of both ends."""
+"""A leg of a design: its pieces from the upper to the lower end, and the supports of the
+two ends.
+"""
 
 from __future__ import annotations
 
@@ -55,24 +57,26 @@ class Leg:
     given_water: Water | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Leg], tuple[object, ...]]:
-        """Pickle the fields and the cut line; all other attributes are recomputed."""
+        """Pickle the fields and the line at its cut lengths; all other attributes are
+        recomputed.
+        """
         known = vars(self)
         line, water = (known.get(name, known[f"given_{name}"]) for name in ("line", "water"))
         return Leg, (self.file, self.for_surface, self.memory, line, water)
 
     @property
     def name(self) -> str:
-        """Name of the leg, or for a mooring or a tow the name of the design."""
+        """Name of the leg; for a mooring or a tow, the name of the design."""
         return self.file.name
 
     @property
     def keys(self) -> FileLeg:
-        """Entry of the leg in the file of the design."""
+        """Entry of the leg in the design file."""
         return legs_of(self.file)[0]
 
     @property
     def of_several(self) -> bool:
-        """Whether the leg belongs to a net, with which it is solved."""
+        """Whether the leg belongs to a net and is solved with the other legs."""
         return bool(self.file.legs)
 
     @property
@@ -97,12 +101,12 @@ class Leg:
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """Pieces of the leg, without a stand-in for an anchor."""
+        """Pieces of the leg, without the stand-in for an anchor."""
         return tuple(piece for piece in self.file.pieces if piece.use != STAND_IN)
 
     @cached_property
     def water(self) -> Water:
-        """Current over the ground and density by level, with the water depth at the anchor."""
+        """Current over the ground and density by level; the water depth is that at the anchor."""
         return self.given_water or assemble_water(self.file.environment)
 
     @property
@@ -126,7 +130,7 @@ class Leg:
 
     @cached_property
     def line(self) -> Line:
-        """Pieces above the anchor as arrays, a fitted piece at its cut length.
+        """Pieces above the anchor as arrays; a piece of fitted length has its cut length.
 
         Raises NoEquilibrium if no length fits.
         """
@@ -155,7 +159,7 @@ class Leg:
         )
 
     def cut(self, file: MooringFile) -> MooringFile:
-        """Return a file with the fitted piece at the cut length of this leg.
+        """Return the file with the fitted piece at its cut length in this leg.
 
         Raises NoEquilibrium if no length fits.
         """
@@ -185,7 +189,7 @@ class Leg:
 
     @cached_property
     def anchor_drag(self) -> float:
-        """Drag of the falling anchor at 1 m/s [N/(m/s)²]; by default the drag of a cube.
+        """Drag of the falling anchor at 1 m/s [N/(m/s)²]; the default is the drag of a cube.
 
         The cube has the displaced volume of the anchor, or the volume of steel of its weight.
         """
@@ -199,7 +203,7 @@ class Leg:
         return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
 
     def equilibrium(self, water: Water | None = None) -> Solution:
-        """Solve the leg alone, in its own or in other water.
+        """Solve the leg alone, in the water of the file or in other water.
 
         Raises NoEquilibrium if no equilibrium passes every check, or if the leg would lift its
         anchor, have more than chain on the seabed, or penetrate a slope.
@@ -227,7 +231,9 @@ class Leg:
             )
 
     def _refuse_a_heap(self, solution: Solution) -> None:
-        """Raise NoEquilibrium if a sub-surface line has a piece other than chain on the seabed."""
+        """Raise NoEquilibrium if a piece other than chain of a sub-surface line lies on the
+        seabed.
+        """
         if solution.surface:
             return
         pieces = self.file.pieces
@@ -252,8 +258,8 @@ class Leg:
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:
-        """Raise NoEquilibrium if a line would penetrate a seabed from a grid, since the solver only
-        knows its plane.
+        """Raise NoEquilibrium if a line would penetrate a seabed from a depth grid; the solver
+        assumes a plane seabed.
 
         The tolerance is the largest depth of the grounded part below the grid.
         """
@@ -273,13 +279,13 @@ class Leg:
             )
 
     def solved(self, line: Line) -> Solution:
-        """Solve the leg with another line; raises NoEquilibrium."""
+        """Solve the leg with another line. Raises NoEquilibrium if there is none."""
         if self.towed:
             return solve_tow(line, self.water, self.towing, self.settings)
         return solve_mooring(line, self.water, self.settings)
 
     def still_counterpart(self, solution: Solution) -> Solution | None:
-        """Solution of the line in still water; None for a tow, or without a unique shape."""
+        """Solution of the line in still water; None for a tow, or if this shape is not unique."""
         if self.towed:
             return None
         floating = self.line.floating
@@ -288,7 +294,7 @@ class Leg:
 
     @cached_property
     def at_rest(self) -> Solution | None:
-        """The line without current and wind; None without a unique shape."""
+        """Solution of the line without current and wind; None if its shape is not unique."""
         line, floating = self.line, self.line.floating
         if floating is not None:
             line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))

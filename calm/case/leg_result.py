@@ -32,7 +32,7 @@ from calm.solve.solution import OtherEquilibrium
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class LegResult:
-    """A leg of a converged design. Lengths and depths [m], forces [N], angles [degrees].
+    """Result of a leg in equilibrium. Lengths and depths [m], forces [N], angles [degrees].
 
     The components of a tow run from the ship down, and its shape begins at the free end.
 
@@ -61,7 +61,7 @@ class LegResult:
 
     @property
     def status(self) -> str:
-        """Return ``converged``."""
+        """Status of the solver, always ``converged``."""
         return Status.CONVERGED.label
 
     @property
@@ -73,22 +73,22 @@ class LegResult:
 
     @property
     def iterations(self) -> int:
-        """Number of marches."""
+        """Number of marches of the solver."""
         return self.solution.marches
 
     @property
     def segments(self) -> int:
-        """Number of segments of the final shape."""
+        """Number of segments in the final shape."""
         return self.solution.segments
 
     @property
     def miss(self) -> float:
-        """Distance of the lower end from its place, in height [m]."""
+        """Height error of the lower end in the solution [m]."""
         return self.solution.miss
 
     @property
     def closure(self) -> float:
-        """Relative force residual, recomputed from the final coordinates."""
+        """Force residual relative to the forces, recomputed from the final coordinates."""
         return self.solution.closure
 
     @property
@@ -103,7 +103,7 @@ class LegResult:
 
     @cached_property
     def top(self) -> Top:
-        """Upper end."""
+        """Upper end of the leg."""
         return top_of(self.solution, self.still)
 
     @cached_property
@@ -128,12 +128,12 @@ class LegResult:
 
     @cached_property
     def strumming(self) -> Strumming | None:
-        """Strumming of the cables; None without a law of strumming."""
+        """Strumming of the cables; None if the file sets no strumming law."""
         return strumming_of(self.file.solver, self.solution)
 
     @cached_property
     def components(self) -> Components:
-        """Pieces; for a tow from the ship down.
+        """Pieces in line order; for a tow, from the ship down.
 
         The last piece of a leg without an anchor is a stand-in without meaning.
         """
@@ -145,7 +145,7 @@ class LegResult:
 
     @cached_property
     def clamps(self) -> Clamps:
-        """Clamped instruments."""
+        """Clamped instruments in file order."""
         pieces = self.file.pieces
         if self.towed:
             return clamps_of(pieces, self.solution, self.still)
@@ -156,19 +156,19 @@ class LegResult:
 
     @cached_property
     def shape(self) -> Shape:
-        """Shape, node by node, from the free end."""
+        """Shape of the leg, node by node from the free end."""
         return shape_of(self.solution)
 
     @cached_property
     def still_shape(self) -> Shape | None:
-        """Shape in still water; None without a unique shape."""
+        """Shape of the leg in still water; None if this shape is not unique."""
         if self.still is self.solution:
             return self.shape
         return None if self.still is None else shape_of(self.still)
 
     @property
     def file(self) -> MooringFile:
-        """File of the leg alone."""
+        """File that contains this leg alone."""
         return self.leg.file
 
     @property
@@ -188,7 +188,7 @@ class LegResult:
 
     @property
     def legs(self) -> tuple[LegResult, ...]:
-        """This leg alone, as a `Result` lists its legs."""
+        """Tuple of this one leg; a `Result` has the same attribute."""
         return (self,)
 
     @property
@@ -198,7 +198,9 @@ class LegResult:
 
     @property
     def other_used_buoyancy(self) -> float:
-        """Share of buoyancy in use in another equilibrium at the surface; NaN if none was found."""
+        """Used fraction of buoyancy in another equilibrium at the surface; NaN if none was
+        found.
+        """
         afloat = self.other is not None and self.other.used_buoyancy < 1.0
         return self.other.used_buoyancy if self.other is not None and afloat else nan
 
@@ -214,12 +216,14 @@ class LegResult:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings, those of the file first."""
+        """All warnings; those of the file come first."""
         return warnings_of(self)
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """The line with more drag on its cables, solved on first use; None for a leg of a net."""
+        """Results of the line with more drag on its cables, solved on first use; None for a leg of
+        a net.
+        """
         if self.leg.of_several:
             return None
         still = self.still_shape

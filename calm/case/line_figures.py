@@ -1,4 +1,4 @@
-"""Arrays measured on a solved line: the columns of pieces, clamps and nodes.
+"""Arrays of values on a solved line: the columns of pieces, clamps and nodes.
 
 Pieces are in the order of the file, without the anchor.
 """
@@ -46,7 +46,7 @@ class LineFigures:
 
     @property
     def index(self) -> Integers:
-        """(n,) numbers of the pieces in the file."""
+        """(n,) index of each piece in the file."""
         return np.array([piece.index for piece in self.pieces])
 
     @cached_property
@@ -63,13 +63,13 @@ class LineFigures:
 
     @property
     def tension_top(self) -> Floats:
-        """(n,) tensions at the first-listed end [N]."""
+        """(n,) tensions at the end that the file lists first [N]."""
         tension: Floats = self.solution.tension[self.upper]
         return tension
 
     @property
     def tension_bottom(self) -> Floats:
-        """(n,) tensions at the other end [N]."""
+        """(n,) tensions at the end that the file lists last [N]."""
         tension: Floats = self.solution.tension[self.lower]
         return tension
 
@@ -83,7 +83,9 @@ class LineFigures:
 
     @property
     def least_tension(self) -> Floats:
-        """(n,) minimum tension above the seabed [N]; NaN for a piece entirely on the seabed."""
+        """(n,) minimum tension of each piece off the seabed [N]; NaN for a piece entirely on the
+        seabed.
+        """
         tension = self.solution.tension
         hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
         within = np.minimum.reduceat(hanging[:-1], self._first)
@@ -92,7 +94,8 @@ class LineFigures:
 
     @cached_property
     def tilt(self) -> Floats:
-        """(n,) angle of the chord from the vertical [degrees].
+        """(n,) angle of the straight line between the ends of each piece, from the vertical
+        [degrees].
 
         A piece without length takes the angle of the tension; all pieces of a head, which is one
         rod, take the angle of the rod.
@@ -111,7 +114,7 @@ class LineFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(n,) knockdown [m]; NaN without the line in still water."""
+        """(n,) knockdown [m]; NaN if there is no solution in still water."""
         if self.still is None:
             return np.full(self.count, np.nan)
         before = self.still.piece_nodes[self._ahead, 1 if self.solution.line.towed else 0]
@@ -120,7 +123,7 @@ class LineFigures:
 
     @property
     def reynolds(self) -> Floats:
-        """(n,) largest Reynolds number from speed and diameter; NaN for unknown diameters."""
+        """(n,) largest Reynolds number, from flow speed and diameter; NaN for unknown diameters."""
         solution = self.solution
         middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
         speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
@@ -130,7 +133,7 @@ class LineFigures:
 
 
 class ClampFigures:
-    """Columns of the m instruments clamped on a solved line, in the order of the file.
+    """Columns of the m clamped instruments of a solved line, in file order.
 
     Attributes
     ----------
@@ -160,8 +163,8 @@ class ClampFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(m,) angle of the mean tension above and below the clamp, or on a rigid piece the tilt of
-        the piece [degrees].
+        """(m,) tilt [degrees]: angle of the mean tension above and below the clamp or, on a rigid
+        piece, of the piece.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
@@ -173,7 +176,7 @@ class ClampFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(m,) knockdown [m]; NaN without the line in still water."""
+        """(m,) knockdown [m]; NaN if there is no solution in still water."""
         if self.still is None:
             return np.full(len(self._elements), np.nan)
         before = self.still.position[np.flatnonzero(self.still.element_clamp >= 0)]
@@ -199,7 +202,7 @@ class NodeFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(k,) angle of the segment that ends at each node, from the vertical [degrees]."""
+        """(k,) angle of the segment that ends at the node, from the vertical [degrees]."""
         chord = self.solution.position[:-1] - self.solution.position[1:]
         if self.solution.line.towed:
             chord = -chord
@@ -213,13 +216,15 @@ class NodeFigures:
 
 
 def leaning_of(vector: Floats) -> Floats:
-    """Angle of vectors (..., 3) from the upward vertical [degrees]; 0 for a zero vector."""
+    """Return the angle of vectors (..., 3) from the upward vertical [degrees]; 0 for a zero
+    vector.
+    """
     horizontal = np.hypot(vector[..., 0], vector[..., 1])
     tilt: Floats = np.degrees(np.arctan2(horizontal, vector[..., 2]))
     return np.where((horizontal > 0) | (vector[..., 2] != 0), tilt, 0.0)
 
 
 def catalogue_figures(parts: Sequence[Piece | Clamp], name: str) -> Floats:
-    """(n,) values of a catalogue field of pieces or clamps; NaN for unknown values."""
+    """Return (n,) values of a catalogue field for pieces or clamps; NaN for unknown values."""
     values = [getattr(part.component, name, None) for part in parts]
     return np.array([np.nan if value is None else value for value in values])

@@ -38,28 +38,28 @@ def components_of(
 
 
 def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | None = None) -> Clamps:
-    """Build the table of the clamped instruments, in file order, down each piece."""
+    """Build the table of the clamped instruments, in file order and down each piece."""
     held = ClampFigures(pieces, solution, still)
     return Clamps.made(held.clamps, lambda column: column.found and column.found(held))
 
 
 def shape_of(solution: Solution) -> Shape:
-    """Return the shape of the line, node by node."""
+    """Return the shape of the line as a table, node by node."""
     nodes = NodeFigures(solution)
     return Shape(**{one.name: one.found(nodes) for one in Shape.columns() if one.found})
 
 
 def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
-    """Append the anchor, upright below the line's end, to the components."""
+    """Append the anchor, upright below the lower end of the line, to the components."""
     end = LineEnd(above[-1], anchor, depth)
     return Components.joined([above, _standing(Components, anchor, end)])
 
 
 def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
-    """Build the row of a clamp on the anchor, which does not move."""
+    """Build the row of a clamp on the anchor."""
     return _standing(Clamps, clamp, OnAnchor(clamp, anchor))[0]
 
 
 def _standing(table: type[T], part: Piece | Clamp, end: LineEnd | OnAnchor) -> T:
-    """Build the row of an anchor, or of a clamp on it, as a table."""
+    """Build a table with one row, for an anchor or a clamp on an anchor."""
     return table.made([part], lambda column: np.array([column.at_anchor and column.at_anchor(end)]))

@@ -1,4 +1,4 @@
-"""Cache of solutions, for a line that is edited or solved in many environments."""
+"""Cache of solver outcomes, for a line that is edited or solved in many environments."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from typing import Any, ParamSpec, TypeVar
 from calm.errors import NoEquilibrium
 
 MOST = 256
-"""Number of latest outcomes kept."""
+"""Number of outcomes kept, the latest ones."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 class Memory:
-    """Cache of solver outcomes by their inputs, so that identical problems are solved only once.
+    """Cache of solver outcomes by inputs, so that identical problems are solved only once.
 
     A new label does not require a new solution, and a new current does not require a new solution
     in still water. Threads may share the cache.
@@ -36,8 +36,8 @@ class Memory:
         return Memory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return the outcome of a solver for its arguments, cached; a `NoEquilibrium` is raised
-        again.
+        """Return the outcome of a solver for its arguments, from the cache if possible; a cached
+        `NoEquilibrium` is raised again.
         """
         key = _digits((solver.__module__, solver.__qualname__, given, named))
         with self._lock:
@@ -61,18 +61,18 @@ class Memory:
 
 
 class NoMemory(Memory):
-    """A cache that keeps nothing: every line is solved."""
+    """Replacement for the cache that stores nothing: every line is solved."""
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
         return NoMemory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return the result of the solver."""
+        """Return the result of the solver for its arguments."""
         return solver(*given, **named)
 
 
 class _Describing(pickle.Pickler):
-    """Pickler that serialises the inputs of a solver to a key.
+    """Pickler that serialises the inputs of a solver to a cache key.
 
     A dataclass is written by its fields, without cached properties; a function, such as the curve
     of a hull, by its name and closure.

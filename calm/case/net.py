@@ -1,4 +1,4 @@
-"""Legs of a net, solved together."""
+"""Solution of the legs of a net together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from calm.solve.net import NetSolution, solve_net
 
 
 def net_legs(legs: Sequence[Leg]) -> tuple[NetLeg, ...]:
-    """Return the legs as input of the solver."""
+    """Convert the legs to the input of the solver."""
     nodes = nodes_of([leg.keys for leg in legs])
     return tuple(
         NetLeg(leg.line, _end(leg.top, nodes, leg), _end(leg.bottom, nodes, leg)) for leg in legs
@@ -45,7 +45,7 @@ def _end(end: EndKeys, nodes: Mapping[str, int], leg: Leg) -> LegEnd:
 def solve_together(
     legs: Sequence[Leg], water: Water, settings: Settings, near: NetSolution | None
 ) -> NetSolution:
-    """Solve the legs of a net in given water, first near another solution of the net.
+    """Solve the legs of a net in given water, starting from another solution of the net if given.
 
     Raises NoEquilibrium if no equilibrium passes every check.
     """
@@ -61,7 +61,7 @@ def solve_together(
 
 
 def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | None:
-    """Explain a net that sinks, or whose fixed ends are farther apart than its legs are long.
+    """Diagnose a net that sinks, or whose fixed ends are farther apart than its legs are long.
 
     Pieces that may lie on the seabed count without their weight. The shortest path through the net
     between two ends is computed with the Floyd-Warshall method.

@@ -1,4 +1,4 @@
-"""Lookup of pieces and clamps by label, and files with changed values."""
+"""Lookup of pieces and clamps by label, and copies of files with changed values."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from calm.solve import Solution
 from calm.whole_file import read_text
 
 TOP = "top"
-"""Name of the free end of the line, whatever its label."""
+"""Name that always refers to the free end of the line, whatever the label of its piece."""
 
 
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
-    """Find the part with a given label.
+    """Find the single part with a given label.
 
     Raises LookupError, with the existing labels, if no part or more than one part matches.
     """
@@ -38,8 +38,7 @@ def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
 
 
 def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
-    """Find the parts with a given label: the part of that label, or all parts whose label is this
-    text with a number.
+    """Find all parts with a given label or with this label and a number appended.
 
     Raises LookupError, with the nearest label, if no part matches.
     """
@@ -65,8 +64,8 @@ def _listed(labels: Sequence[str]) -> str:
 
 @contextmanager
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
-    """Context manager that adds the label of a piece to errors of the solver, which counts the
-    pieces of a tow from the other end.
+    """Add the label of a piece to solver errors (context manager). The solver numbers the pieces of
+    a tow from the lower end.
     """
     try:
         yield
@@ -78,14 +77,14 @@ def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterato
 
 
 OtherEnvironment = str | Path | Mapping[str, Any]
-"""Name of an environment in the file, path of an environment file, or keys to change in the default
-environment.
+"""Environment to use: a name in the file, the path of an environment file, or changes to the
+default environment.
 """
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Source of a mooring; the names are those of `load`."""
+    """Source from which a mooring was read; the attributes are the arguments of `load`."""
 
     path: str | Path
     environment: str | Path | None
@@ -93,7 +92,7 @@ class Origin:
     text: str | None
 
     def read(self) -> MooringFile:
-        """Read the file and all files it refers to, see `read_mooring`."""
+        """Read the file and all files that it refers to, see `read_mooring`."""
         return read_mooring(
             self.path, environment=self.environment, catalogs=self.catalogs, text=self.text
         )
@@ -105,7 +104,7 @@ class Origin:
         environment: OtherEnvironment | None,
         keys: Mapping[str, Any],
     ) -> Origin:
-        """Return the source with values changed in the text, or with another environment.
+        """Return the source with changed values, or with another environment.
 
         Parameters
         ----------
@@ -136,7 +135,7 @@ class Origin:
 
 
 def _written(value: Any) -> Any:
-    """A value as the text of a file has it: numbers within lists and mappings are texts, too."""
+    """Convert a value to its text in a file; numbers within lists and mappings become text, too."""
     if isinstance(value, Mapping):
         return {key: _written(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
@@ -163,7 +162,8 @@ def _place_of(file: MooringFile, label: str) -> Location:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """Depth of every node of a line below the seabed of its file (k+1,) [m]; NaN outside its grid.
+    """Return the depth of every node of a line below the seabed of its file (k+1,) [m]; NaN outside
+    the depth grid.
 
     `depth` is the water depth at the origin, or for a leg at its anchor [m].
     """

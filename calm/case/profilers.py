@@ -1,4 +1,4 @@
-"""Profilers at and between their stops."""
+"""Solutions for profilers at their stops and between them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from calm.files import Clamp, MooringFile, Place, Profiler
 from calm.files.pieces import clamps_in
 
 PLACES = 11
-"""Number of positions for which a profiler is solved, including its two stops."""
+"""Number of positions at which a profiler is solved, including its two stops."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class ProfilerTravel:
 
 
 def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
-    """Travel of every profiler of a line, with the other profilers at their upper stops.
+    """Solve every profiler of a line along its path; the other profilers are at their upper stops.
 
     Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`.
     """
@@ -58,7 +58,7 @@ def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
 
 
 def profilers_in(leg: Leg) -> list[Clamp]:
-    """Profilers that travel on a line."""
+    """Find the profilers that travel on a line."""
     return [clamp for clamp in clamps_in(leg.file.pieces) if clamp.travel is not None]
 
 
@@ -97,7 +97,7 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 
 
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
-    """Return a file with fixed profilers, one of them optionally at another position.
+    """Return a file with fixed profilers, one of which may be placed at another position.
 
     Parameters
     ----------

@@ -41,11 +41,11 @@ if TYPE_CHECKING:
 Row = TypeVar("Row")
 
 _OF_THE_FILE = "part"
-"""Column with the models of the file, omitted in JSON and in data frames."""
+"""Column for the file's data model of a part, omitted in JSON and in data frames."""
 
 
 class Columnar:
-    """Columns by their names: `table.depth` is the `depth` of all rows."""
+    """Table with its columns as attributes: `table.depth` is the depth of all rows."""
 
     def __init__(self, **columns: Any) -> None:
         if sorted(columns) != sorted(self.names()):
@@ -55,7 +55,7 @@ class Columnar:
     if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Return a column."""
+            """Return a column by name."""
 
     @classmethod
     def names(cls) -> list[str]:
@@ -66,7 +66,7 @@ class Columnar:
         return {name: getattr(self, name) for name in self.names()}
 
     def with_columns(self, **columns: Any) -> Self:
-        """Return the table with some columns replaced."""
+        """Return a copy of the table with some columns replaced."""
         return type(self)(**{**self.__getstate__(), **columns})
 
 
@@ -81,18 +81,18 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Names of the columns, in their order."""
+        """Names of the columns, in table order."""
         return [each.name for each in fields(cls.record)]
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """Entries of the columns, by default all, else those shown in an output."""
+        """Definitions of all columns, or of the columns that an output shows."""
         every = columns_of(cls.record)
         return [*every] if output is None else shown_in(every, output)
 
     @classmethod
     def made(cls, parts: Sequence[Any], value: Callable[[ResultColumn], Any]) -> Self:
-        """Build a table of pieces or clamps of a file, with its derived columns.
+        """Build a table of pieces or clamps of a file, and compute its derived columns.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @cached_property
     def _records(self) -> tuple[Row, ...]:
-        """Rows as records, cached for the rules of a design check."""
+        """Rows as records, cached for the rules of the design check."""
         columns = [getattr(self, name) for name in self.names()]
         # converting whole columns to plain numbers is faster than element by element
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
@@ -190,7 +190,9 @@ def _known(value: Any) -> Any:
 
 
 class LineEnd(NamedTuple):
-    """Input of the anchor's row: the row above the anchor, its piece, the water depth [m]."""
+    """Input for the row of an anchor: the row above, the piece of the anchor, and the water depth
+    [m].
+    """
 
     above: ComponentRow
     piece: Piece
@@ -203,7 +205,7 @@ class LineEnd(NamedTuple):
 
 
 class OnAnchor(NamedTuple):
-    """Input of the row of a clamp on an anchor: the clamp, and the row of the anchor."""
+    """Input for the row of a clamp on an anchor: the clamp, and the row of the anchor."""
 
     clamp: Clamp
     anchor: ComponentRow
@@ -223,7 +225,7 @@ def _planned(part: Piece | Clamp) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ComponentRow:
-    """A piece of a solved line, a row of `Components`, which describes the values."""
+    """One piece of a solved line: a row of `Components`, where the values are described."""
 
     part: Piece = column("the piece of the file", of_part=lambda piece: piece, in_repr=False)
     index: int = column(
@@ -391,13 +393,15 @@ class ComponentRow:
 
     @property
     def upper(self) -> tuple[float, float, float]:
-        """Depth, east and north of its upper end [m]."""
+        """Depth, east and north of the upper end of the piece [m]."""
         return self.depth_top, self.x_top, self.y_top
 
 
 @dataclass(frozen=True, slots=True)
 class ClampRow:
-    """An instrument clamped on a solved line, a row of `Clamps`."""
+    """One clamped instrument of a solved line: a row of `Clamps`, where the values are
+    described.
+    """
 
     prefix: ClassVar[str] = "clamp_"
 
@@ -500,13 +504,13 @@ OF_ROWS = tuple(
         ("leg", "name of the leg in a net", Output.JSON | Output.CSV, _leg, {}),
     )
 )  # fmt: skip
-"""Columns of pieces and clamps that are not stored: outputs compute them row by row. JSON omits a
-column that is None.
+"""Columns of pieces and clamps that are computed row by row for output and not stored. JSON omits a
+column whose value is None.
 """
 
 
 class Components(ColumnTable[ComponentRow]):
-    """The n pieces of the line in file order. NaN stands for unknown values.
+    """Table of the n pieces of the line, in file order. NaN stands for unknown values.
 
     The pieces of a mooring are listed from the free end down, with the anchor last, those of a tow
     from the ship. The columns are the fields of `ComponentRow`, (n,) each: `part`, `use`, `label`,
@@ -519,7 +523,7 @@ class Components(ColumnTable[ComponentRow]):
 
 
 class Clamps(ColumnTable[ClampRow]):
-    """The m instruments clamped on the line, in file order.
+    """Table of the m clamped instruments, in file order.
 
     The columns are the fields of `ClampRow`, (m,) each. `tension` is the larger of the tensions
     above and below the clamp [N]. `tilt` is the angle of the sum of these tensions, or on a rigid
@@ -530,7 +534,7 @@ class Clamps(ColumnTable[ClampRow]):
 
 
 def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
-    """Rows as JSON objects; None stands for unknown values."""
+    """Convert rows to JSON objects; None stands for unknown values."""
     own, of_the_file = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
     rows = []
     for row in table:
@@ -541,14 +545,16 @@ def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, A
 
 
 def table_columns(output: Output) -> list[ResultColumn]:
-    """Columns of a printed table, from left to right, or of the builder in the order of entry."""
+    """Return the columns of a printed table from left to right, or of the builder in order of
+    entry.
+    """
     shown = shown_in((*OF_ROWS, *Components.columns()), output)
     return shown if output == Output.BUILDER else sorted(shown, key=lambda one: one.place)
 
 
 @dataclass(frozen=True, repr=False)
 class Shape:
-    """Shape of the line, node by node, free end first, with the point of a clamp twice (above,
+    """Shape of the line, node by node from the free end. The point of a clamp occurs twice (above,
     below).
 
     Attributes
@@ -585,7 +591,7 @@ class Shape:
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """Entries of the columns, by default all, else those shown in an output."""
+        """Definitions of all columns, or of the columns that an output shows."""
         every = columns_of(cls)
         return [*every] if output is None else shown_in(every, output)
 
@@ -593,7 +599,7 @@ class Shape:
         return f"Shape({len(self.depth)} nodes)"
 
     def to_dict(self) -> dict[str, list[float]]:
-        """Return the columns as lists of plain numbers."""
+        """Return the columns as lists of Python numbers."""
         return {one.name: getattr(self, one.name).tolist() for one in self.columns(Output.JSON)}
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -633,7 +639,7 @@ class Accuracy:
 
 @dataclass(frozen=True)
 class Top:
-    """The free end of a line, with None for unavailable values."""
+    """The free end of a line; None stands for unavailable values."""
 
     depth: float = column("depth of the free end", Output.JSON)
     x: float = column(f"{_EAST}, at the free end", Output.JSON)
@@ -691,7 +697,9 @@ class TowedBody:
 
 @dataclass(frozen=True)
 class EndLoad:
-    """Load of a leg on its anchor or other support; the last four values exist for anchors only."""
+    """Load of a leg on its anchor or other support. The last four attributes exist for anchors
+    only.
+    """
 
     leg: str = column("name of the leg", Output.JSON)
     tension: float = column("tension of the leg at its end", _AN_END, title="tension", place=1)
@@ -719,7 +727,7 @@ class EndLoad:
 
 @dataclass(frozen=True)
 class NodePlace:
-    """A node, where legs meet."""
+    """Position of a node that joins legs."""
 
     name: str = column("name of the node", Output.JSON)
     depth: float = column("depth of the node", _AN_END)
@@ -741,14 +749,16 @@ ENDS: Mapping[str, type[Any]] = {
     "tow_point": TowPoint,
     "body": TowedBody,
 }
-"""Records of a single line by their names in JSON and of the result in Python."""
+"""Types of the end records of a single line, by their names in JSON and in the Python result."""
 
 NET_ENDS: Mapping[str, type[Any]] = {"anchors": EndLoad, "held": EndLoad, "nodes": NodePlace}
-"""Records of a net; each name refers to several records."""
+"""Types of the end records of a net, by name; each name refers to a list of records."""
 
 
 def _free(line: Any) -> float:
-    """1 for a line with a free upper end, NaN for a leg that is held or joined there."""
+    """Return 1 for a line with a free upper end, NaN for a leg whose upper end is held or
+    joined.
+    """
     legs = line.file.legs
     return 1.0 if not legs or legs[0].top.free else nan
 
@@ -791,7 +801,7 @@ MOORED_ENDS = (
         found=lambda line: _free(line) * line.other_used_buoyancy,
     ),
 )
-"""Columns of the ends of a moored line, or of each leg of a net."""
+"""Columns of the end values of a moored line, or of each leg of a net."""
 
 TOWED_ENDS = (
     ResultColumn(
@@ -823,11 +833,11 @@ TOWED_ENDS = (
         found=lambda tow: tow.tow_point.tension,
     ),
 )
-"""Columns of the ends of a tow."""
+"""Columns of the end values of a tow."""
 
 
 class WithClamps(Protocol):
-    """A result with pieces and clamps."""
+    """Protocol of a result with pieces and clamps."""
 
     @property
     def components(self) -> Components:
@@ -839,12 +849,12 @@ class WithClamps(Protocol):
 
 
 def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
-    """Rows of a result by the place of the piece or clamp."""
+    """Map the place of each piece or clamp in the file to its row."""
     return {row.place: row for row in (*result.components, *result.clamps)}
 
 
 def item_numbers(*results: WithClamps) -> dict[str, str]:
-    """Number of each piece and clamp by its label, the same in all documents.
+    """Assign an item number to each piece and clamp by label, for use in all documents.
 
     Pieces are numbered from 1 in the order of the results, such as the legs of a net; a clamp has
     the number of its piece and a letter.
@@ -870,7 +880,7 @@ def run_of(numbers: Sequence[str]) -> str:
 
 
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
-    """Yield the pieces of a result, each with its clamps, without placeholders for anchors."""
+    """Yield the pieces of a result, each followed by its clamps, without stand-ins for anchors."""
     on: dict[int, list[ClampRow]] = {}
     for clamp in result.clamps:
         on.setdefault(clamp.index, []).append(clamp)

@@ -1,4 +1,4 @@
-"""Inverse design: the smallest change of a mooring that meets a target."""
+"""Inverse design: find the smallest change of one parameter that meets a target."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
@@ -19,19 +19,19 @@ MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 """Statuses of a sizing."""
 
 _NOTHING = 1e-6
-"""Relative change of the target's quantity that counts as none."""
+"""Relative change of the target quantity that is treated as no change."""
 SOLVES = 60.0
-"""Approximate number of equilibria per answer, three for each value tried."""
+"""Approximate number of equilibria per answer; each tried value takes three."""
 
 _EXACT = 1e-7
-"""Error of an `=` target that counts as met, as a share of the limit or of the initial distance to
-the limit.
+"""Error at which an `=` target counts as met, as a fraction of the limit or of the initial distance
+to the limit.
 """
 
 
 @dataclass(frozen=True)
 class Trial:
-    """The mooring with one value of the changed number.
+    """The mooring with one tried value of the parameter.
 
     Attributes
     ----------
@@ -50,13 +50,15 @@ class Trial:
 
     @property
     def figures(self) -> Figures | None:
-        """Values of the line and its top, or in a net of the target's part."""
+        """Summary values of the line. Position values refer to its top, or in a net to the part of
+        the target.
+        """
         return None if self.result is None else figures_of(self.result, self.place)
 
 
 @dataclass(frozen=True)
 class Sizing:
-    """The outcome of a sizing.
+    """Outcome of a sizing.
 
     Attributes
     ----------
@@ -93,7 +95,7 @@ class Sizing:
         return tuple(notes)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object, in SI units and degrees, with null for unknown values."""
+        """Return the JSON object, in SI units and degrees; unknown values are null."""
         from calm.version import __version__
 
         document: dict[str, Any] = {
@@ -131,7 +133,7 @@ def _trial_document(trial: Trial) -> dict[str, Any]:
 def size(
     mooring: Design, target: str, change: str, between: tuple[str, str] | None = None
 ) -> Sizing:
-    """Find the smallest change of a mooring that meets a target.
+    """Find the smallest change of a parameter that makes a mooring meet a target.
 
     Every value tried is solved as in `Design.solve`, with fitted pieces fitted anew.
 
@@ -228,7 +230,7 @@ def _understood(
 def _why_not(
     search: LeastChange, target: Target, change: Adjustment, at: Callable[[float], Trial]
 ) -> tuple[str, str]:
-    """Return the reason why no value was found, and advice."""
+    """Return the reason why no value meets the target, and advice."""
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"
     if least is None:

@@ -1,4 +1,4 @@
-"""Strumming of cables: frequency and drag of a solution, and its band with amplified drag."""
+"""Strumming of cables: frequency and drag in a solution, and results with amplified drag."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from calm.solve.audit import amplification, flow_across
 
 @dataclass(frozen=True)
 class Strumming:
-    """Strumming of the cables: frequency [Hz], and range of their Cn.
+    """Strumming of the cables: frequency [Hz], and range of the normal drag coefficient Cn.
 
     `frequency` is the common frequency of a towed cable; for a mooring it is the highest shedding
     frequency of its cables.
@@ -29,8 +29,8 @@ class Strumming:
 
 
 def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
-    """Frequency and range of Cn over the cables; None without a law of strumming or without
-    cables.
+    """Return the frequency and the range of Cn over the cables; None without a strumming law or
+    without cables.
     """
     line, piece = solution.line, solution.element_piece
     cables = (line.diameter[piece] > 0.0) & (solution.element_clamp < 0) & (solution.cut > 0.0)
@@ -47,12 +47,15 @@ def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
 
 
 FACTOR = 1.5
-"""Factor on the Cn of every cable, about the measured value on strumming mooring lines."""
+"""Factor on the normal drag coefficient of every cable, about the value measured on strumming
+mooring lines.
+"""
 
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """Results for the line with Cn × `factor` on all its cables; None if there is no equilibrium.
+    """Results for the line with the Cn of all cables multiplied by `factor`; None if there is no
+    equilibrium.
 
     Attributes
     ----------
@@ -71,8 +74,8 @@ class StrummingBand:
 
 
 def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
-    """Compute the strumming band of a line; `still_depth` is the depth of a mooring's top in still
-    water [m].
+    """Solve a line with amplified cable drag; `still_depth` is the depth of its top in still water
+    [m].
 
     None if no cable can strum, or if the file has a law of strumming.
     """

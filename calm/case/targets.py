@@ -22,7 +22,8 @@ QUANTITIES = {
     "tension": "force",
     "required_weight": "force",
 }
-"""Quantities of a target, with their dimensions; the last refers to the anchor."""
+"""Quantities that a target may limit, and their dimensions. `required_weight` refers to the anchor.
+"""
 
 RELATIONS = {"<=": "<=", "≤": "<=", ">=": ">=", "≥": ">=", "=": "=", "==": "="}
 
@@ -34,13 +35,13 @@ _EXAMPLE = "knockdown(top) <= 20 m"
 
 
 def pointed(option: str, text: str, column: int, message: str) -> UsageError:
-    """Return the error for an option, with a caret under the mistake."""
+    """Return the error for an option, with a caret below the faulty position."""
     return UsageError(f"{option}: {message}\n  {text}\n  {' ' * column}^")
 
 
 @dataclass(frozen=True)
 class Target:
-    """A limit for one quantity of one part of the line.
+    """A limit for one quantity at one part of the line.
 
     Attributes
     ----------
@@ -65,7 +66,7 @@ class Target:
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
     def value(self, result: Result) -> float | None:
-        """The quantity in a result; None for an undefined knockdown."""
+        """Return the value of the quantity in a result; None for an undefined knockdown."""
         if self.quantity == "required_weight":
             (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
             return anchor.required_weight
@@ -73,7 +74,7 @@ class Target:
         return value
 
     def to_dict(self) -> dict[str, Any]:
-        """The target in JSON."""
+        """Return the target as a JSON object."""
         names = ("text", "quantity", "label", "relation", "limit", "unit")
         return {name: getattr(self, name) for name in names}
 
@@ -136,7 +137,7 @@ def parse_target(text: str, file: MooringFile) -> Target:
 
 
 def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
-    """Depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
+    """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
     For a piece, they refer to its upper end, and the tension is the maximum in the piece. The
     knockdown is None if the line has no unique shape in still water. The default place is the top
@@ -157,7 +158,7 @@ def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Figures:
-    """A solved mooring in eight numbers: lengths [m], forces [N].
+    """Eight summary values of a solved mooring: lengths [m], forces [N].
 
     Attributes
     ----------
@@ -177,8 +178,8 @@ class Figures:
 
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """Summary values of a result; values of the line refer to the part at a place, by default the
-    top.
+    """Return the summary values of a result. Position values refer to the part at a given place, by
+    default the top.
 
     With several anchors, the anchor is the one with the largest required weight.
     """
@@ -192,7 +193,7 @@ def figures_of(result: Result, place: Place | None = None) -> Figures:
 
 
 def leg_at(result: Result, place: Place | None = None) -> LegResult:
-    """The leg with the part at a place, by default the first leg."""
+    """Return the leg that contains the part at a given place, by default the first leg."""
     for leg in result.legs:
         if place is None or any(part.place == place for part in parts_of(leg.leg.pieces)):
             return leg

@@ -1,4 +1,4 @@
-"""A tow at several speeds of its ship."""
+"""Solutions of a tow at several ship speeds."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ SOLVES = 3.0
 
 
 def at_speed(tow: Design, speed: float) -> Design:
-    """Return a tow at another ship speed [m/s]; a fitted cable keeps its length."""
+    """Return a copy of a tow at another ship speed [m/s]; a cable of fitted length keeps this
+    length.
+    """
     assert tow.file.tow is not None
     keys = tow.file.tow.model_copy(update={"speed": speed})
     return Design(replace(tow.file, tow=keys), lines=(tow.line,))
 
 
 def sweep(tow: Design, speeds: Iterable[float]) -> list[Result | NoEquilibrium]:
-    """Solve a tow at several ship speeds [m/s], > 0; each item is a result or the reason why there
+    """Solve a tow at several ship speeds [m/s], > 0. Each item is a result, or the reason why there
     is none.
 
     Speeds are solved one at a time; the tow's own speed only determines the length of a fitted

@@ -1,4 +1,4 @@
-"""Uncertainty of the results of a mooring, from solutions for many draws of its inputs.
+"""Uncertainty of a mooring's results, from solutions for many random draws of its inputs.
 
 Every sample is solved on the cuts of the original mooring, or anew if this finds no equilibrium of
 the same kind, and must pass every check of a solution.
@@ -26,15 +26,17 @@ from calm.physics.line import Floats
 from calm.solve import CompiledPart, expect_many
 
 BLOCK = 128
-"""Number of samples that a process solves at a time."""
+"""Number of samples that a process solves in one task."""
 
 LEVELS = (5.0, 50.0, 95.0)
-"""Percentiles of the results."""
+"""Percentiles of the results [%]."""
 
 
 @dataclass(frozen=True)
 class Contribution:
-    """Share of the variance of a quantity that a cause explains, alone and with other causes."""
+    """Fraction of a quantity's variance that one input explains, alone and in combination with
+    other inputs.
+    """
 
     cause: str
     quantity: str
@@ -44,7 +46,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Uncertain:
-    """Uncertainty of the results of a mooring, as percentiles in the order of `LEVELS`.
+    """Percentiles of a mooring's results for uncertain inputs, in the order of `LEVELS`.
 
     Attributes
     ----------
@@ -81,18 +83,18 @@ class Uncertain:
 
     @property
     def failed(self) -> int:
-        """Samples without equilibrium."""
+        """Number of samples without equilibrium."""
         return sum(self.failures.values())
 
     @property
     def clamped(self) -> list[tuple[int, str]]:
-        """Component index and label of each clamp."""
+        """Component index and label for each clamp."""
         given = self.result.clamps
         return list(zip(given.index, given.label, strict=True))[: self.clamps.shape[2]]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the object `uncertainty` of the JSON results, in SI units, with null for unknown
-        values.
+        """Return the object `uncertainty` of the JSON results, in SI units; unknown values are
+        null.
         """
         columns = ("depth_top", "knockdown", "tilt", "tension")
         clamps = [
@@ -123,7 +125,9 @@ def _known(values: Floats) -> list[float] | None:
 
 
 Mapped = Callable[[Callable[[Any], Any], Sequence[Any]], Iterable[Any]]
-"""Function that applies a function to all tasks in order: `map`, or several processes."""
+"""Function that applies another function to all tasks in order, in one process (`map`) or in
+several.
+"""
 
 
 def uncertain(
@@ -133,7 +137,7 @@ def uncertain(
     mapped: Mapped = map,
     normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
-    """Compute the uncertainty of a solved mooring.
+    """Compute the uncertainty of a solved mooring's results.
 
     Parameters
     ----------
@@ -192,7 +196,9 @@ def uncertain(
 def _figures(
     leg: Leg, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Values (5, p + m) of the pieces and clamps, and values of the anchor, draw by draw."""
+    """Compute values (5, p + m) of the pieces and clamps and values of the anchor, for each
+    draw.
+    """
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(leg, draws):
         try:
@@ -219,7 +225,7 @@ def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
 
 
 def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution, ...]:
-    """Contributions in decreasing order."""
+    """List the contributions in decreasing order."""
     if indices is None:
         return ()
     found = [
@@ -230,14 +236,15 @@ def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution
 
 
 ORDER = 3
-"""Highest order of the terms of one input. Products of two inputs are also included."""
+"""Highest polynomial order of a single input in the fit. Products of two inputs are also included.
+"""
 FEWEST = 4
-"""Smallest number of samples per coefficient."""
+"""Smallest number of samples per fitted coefficient."""
 
 
 @dataclass(frozen=True)
 class Indices:
-    """Shares of the variance of a quantity.
+    """Sobol' indices: fractions of a quantity's variance that each input explains.
 
     Attributes
     ----------
@@ -252,7 +259,7 @@ class Indices:
 
 
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
-    """Estimate Sobol' indices from samples of a quantity, by a fit of Hermite polynomials.
+    """Estimate the Sobol' indices of a quantity from samples, by a fit of Hermite polynomials.
 
     A quantity y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), with ψ_a
     products of normalised Hermite polynomials. These are orthonormal, so c_a² is the contribution

@@ -1,4 +1,4 @@
-"""Warnings about doubtful results, each in a small function."""
+"""Warnings about doubtful results, one small function per warning."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LARGEST_STRAIN = 0.25
 
 
 def is_synthetic(component: Component) -> bool:
-    """Whether a component is a rope of synthetic fibre, according to its `material`.
+    """Return whether a component is a rope of synthetic fibre, according to its `material`.
 
     Steel with a plastic jacket does not count.
     """
@@ -38,7 +38,7 @@ def is_synthetic(component: Component) -> bool:
 
 
 def counted_working_load(component: Component) -> float | None:
-    """Working load used to check a component [N]; None without one.
+    """Return the working load used to check a component [N]; None without one.
 
     Tables of synthetic ropes list a working load for lifting, a twelfth to a seventh of the
     breaking load. A rope with a breaking load is checked against the breaking load only.
@@ -49,7 +49,7 @@ def counted_working_load(component: Component) -> float | None:
 
 
 class _Measured(Protocol):
-    """The values of a `LegResult` that are checked for warnings."""
+    """Values of a `LegResult` that the warnings use."""
 
     @property
     def leg(self) -> Leg: ...
@@ -76,7 +76,7 @@ class _Measured(Protocol):
 
 
 def warnings_of(result: _Measured) -> tuple[str, ...]:
-    """All warnings of the result of a leg, beginning with the notices of the file."""
+    """Collect all warnings about the result of a leg, beginning with the notices of the file."""
     # a leg that is marched from its other end is not a tow
     doubts = (*_OF_ANY, *(_OF_A_TOW if result.leg.towed else _OF_A_MOORING))
     found = [warning for doubt in doubts for warning in doubt(result, result.solution)]
@@ -141,7 +141,8 @@ def _stiffness_unknown(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def unknown_stretch(component: Component, tension: float) -> list[float] | None:
-    """Strains of a synthetic rope by published stiffnesses, in decreasing order [-].
+    """Return the strains of a synthetic rope for the published stiffnesses, in decreasing order
+    [-].
 
     None if the component is not a synthetic rope or has its own stiffness; empty if no stiffness is
     published.
@@ -155,8 +156,8 @@ def unknown_stretch(component: Component, tension: float) -> list[float] | None:
 
 
 def _published(strains: list[float]) -> str:
-    """Describe the stretch according to published stiffnesses of such ropes, from strains in
-    decreasing order.
+    """Describe the stretch that follows from published stiffnesses, given the strains in decreasing
+    order.
     """
     if not strains:
         return "no stiffness of such ropes has been published."
@@ -193,7 +194,7 @@ def _beyond_the_table(result: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
-    """Warn for a tow, which has no design check."""
+    """Warn about fast flow past a towed line; the design check does not cover tows."""
     fast = fast_pieces(result)
     if fast:
         row, limit = fast[0]
@@ -206,7 +207,8 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
-    """Return spheres and cylinders with a Reynolds number above the range of their coefficient.
+    """Return the spheres and cylinders whose Reynolds number exceeds the range of their drag
+    coefficient.
 
     Each is returned with its limit; the largest ratio is first.
     """
@@ -221,7 +223,7 @@ def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
 
 
 def power_text(number: float) -> str:
-    """Format a number with two digits, such as 2e5."""
+    """Format a number with two significant digits, such as 2e5."""
     return f"{number:.2g}".replace("e+0", "e")
 
 
@@ -309,7 +311,7 @@ def _other_equilibrium(_: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
-    """Warn that a float of unknown draft is treated as just immersed, or has the drag
+    """Warn that a float of unknown draft is treated as just immersed, or has the drag coefficient
     `k_surface`.
     """
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"

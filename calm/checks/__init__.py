@@ -1,1 +1,3 @@
-"""Judgements on a catalogue and on a solved line: small functions, each with its source."""
+"""Rules of the design check, for a catalogue and for a solved line: small functions, each with its
+source.
+"""

@@ -1,4 +1,4 @@
-"""Rules of how a line is put together: release, swivels, metals, and the grip of its clamps."""
+"""Rules on the assembly of a line: release, swivels, metals, and the grip of clamps."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -51,7 +51,9 @@ LEAST_BELOW_RELEASE = 1.0
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Check that the line has a release in its load path, and that opening it frees the mooring."""
+    """Check that the line has an in-line release, and that opening this release frees the
+    mooring.
+    """
     leg = handling.leg
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
@@ -115,7 +117,7 @@ def _floats(pieces: Sequence[Piece]) -> bool:
 
 @rule("hardware", once=True)
 def hardware(handling: Handling) -> Iterator[Verdict]:
-    """Return whether the line has any shackle, link or swivel at all, with weight and strength."""
+    """Warn if the line lists no shackle, link or swivel."""
     pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
         message = "The line lists no shackle, link or swivel, so its joints are not checked."
@@ -124,7 +126,7 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """Check that each wire that is not torque-balanced has a swivel between it and a tilting float.
+    """Check for a swivel between each wire that is not torque-balanced and the next tilting float.
 
     Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
     that rotation, and the wire kinks. A swivel at either end lets the wire turn; so do chain and
@@ -161,7 +163,7 @@ def _bears_torque(component: Component) -> bool:
 
 
 def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
-    """Find the float at this end of a wire, and whether a swivel lies between; None without a
+    """Find the float at one end of a wire, and whether a swivel lies between them; None without a
     float.
     """
     has_swivel = False
@@ -176,12 +178,16 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
 
 
 _TOUCH = 0.05
-"""Overlap allowed between neighbouring clamps [m]; a clamped instrument sits off the line."""
+"""Accepted overlap of neighbouring clamps [m]; clamped instruments may sit beside each other on the
+line.
+"""
 
 
 @rule("clamp-place", once=True)
 def clamp_place(handling: Handling) -> Iterator[Verdict]:
-    """Clamps on a cable or chain that overlap, or stick out over its end into the next piece."""
+    """Report clamps on a cable or chain that overlap, or extend beyond its end into the
+    next piece.
+    """
     leg = handling.leg
     lengths = leg.line.length.tolist()
     remedy = "Move it to a free position, or check its `at` and its length."
@@ -213,7 +219,7 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 
 @rule("metals", once=True)
 def metals(handling: Handling) -> Iterator[Verdict]:
-    """Metals far apart in the galvanic series that touch, wherever both materials are known.
+    """Report contacts between metals far apart in the galvanic series, if both materials are known.
 
     Pieces and clamps that are `insulated` touch nothing. The jaws of clamps for instruments are of
     plastic, so a clamp touches its line only where its component says `insulated: false`.
@@ -236,7 +242,8 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Yield dissimilar metals that touch: the less noble, the more noble, their potential [V].
+    """Yield the contacts of dissimilar metals: the less noble part, the more noble part, their
+    potential difference [V].
 
     A part that is `insulated` touches nothing.
     """
@@ -264,7 +271,9 @@ _HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Check the force on each clamp [N], from its weight in water and the drag of the current."""
+    """Check the axial force on each clamp [N], from its submerged weight and the drag of the
+    current.
+    """
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
     for part in _clamps(result.leg):
@@ -278,7 +287,7 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
-    """Check the larger axial force on each clamp [N] during anchor descent or ascent.
+    """Check the larger axial force on each clamp [N] during anchor descent and ascent.
 
     The descent speed is the maximum of the launch, the ascent speed the terminal rise speed. Drag
     coefficients are those for flow along the axis of the clamped item.
@@ -302,8 +311,9 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
-"""Diameters of jacketed wire that the wheels of moored profilers are made for, 1/4 to 3/8 in [m];
-McLane Moored Profiler, user manual."""
+"""Diameter range of jacketed wire for the wheels of moored profilers, 1/4 to 3/8 in [m]. Source:
+McLane Moored Profiler, user manual.
+"""
 
 
 @rule("profiler")
@@ -363,7 +373,7 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
-    """Yield clamps that obstruct a profiler, and a wire of unsuitable diameter."""
+    """Yield obstacles to a profiler: clamps on its path, or a wire of unsuitable diameter."""
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:
@@ -386,7 +396,7 @@ def _clamps(leg: Leg) -> list[JudgedPart]:
 
 
 def _lift(part: JudgedPart, leg: Leg, density: float) -> float:
-    """Net force in water of a density [N], + up."""
+    """Return the net force in water of a given density [N], positive up."""
     gravity, volume = leg.water.gravity, part.component.displaced_volume or 0.0
     excess = (density - REFERENCE_DENSITY) * volume * gravity
     return net_buoyancy(part.component, gravity) + excess

@@ -104,8 +104,8 @@ def judged_stand(
 
 
 def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
-    """Yield, per rule and part, the governing finding of `others` if its utilisation is larger than
-    listed.
+    """Yield, for each rule and part, the governing finding of `others` if its utilisation exceeds
+    that of the listed finding.
     """
     known: dict[tuple[str, Place | None], float] = {}
     for one in listed:
@@ -120,7 +120,7 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 def assessment_of(
     name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Assess a mooring in all its environments, and its handling in one of them.
+    """Assess a mooring in all its environments, and its handling in one environment.
 
     Launch, recovery and breaks are checked in the first environment that has an equilibrium.
 
@@ -162,7 +162,9 @@ def assessment_of(
 
 
 def with_cases(stands: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
-    """The stands, their findings with the codes of their load cases."""
+    """Return the moorings in their environments, with the codes of load cases added to their
+    findings.
+    """
     numbers = _numbers(stands)
 
     def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
@@ -189,7 +191,7 @@ def with_cases(stands: Sequence[MooringInEnvironment]) -> tuple[MooringInEnviron
 
 
 def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -> list[Finding]:
-    """Add the load case of their environment to findings on currents and drag coefficients."""
+    """Add the load case of the environment to findings on currents and drag coefficients."""
     numbers = _numbers(stands)
     return [
         replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
@@ -200,7 +202,9 @@ def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -
 
 
 def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
-    """Number the environments in order, by their own names and by the names in `stands`."""
+    """Number the environments in order; each counts under its own name and under its name in
+    `stands`.
+    """
     numbers: dict[str, int] = {}
     for stand in stands:
         number = numbers.setdefault(
@@ -213,14 +217,14 @@ def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Yield the findings of the rules that consider all environments of a mooring together."""
+    """Yield the findings of the rules that evaluate all environments of a mooring together."""
     for each in OF_ENVIRONMENTS:
         for leg, verdict in each.judge(legs):
             yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
 
 
 OF_ENVIRONMENTS = (currents, environment)
-"""Rules that consider all environments of a mooring together."""
+"""Rules that evaluate all environments of a mooring together."""
 
 
 def findings_of_drag(
@@ -233,7 +237,7 @@ def findings_of_drag(
 
 
 def moving(legs: Iterable[Leg]) -> bool:
-    """Whether current or wind acts on any of the legs."""
+    """Return whether current or wind acts on any of the legs."""
     return any(
         np.hypot(each.water.u, each.water.v).max() >= situations.LEAST_CURRENT
         or each.file.environment.wind is not None
@@ -276,7 +280,7 @@ def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
-    """Return whether a rule judges a piece of a line, which may be a leg of a net."""
+    """Return whether a rule applies to a piece of a line, which may be a leg of a net."""
     anchored = file.pieces[-1].use != STAND_IN
     asked = anchored or not (rule.of_anchor or piece == len(file.pieces) - 1)
     return asked and rule.name not in left_out_of_a_leg(file)
@@ -298,7 +302,7 @@ def _of(finding: Finding) -> tuple[str, Place | None]:
 
 
 def handled(leg: Leg, result: LegResult) -> Handling:
-    """Solve launch, recovery and breaks of a mooring in equilibrium; failures are kept with their
+    """Solve launch, recovery and breaks of a mooring in equilibrium; a failure is recorded with its
     reason.
     """
     launch = or_why_not(launch_of, leg)
@@ -333,7 +337,7 @@ _ORDER = list(TEXTS)
 
 
 def _judging(*, once: bool) -> tuple[Rule, ...]:
-    """Collect the rules of the modules in the order of their texts; rules of a fixed situation come
+    """Collect the rules of the modules in the order of the manual; rules for a fixed situation come
     last.
 
     The rule `currents` is excluded because it considers all environments together.
@@ -356,20 +360,22 @@ _WAVE_RULES = {each.name for each in IN_WAVES}
 _WHOLE = equilibrium, *OF_ENVIRONMENTS, drag_coefficient, missing
 
 RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
-"""Every rule by its name."""
+"""All rules by name."""
 
 
 HANDLED = 64
-"""Samples whose launch and recovery are solved: the first of the sequence, a sequence as well."""
+"""Number of samples for which launch and recovery are solved: the first samples of the sequence,
+which are a valid sequence themselves.
+"""
 
 Key = tuple[str, "Place | None"]
-"""A rule, and the part of the line that it is found on."""
+"""Name of a rule, and the part of the line that its finding refers to."""
 
 
 def with_probabilities(
     assessment: Assessment, samples: int, seed: int, mapped: Mapped = map
 ) -> Assessment:
-    """The assessment, each of its findings with the probability that its limit is broken.
+    """Add to each finding of an assessment the probability that its limit is exceeded.
 
     Parameters
     ----------
@@ -395,7 +401,9 @@ def with_probabilities(
 def _stand(
     stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
 ) -> MooringInEnvironment:
-    """Add probabilities for every situation that has a listed finding."""
+    """Add probabilities to the findings of one environment, for every situation with a listed
+    finding.
+    """
     found = [stand.findings, stand.tighter, stand.accepted]
     wanted = {finding.situation for each in found for finding in each}
     for situation in stand.situations:
@@ -408,7 +416,9 @@ def _stand(
 def _probable(
     findings: tuple[Finding, ...], broken: Counter[Key], samples: int, situation: str | None = None
 ) -> tuple[Finding, ...]:
-    """Add the probability of exceeding the limit to findings of a situation with a limit."""
+    """Add the probability of exceeding the limit to all findings that have a limit, in a given
+    situation or in all.
+    """
     return tuple(
         replace(one, probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
         if one.limit is not None and situation in (None, one.situation)
@@ -418,7 +428,7 @@ def _probable(
 
 
 _ALL: Key = ("", None)
-"""Under which samples without equilibrium are counted."""
+"""Key under which samples without equilibrium are counted."""
 
 
 def _broken(
@@ -449,7 +459,7 @@ def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
 
 
 def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
-    """Return the rule and place of every exceeded limit."""
+    """Return the rule and the place of every exceeded limit."""
     return {
         (rule.name, verdict.place)
         for rule in rules

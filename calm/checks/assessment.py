@@ -1,4 +1,4 @@
-"""A mooring judged: in each of its environments, on its way down, and on its way up."""
+"""Assessment of a mooring: in each of its environments, during deployment, and during recovery."""
 
 from __future__ import annotations
 
@@ -38,15 +38,17 @@ from calm.quantities import say
 _Part = TypeVar("_Part", Piece, Clamp)
 
 MISSING = "missing"
-"""Rule for values that components lack."""
+"""Name of the rule for missing values of components."""
 
 EXAMPLE = "EXAMPLE"
-"""Placeholder in `accept.by` of the examples; a report that relies on it is a draft."""
+"""Placeholder in `accept.by` of the example files; a report that relies on this acceptance is a
+draft.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """A mooring solved in an environment, as given or with something changed.
+    """A mooring solved in an environment, as given or with one changed input.
 
     Either `result` or `failure` is None. Environments may have one in common.
     """
@@ -81,7 +83,7 @@ class MooringInEnvironment:
 
     @property
     def result(self) -> LegResult | None:
-        """Result of the situation as given; None without equilibrium."""
+        """Result for the environment as given; None without equilibrium."""
         return self.situations[0].result
 
 
@@ -116,7 +118,7 @@ class Assessment:
     draws: tuple[int, int] | None = None
 
     def __repr__(self) -> str:
-        """Return how many findings there are of each state."""
+        """Number of findings in each state, as text."""
         counts = Counter(finding.state for finding in self.all_findings())
         told = ", ".join(f"{count} {state}" for state, count in counts.items())
         return f"{self.name}: {self.state} ({told})"
@@ -127,31 +129,37 @@ class Assessment:
         return self.stands[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Yield all findings: per environment first, then launch, recovery and breaks."""
+        """Yield all findings: those of the environments first, then launch, recovery and breaks."""
         for stand in self.stands:
             yield from stand.findings
         yield from self.findings
 
     @property
     def state(self) -> State:
-        """Worst state of all findings; pass if that is accepted or not judged."""
+        """Worst state of all findings; pass if there is no worse state than accepted or not
+        judged.
+        """
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
     @property
     def verdict(self) -> Conclusion:
-        """Conclusion from all findings."""
+        """Conclusion from all findings of the mooring."""
         return conclusion_of(self.every_finding())
 
     @property
     def draft(self) -> bool:
-        """Whether the assessment relies on an acceptance of an example, which nobody has signed."""
+        """Whether the assessment relies on an acceptance of an example file, which nobody has
+        signed.
+        """
         return any(
             one.accept is not None and one.accept.by == EXAMPLE for one in self.accepted_findings()
         )
 
     def every_finding(self) -> Iterator[Finding]:
-        """Yield all findings, then findings of other situations with a larger utilisation."""
+        """Yield all findings, followed by findings of other situations with a larger
+        utilisation.
+        """
         yield from self.all_findings()
         yield from self.tighter_findings()
 
@@ -163,15 +171,17 @@ class Assessment:
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
-        """Yield, for every environment, findings of other situations with a larger utilisation."""
+        """Yield the findings of other situations with a larger utilisation, environment by
+        environment.
+        """
         for stand in self.stands:
             yield from stand.tighter
 
 
 @dataclass(frozen=True)
 class Handling:
-    """Evidence for the rules that are evaluated once per mooring: launch, recovery and breaks, or
-    the reasons why they have no solution, and the result in the first environment. `result` is None
+    """Input of the rules that are evaluated once per mooring: launch, recovery and breaks, or the
+    reasons why these could not be solved, and the result in the first environment. `result` is None
     without equilibrium.
     """
 
@@ -185,7 +195,7 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Accepts of a mooring file on a given day, which apply only to failures and unknowns.
+    """Acceptances in a mooring file on a given day; they apply to failures and unknowns only.
 
     `parts` maps labels to the pieces and clamps of the line.
     """
@@ -196,13 +206,15 @@ class Acceptance:
 
     @classmethod
     def of_file(cls, file: MooringFile, day: date | None) -> Acceptance:
-        """Create the accepts of a mooring file on a day (default: today)."""
+        """Return the acceptances in a mooring file that are valid on a given day (default:
+        today).
+        """
         parts = {part.label: part for part in parts_of(file.pieces)}
         return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
         """Mark a finding as estimated if it relies on an estimate, and as accepted if the file
-        accepts it.
+        accepts this finding.
 
         An accept of the rule `missing` covers every rule that lacks a value of that component.
         """
@@ -224,11 +236,13 @@ class Acceptance:
         environment: str,
         situation: str = AS_GIVEN,
     ) -> Iterator[Finding]:
-        """Yield the findings of a rule for a mooring in an environment, with accepts applied."""
+        """Yield the findings of a rule for a mooring in an environment, after acceptances are
+        applied.
+        """
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
-        """Mark a pass that relies on a lower bound as estimated, and a failure as unknown."""
+        """Mark a pass that relies on a lower bound as estimated, and such a failure as unknown."""
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         own = {} if part is None or not figures else part.component.estimates
         used = [one for name, one in own.items() if name in figures]
@@ -245,7 +259,7 @@ class Acceptance:
         )
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """Yield notices on accepts that do not apply or are unused."""
+        """Yield notices on acceptances that do not apply or are unused."""
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:
@@ -264,7 +278,7 @@ class Acceptance:
 
 
 def _accepted(finding: Finding, accept: Accept) -> Finding:
-    """Mark a finding as accepted, unless its tension exceeds the accepted load.
+    """Mark a finding as accepted, unless the tension exceeds the accepted load.
 
     If the finding has no limit of its own, the accepted load becomes its limit.
     """
@@ -282,7 +296,7 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
 
 
 def estimated(leg: Leg) -> Leg:
-    """Return a leg with the low bounds of estimates for figures that are not given.
+    """Return a copy of a leg in which the lower bounds of estimates replace missing values.
 
     Waves move it where its environment has them, or its float is at the surface.
     """
@@ -301,7 +315,7 @@ def estimated(leg: Leg) -> Leg:
 
 
 def estimated_result(result: LegResult) -> LegResult:
-    """Return a result whose leg has the low bounds of estimates, as `estimated`."""
+    """Return a copy of a result whose leg has the lower bounds of estimates, see `estimated`."""
     judged = estimated(result.leg)
     return result if judged is result.leg else replace(result, leg=judged)
 

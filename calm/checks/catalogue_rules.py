@@ -1,4 +1,4 @@
-"""Figures of a component that cannot be true, in a catalogue and in a design, and those it lacks.
+"""Rules on component values: impossible values and missing values, in a catalogue or in a design.
 
 Only figures that a definition gives are judged; a missing one is no fault, except a missing source.
 """
@@ -35,46 +35,56 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import say
 
 ROUNDING = 1.05
-"""Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
+"""Factor by which rounded values of a data sheet may exceed a limit: 5 %, or 1.7 % of a sphere's
+diameter.
+"""
 
 ROPE_ROUNDING = 1.12
-"""The same for ropes, whose nominal diameter may be the next size below the true one."""
+"""Rounding factor for ropes, larger than `ROUNDING`, since a nominal diameter may be one size below
+the true diameter.
+"""
 
 NOMINAL = 1.25
-"""Maximum ratio of the volume displaced by a jacketed wire to that of its nominal diameter, as
+"""Maximum ratio of a jacketed wire's displaced volume to the volume of its nominal diameter, as
 implied by published masses and weights in water.
 """
 
 LOOSEST = 0.1
-"""Minimum share of its cross-section that a rope displaces; the loosest braids displace half."""
+"""Minimum ratio of a rope's displaced section to its nominal section; the loosest braids displace
+half.
+"""
 
 LIGHTEST_FLOAT = 0.01
-"""Share of its lift that a float weighs at least: foam 0.02, inflated buoys 0.03."""
+"""Minimum ratio of a float's weight to its lift; foam has 0.02, inflated buoys have 0.03."""
 
 STEEL_MODULUS = 210e9
-"""Young's modulus of steel [Pa]; no cable is stiffer than a solid steel bar of its diameter."""
+"""Young's modulus of steel [Pa], the upper limit for any cable: none is stiffer than a solid steel
+bar.
+"""
 
 SOFTEST_WIRE = 0.05
-"""Minimum stiffness of a wire as a share of that of a steel bar; catalogue wires have at least
-0.17.
+"""Minimum ratio of a wire's stiffness to that of a steel bar of equal diameter; catalogue wires
+have at least 0.17.
 """
 
 STRONGEST_METAL = 350e3
-"""Maximum strength-to-density ratio of a metal, from titanium alloys [Pa/(kg/m³)]. Links and
+"""Maximum strength-to-density ratio of a metal, that of titanium alloys [Pa/(kg/m³)]. Links and
 shackles of the catalogue reach 45e3, computed from their mass and length.
 """
 
 HOLLOW = 0.5
-"""Minimum density of connecting hardware as a share of its material's; known hardware has 0.85."""
+"""Minimum ratio of the density of connecting hardware to that of its material; known hardware has
+0.85.
+"""
 
 ANCHOR_SPEEDS = 0.3, 15.0
-"""Minimum and maximum terminal speed of a falling anchor from its weight and `kt` [m/s]; known
-anchors fall at 1.2 to 5.6, a block of 5 t of steel at 12.
+"""Minimum and maximum terminal speed of a falling anchor, computed from its weight and `kt` [m/s].
+Known anchors fall at 1.2 to 5.6 m/s, a 5 t block of steel at 12 m/s.
 """
 
 LEAST_LIFT = 0.1
-"""Minimum buoyancy of a float as a share of the weight of water in a sphere of its diameter;
-catalogue floats have at least 0.23 (glass in a wide hard hat).
+"""Minimum ratio of a float's buoyancy to the weight of water in a sphere of its diameter; catalogue
+floats have at least 0.23 (glass in a wide hard hat).
 """
 
 DEEPEST_WATER = 11000.0
@@ -85,7 +95,7 @@ _NO_SOURCE = "has no `source` for its values"
 
 @dataclass(frozen=True)
 class CatalogueFinding:
-    """Something impossible about a definition, by its id."""
+    """Impossible value in the definition of a component, which is identified by its id."""
 
     id: str
     message: str
@@ -94,7 +104,7 @@ class CatalogueFinding:
 def check_catalogue(
     definitions: Mapping[str, Defined], known: Collection[str]
 ) -> list[CatalogueFinding]:
-    """All findings about the definitions of a catalogue, by id.
+    """List all findings on the definitions of a catalogue, by component id.
 
     Every known id is one that the parts of an assembly, or a `prefer`, may name.
     """
@@ -124,7 +134,7 @@ def check_catalogue(
 
 
 def _sources(component: Component | Outline) -> Iterator[str]:
-    """Yield faults of the sources: no source, a source of an absent value, or a value that is
+    """Yield faults of the sources: no source, a source for an absent value, or a value that is
     present although `searched` lists it as unpublished.
     """
     known = KINDS[component.kind].model_fields
@@ -141,7 +151,7 @@ def _sources(component: Component | Outline) -> Iterator[str]:
 
 
 def impossible(component: Component) -> Iterator[str]:
-    """Yield values that are impossible for a component of its kind, size and material."""
+    """Yield the values of a component that are impossible for its kind, size and material."""
     mass, volume, rating = component.mass, component.displaced_volume, component.depth_rating
     heavy = [*wet_weight_out_of_bounds(component)]
     yield from heavy
@@ -200,7 +210,7 @@ def impossible(component: Component) -> Iterator[str]:
 
 
 def _of_a_load(component: Component) -> Iterator[str]:
-    """Yield a load that is impossible for a component of its kind, size and mass."""
+    """Yield the loads of a component that are impossible for its kind, size and mass."""
     most, size = inf, ""
     if not isinstance(component, Flexible) and not materials.fibre_of(component.material):
         mass, length = component.mass, component.length
@@ -210,13 +220,13 @@ def _of_a_load(component: Component) -> Iterator[str]:
 
 
 def _displaced(component: Component, mass: float) -> float:
-    """Return the weight of the water that a net force and a mass say is displaced [N or N/m]."""
+    """Return the weight of the displaced water, as implied by net force and mass [N or N/m]."""
     return component.net_buoyancy + mass * STANDARD_GRAVITY
 
 
 def _of_a_rope(rope: Cable) -> Iterator[str]:
-    """Yield values that make a rope heavier, stiffer, stronger or more buoyant than its section
-    allows.
+    """Yield values with which a rope would be heavier, stiffer, stronger or more buoyant than its
+    section allows.
 
     Its weight is compared with a solid bar of its `density`, else of its `material` if known, else
     of steel.
@@ -259,17 +269,18 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
 
 
 LEAST_BODY_DRAG = 0.02
-"""Minimum ratio of the drag area of a body to its volume^(2/3), from streamlined bodies aligned
-with the flow (Hoerner 1965, Fluid-Dynamic Drag, chapter VI). Bodies of the catalogue have 0.6 to
-10.
+"""Minimum ratio of a body's drag area to its volume^(2/3), from streamlined bodies aligned with the
+flow (Hoerner 1965, Fluid-Dynamic Drag, chapter VI). Bodies of the catalogue have 0.6 to 10.
 """
 
 SMALL_BODY = 1e-3
-"""Volume up to which the drag of a body may be neglected, as is common for shackles [m³]."""
+"""Volume up to which the drag of a body may be omitted, as is common for shackles [m³]."""
 
 
 def _drags_out_of_range(component: Component) -> Iterator[str]:
-    """Yield a coefficient of drag that no piece of its kind has, or too little drag of a body."""
+    """Yield drag coefficients outside the range for the kind of component, and drag too small for
+    the volume of a body.
+    """
     mass = mass_in_air(component)
     if isinstance(component, Shaped) and mass is not None:
         volume = _displaced(component, mass) / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
@@ -301,7 +312,7 @@ def _unknown_parts(assembly: Assembly, known: Collection[str]) -> Iterator[str]:
 
 
 def _envelope(component: Component) -> float | None:
-    """Volume of the solid a sphere or cylinder describes [m³]; None for other kinds."""
+    """Return the volume within the outline of a sphere or cylinder [m³]; None for other kinds."""
     if isinstance(component, Sphere):
         return pi / 6 * component.diameter**3
     if isinstance(component, Cylinder):
@@ -311,7 +322,7 @@ def _envelope(component: Component) -> float | None:
 
 @rule("figures", once=True)
 def figures(handling: Handling) -> Iterator[Verdict]:
-    """Report values that are impossible or doubtful, such as a load in N that was meant in kN.
+    """Report impossible or doubtful values, such as a load in N that was meant in kN.
 
     A component that occurs several times is reported once.
     """
@@ -339,7 +350,7 @@ def figures(handling: Handling) -> Iterator[Verdict]:
 
 
 def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
-    """Yield that the material a component names is none of those known."""
+    """Report a material that CALM does not know."""
     material = component.material
     if material and not materials_in(material):
         near = nearest(material, [each.name for each in materials.MATERIALS])
@@ -351,10 +362,10 @@ def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
 
 
 LOADS = ("working_load", "breaking_load")
-"""Either of them lets the strength be judged."""
+"""Keys for loads; a component with either key can be checked for strength."""
 
 TILTED_ROLES = ("instrument", "release")
-"""Roles that need to be upright to work."""
+"""Roles of components that only work if they are nearly upright."""
 
 
 @dataclass(frozen=True)
@@ -367,7 +378,7 @@ class MissingFigures:
 
 
 def missing_figures(definitions: Mapping[str, Defined]) -> list[MissingFigures]:
-    """List the components of a catalogue that lack values, with those values.
+    """List the components of a catalogue with missing values, and these values.
 
     Assemblies are skipped because they have no values of their own.
     """

@@ -1,4 +1,4 @@
-"""Comparison of two designs: depth, knockdown, tension, margins, anchor and weights."""
+"""Comparison of two designs: depths, knockdown, tensions, margins, anchor and weights."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -79,9 +79,11 @@ class Comparison:
 
 
 _Solved = tuple[Result | NoEquilibrium, Assessment | None]
-"""Result of a design, or the reason for having none, and its assessment (None for a tow)."""
+"""Result of a design, or the reason why there is none, and the assessment of the design (None for a
+tow).
+"""
 _Figures = dict[str, tuple[str, str, Number | str]]
-"""Title, quantity and value by name."""
+"""Title, quantity and value by the name of the compared value."""
 
 
 def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:
@@ -116,7 +118,7 @@ def _solved(design: Design) -> _Solved:
 
 
 def _figures_of(design: _Solved) -> _Figures:
-    """The figures of the whole, in the order in which they are read."""
+    """Collect the values of a whole design, in the order of printing."""
     result, assessment = design
     stands = not isinstance(result, NoEquilibrium)
     found: _Figures = {"status": ("status", "", "stands" if stands else "does not stand")}

@@ -20,12 +20,12 @@ from calm.quantities import say
 from calm.units import DIMENSIONS
 
 AT_SURFACE = 0.1
-"""Depth down to which a part counts as at the surface [m]."""
+"""Depth down to which a part is treated as being at the surface [m]."""
 
 
 @dataclass(frozen=True)
 class JudgedPart:
-    """A piece of the line, or a clamp on one.
+    """A piece of the line or a clamped instrument, to which a criterion applies.
 
     Attributes
     ----------
@@ -43,14 +43,16 @@ class JudgedPart:
 
 
 def pieces_of(leg: Leg) -> list[JudgedPart]:
-    """The pieces from the top to the anchor."""
+    """Return the pieces from the top to the anchor."""
     return [
         JudgedPart(each.label, each.place, each.component, each.index) for each in leg.file.pieces
     ]
 
 
 def parts_of(leg: Leg) -> list[JudgedPart]:
-    """The pieces above the anchor, then the clamps, those on the anchor too, each from the top."""
+    """Return the pieces above the anchor, then all clamps including those on the anchor, each from
+    the top down.
+    """
     pieces = leg.file.pieces
     on = [piece.index for piece in pieces for _ in piece.clamps]
     clamps = [
@@ -92,7 +94,7 @@ class Criterion:
     stated_least: bool = False
 
     def verdict(self, result: LegResult) -> Verdict | None:
-        """Evaluate the criterion in a result; None if it does not apply."""
+        """Evaluate the criterion for a result; None if the criterion does not apply."""
         value = READINGS[self.quantity](result, self.part)
         if isnan(value) and self.silent:
             return None
@@ -111,7 +113,7 @@ class Criterion:
 
 
 def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdict]:
-    """Yield the most severe verdict on each part; `criteria` must be ordered by part."""
+    """Yield the most severe verdict on each part; `criteria` must be grouped by part."""
     for _, group in groupby(criteria, key=lambda criterion: criterion.part):
         found = [verdict for each in group if (verdict := each.verdict(result)) is not None]
         if found:
@@ -121,7 +123,7 @@ def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdi
 def criteria(
     name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Leg], Iterator[Criterion]]], Rule]:
-    """Make the `Rule` of that name from a function that gives the criteria of a mooring."""
+    """Create the rule of a given name from a function that yields the criteria of a mooring."""
 
     def of(asked: Callable[[Leg], Iterator[Criterion]]) -> Rule:
         def judge(result: LegResult) -> Iterator[Verdict]:
@@ -138,7 +140,7 @@ def _tilt(result: LegResult, part: JudgedPart) -> float:
 
 
 def _depth(result: LegResult, part: JudgedPart) -> float:
-    """Maximum depth of a part; NaN for a piece at the surface."""
+    """Return the maximum depth of a part; NaN for a piece at the surface."""
     if part.clamp is not None:
         return float(result.clamps.depth[part.clamp])
     top, bottom = (
@@ -149,7 +151,7 @@ def _depth(result: LegResult, part: JudgedPart) -> float:
 
 
 def _offset(result: LegResult) -> float:
-    """Horizontal distance of the top from the anchor; in a net, the anchor need not be at the
+    """Return the horizontal distance of the top from the anchor, which in a net need not be at the
     origin.
     """
     anchor = result.components[-1]
@@ -175,7 +177,7 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
     ),
 }
 """Functions that read each quantity from a result. `tension` is the maximum over the whole piece,
-`least_tension` excludes line on the seabed, `slide` is H + friction × V.
+`least_tension` the minimum off the seabed, `slide` is H + friction × V.
 """
 
 
@@ -198,7 +200,7 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
 
 
 def _flattering(file: MooringFile) -> Iterator[LimitKey]:
-    """Yield the settings of the solver and of pieces by which a design is judged more kindly."""
+    """Yield the solver settings and piece settings that make the checks more lenient."""
     solver, wire = file.solver, file.checks.minimum_tension.wire
     if isinstance(solver.strumming, StrummingFactor) and solver.strumming.factor < FACTOR:
         factor, source = solver.strumming.factor, "typical of measurements on strumming lines"
@@ -231,7 +233,9 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def limit_value_text(key: LimitKey, value: float | None) -> str:
-    """Format a value of a limit with its unit (times in days, shares in percent), or a dash."""
+    """Format the value of a limit with its unit (times in days, fractions in percent), or a
+    dash.
+    """
     if value is None:
         return "-"
     if key.share:

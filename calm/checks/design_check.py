@@ -44,7 +44,7 @@ _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net
 
 
 def check(*designs: Design, day: date | None = None) -> Assessment:
-    """Judge a mooring, or a net of legs, by every rule of the design check.
+    """Check a mooring or a net of legs against all rules of the design check.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
 
 
 def stands_of(design: Design, name: str, day: date | None = None) -> list[MooringInEnvironment]:
-    """Solve a design in its environment, in every situation, and judge each leg.
+    """Solve a design in its environment and in all situations, and apply the rules to each leg.
 
     A design without equilibrium has one stand, with the reason.
 
@@ -92,7 +92,7 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
 
 
 def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
-    """Record a design that has no equilibrium, or that CALM could not check."""
+    """Record a design for which there is no equilibrium, or for which the check failed."""
     environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
     return assess.judged_stand((situation,), design.legs[0], name, environment)
 
@@ -100,7 +100,7 @@ def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringIn
 def assessment_of(
     name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Judge the composition, the breaks and the handling of a design.
+    """Check the composition, the breaks and the handling of a design.
 
     Parameters
     ----------
@@ -162,7 +162,9 @@ def assessment_of(
 
 
 def _whole(legs: Sequence[Leg], surface: bool) -> Leg:
-    """Join the pieces of all legs to one leg, with a stand-in for an anchor as the last piece."""
+    """Join the pieces of all legs to a single leg, with a stand-in for an anchor as the
+    last piece.
+    """
     pieces = [piece for leg in legs for piece in leg.pieces]
     pieces.append(stand_in_anchor(0, len(pieces)))
     listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))

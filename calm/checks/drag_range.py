@@ -1,4 +1,6 @@
-"""Drag coefficients beyond their range, and the effect of the curve of a smooth shape."""
+"""Rule on drag coefficients outside their Reynolds range, and on the effect of a smooth shape's
+drag curve.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from calm.files import Piece
 from calm.quantities import say
 
 NOTICED = 1.05
-"""Factor on the knockdown, or the offset, from which the curve of a smooth shape is a warning."""
+"""Ratio of the knockdown (or offset) with the drag curve of a smooth shape to that without, above
+which the rule warns.
+"""
 
 _Told = tuple[LegResult, Verdict]
 
@@ -46,8 +50,8 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
-    """Describe the effect of smooth-shape drag curves for the fast pieces on the knockdown, or on
-    the offset of a line at the surface; the flag is true if the result is worse.
+    """Describe the effect of smooth-shape drag curves of the fast pieces on the knockdown, or on
+    the offset of a line at the surface. The flag is true if the result is less favourable.
     """
     file = result.file
     if file.solver.drag == "reynolds" or result.leg.of_several:

@@ -25,20 +25,24 @@ _STRONG = re.compile(
     r"|return|sturm|tempête",
     re.IGNORECASE,
 )
-"""Names of environments with a stronger current than the ordinary environment."""
+"""Words in the names of environments whose current should exceed that of the ordinary
+environment.
+"""
 
 WEAKER = 0.5
-"""Share of the ordinary current below which a storm's current is doubtful."""
+"""Ratio to the ordinary current below which the current of a storm is doubtful."""
 
 _LEAST = 0.05
-"""Ordinary current below which a weaker one is no matter [m/s]."""
+"""Ordinary current speed below which a weaker storm current is ignored [m/s]."""
 
 _CHECK = "Check its values and units."
 
 
 @rule("environment")
 def environment(legs: Sequence[Leg]) -> Iterator[Found]:
-    """Yield warnings about the environments of a mooring, each with the leg in that environment."""
+    """Yield warnings about the environments of a mooring; the argument has one leg per
+    environment.
+    """
     said: set[str] = set()
     for leg in legs:
         for doubt in leg.file.environment.doubts:
@@ -51,7 +55,7 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Yield a warning if the stronger current has much weaker levels than the ordinary one.
+    """Warn if levels of the stronger current are much weaker than those of the ordinary current.
 
     A current counts as stronger by the name of its environment, or by its maximum. If only the
     maximum is larger, the upper and lower ends of the profile may be weaker.
@@ -88,7 +92,7 @@ def _speeds(current: CurrentTable, levels: Floats) -> Floats:
 
 
 def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
-    """Yield a warning if a surface float has a wind area and no environment has wind."""
+    """Warn if a surface float has a wind area but no environment has wind."""
     top = legs[0].file.pieces[0]
     area = getattr(top.component, "wind_area", None)
     calm = all(leg.file.environment.wind is None for leg in legs)

@@ -1,4 +1,4 @@
-"""Bounds of component figures by class: density, strength, drag, sign of the buoyancy.
+"""Bounds of component values by class: density, strength, drag, sign of the buoyancy.
 
 The rules of a catalogue and of a design share this table: `DRAG_BOUNDS`, the constants here, and
 the densities and strengths of `calm.physics.materials`. `docs/reference/catalogue.md` prints it.
@@ -23,24 +23,26 @@ GREATEST_STRENGTH = 4e9
 """Upper bound on the tensile strength of any fibre or wire, for cables of unknown material [Pa]."""
 
 ROPE_EFFICIENCY = 0.6
-"""Maximum breaking stress of a rope over its nominal section, as a share of its yarn strength.
+"""Maximum ratio of a rope's breaking stress, over its nominal section, to the strength of its yarn.
 
 A default of CALM: only part of the section is fibre, and a rope has less than the strength of its
-yarns. Ropes in the catalogue have 0.12 to 0.44."""
+yarns. Ropes in the catalogue have 0.12 to 0.44.
+"""
 
 WEAKEST_ROPE = 0.05
-"""Minimum breaking stress of a rope, as a share of its yarn strength."""
+"""Minimum ratio of a rope's breaking stress to the strength of its yarn."""
 
 LEAST_SHARE = 0.1
-"""Minimum share of fibre or wire in a rope's nominal section.
+"""Minimum fraction of a rope's nominal section that is fibre or wire.
 
-Ropes in the catalogue have 0.14 (a fibre core in a thick sheath) to 0.98."""
+Ropes in the catalogue have 0.14 (a fibre core in a thick sheath) to 0.98.
+"""
 
 WEAKEST_WIRE = 200e6
-"""Minimum breaking stress of a wire rope in its metal [Pa]; wires in the catalogue have 1.1e9."""
+"""Minimum breaking stress in the metal of a wire rope [Pa]; wires in the catalogue have 1.1e9."""
 
 STRONGEST_CHAIN = 1300e6
-"""Maximum breaking stress in the two bars of a chain [Pa]; grade 120 has 1200 MPa."""
+"""Maximum breaking stress in the two bars of a chain link [Pa]; grade 120 has 1200 MPa."""
 
 GRADE_STRESS = 10e6
 """Nominal breaking stress in the bars of a chain per unit of its grade [Pa].
@@ -49,9 +51,10 @@ The grade is a tenth of the nominal stress at the minimum breaking force [N/mm²
 Chain Specifications (2010), annex A, for grades such as 30; EN 818-1 for grades such as 8."""
 
 GRADE_ROUNDING = 0.85, 1.25
-"""Bounds of the breaking stress over the nominal stress of the grade.
+"""Minimum and maximum ratio of the breaking stress to the nominal stress of the grade.
 
-Chains in the catalogue have 0.88 to 1.08."""
+Chains in the catalogue have 0.88 to 1.08.
+"""
 
 _GRADE = re.compile(r"\b(?:grade[ -]?|gr\.? ?|g)(30|40|43|50|63|70|80|100|120)\b", re.IGNORECASE)
 _BUOYANT = re.compile(
@@ -61,7 +64,7 @@ _BUOYANT = re.compile(
 
 @dataclass(frozen=True)
 class Bounds:
-    """Minimum and maximum plausible value of a figure, and their source."""
+    """Minimum and maximum plausible value of a parameter, and the source of these bounds."""
 
     least: float
     most: float
@@ -81,8 +84,9 @@ DRAG_BOUNDS = {
     ("cable", "ct"): Bounds(0.0005, 1.0, "skin friction of a smooth wall; a string of balls"),
     ("chain", "cn"): Bounds(1.0, 6.0, _CHAIN),
 }
-"""Drag coefficients by kind and key. Zero is no figure of these classes; the law of friction
-`hoerner` may have it for `ct`."""
+"""Bounds of drag coefficients by kind and key. Zero is not plausible for these classes, except for
+`ct` with the friction law `hoerner`.
+"""
 
 
 def drag_out_of_bounds(component: Component) -> Iterator[str]:
@@ -100,7 +104,9 @@ def drag_out_of_bounds(component: Component) -> Iterator[str]:
 
 
 def density_out_of_bounds(rope: Cable) -> Iterator[str]:
-    """Yield that a rope floats though its material sinks, or is too light for its diameter."""
+    """Report a rope that floats although its material sinks, or that is too light for its
+    diameter.
+    """
     load_bearing = _load_bearing(rope)
     if not load_bearing:
         return
@@ -148,7 +154,7 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 
 
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
-    """Yield loads too great for this kind and size, and breaking loads far too small.
+    """Yield loads too large for the kind and size of a component, and breaking loads far too small.
 
     Parameters
     ----------
@@ -174,7 +180,7 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
 
 
 def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
-    """Yield that an anchor or connector weighs more in water than its mass and material allow."""
+    """Report an anchor or connector that weighs more in water than its mass and material allow."""
     solid = materials.density_of(component.material)
     solid = getattr(component, "density", None) or solid
     if not (isinstance(component, Anchor) or component.role == "connector"):
@@ -190,16 +196,21 @@ def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
 
 
 LIFTS = 10.0
-"""Buoyancy below which the sign is not doubted: loggers are made to hang weightless [N]."""
+"""Buoyancy below which the sign of the buoyancy is not checked [N], since many loggers are nearly
+neutral.
+"""
 
 WIND_AREA = 0.02, 20.0
-"""Bounds of a float's wind area over its displaced volume to the power 2/3.
+"""Bounds of the ratio of a float's wind area to its displaced volume^(2/3).
 
-Meteorological buoys in the catalogue have 2."""
+Meteorological buoys in the catalogue have 2.
+"""
 
 
 def doubtful_figures(component: Component | Outline) -> Iterator[str]:
-    """Yield figures that are possible but usually mistakes: a floating instrument, a wind area."""
+    """Yield values that are possible but usually wrong: a floating instrument, or an unusual wind
+    area.
+    """
     if not isinstance(component, Rigid) or isinstance(component, Anchor):
         return
     net, role = component.net_buoyancy, component.role
@@ -223,7 +234,7 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
 
 
 def contradicted_material(component: Component | Outline) -> Iterator[str]:
-    """Yield that the `name` and the `material` of a component name different materials."""
+    """Report a component whose `name` and `material` refer to different materials."""
     named = {one.name: one for one in materials_in(component.name)}
     made_of = {one.name: one for one in materials_in(component.material)}
     if not named or not made_of or named.keys() & made_of.keys():
@@ -235,7 +246,9 @@ def contradicted_material(component: Component | Outline) -> Iterator[str]:
 
 
 def _alike(one: Material, other: Material) -> bool:
-    """Whether two materials have densities within 10 %, so that either name is acceptable."""
+    """Return whether the densities of two materials differ by at most 10 %, so that either name is
+    acceptable.
+    """
     if one.density is None or other.density is None:
         return one.family == other.family or one.density is other.density
     return abs(one.density - other.density) < 0.1 * other.density
@@ -252,7 +265,9 @@ def rope_section(component: Flexible) -> float:
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
-    """Return the metals of a rope except lead, else its fibres; empty if a density is unknown."""
+    """Return the metals of a rope except lead, or its fibres if it has no metal; empty if a density
+    is unknown.
+    """
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]
     found = metals or [one for one in named if one.family == "fibre"]

@@ -18,16 +18,16 @@ _Item = TypeVar("_Item")
 _Key = TypeVar("_Key", bound=Hashable)
 
 AS_GIVEN = "as given"
-"""The situation of a mooring in its environment, with nothing changed."""
+"""Name of the situation in which nothing is changed."""
 
 OWN = "own"
-"""Name of the environment that a mooring file gives itself."""
+"""Name of the environment that is defined in the mooring file itself."""
 
 DEFAULT_ENVIRONMENT = "default environment"
-"""The same environment in print."""
+"""Printed name of the environment that is defined in the mooring file itself."""
 
 ON_THE_WAY = "launch, recovery, breaks"
-"""Label used instead of an environment for rules that are evaluated once per mooring."""
+"""Label, instead of an environment, of rules that are evaluated once per mooring."""
 
 
 def environment_text(name: str) -> str:
@@ -136,7 +136,7 @@ class MissingFigure:
     class_estimate: EstimatedFigure | None
 
     def to_dict(self) -> dict[str, Any]:
-        """The missing figure in JSON."""
+        """Return the missing value as a JSON object."""
         estimate = self.class_estimate
         return {
             "component_id": self.component_id,
@@ -207,7 +207,9 @@ class Verdict:
 
 
 def percent_used(utilisation: float) -> float:
-    """A utilisation in whole percent, rounded up: 100 passes, 101 does not; it may be infinite."""
+    """Return a utilisation in whole percent, rounded up, so that any value above the limit exceeds
+    100 %; may be infinite.
+    """
     percent = 100.0 * utilisation
     return float(ceil(percent - 1e-9)) if isfinite(percent) else percent
 
@@ -235,7 +237,7 @@ def at_most(
 
 
 at_least = partial(at_most, least=True)
-"""The verdict on a value that may not fall short of a limit."""
+"""Create the verdict on a value with a lower limit."""
 
 
 def unknown(
@@ -269,7 +271,7 @@ def verdict_on(
     sense: Sense | None = None,
     source: str = "",
 ) -> Verdict:
-    """The verdict on a part of the line; None for the mooring as a whole."""
+    """Create a verdict on a part of the line, or on the whole mooring if the part is None."""
     label, place = (None, None) if part is None else (part.label, part.place)
     return Verdict(label, value, limit, sense, state, message, remedy, place, source)
 
@@ -308,7 +310,7 @@ class Rule:
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
     ) -> Finding:
-        """The verdict as a finding of this rule."""
+        """Return a verdict as a finding of this rule."""
         return Finding(
             **(
                 vars(verdict)
@@ -329,7 +331,7 @@ def rule(
     situation: str = AS_GIVEN,
     case: str | None = None,
 ) -> Callable[[Callable[[Any], Iterator[Any]]], Rule]:
-    """Make the `Rule` of that name in `calm.files.rule_texts` from a function that judges."""
+    """Create the rule of a given name in `calm.files.rule_texts` from its evaluation function."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Any]]) -> Rule:
@@ -362,11 +364,11 @@ class Finding(Verdict):
 
     @cached_property
     def utilisation(self) -> float | None:
-        """Demand over capacity; None if the rule has no such ratio."""
+        """Demand over capacity; None if the rule defines no such ratio."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None
 
     def to_dict(self) -> dict[str, Any]:
-        """The finding in JSON; a utilisation without any capacity is None there."""
+        """Return the finding as a JSON object; an infinite utilisation (no capacity) is None."""
         used = self.utilisation
         figure = {} if self.missing is None else self.missing.to_dict()
         return {
@@ -391,7 +393,7 @@ class Finding(Verdict):
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Places of all pieces and clamps concerned; empty for the whole line."""
+        """Places of all pieces and clamps concerned; empty for a finding on the whole line."""
         if self.missing is not None:
             return self.missing.places
         return () if self.place is None else (self.place,)
@@ -411,14 +413,17 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the first of the most severe findings, ignoring those not judged if possible."""
+    """Return the first of the most severe findings; findings not judged count only if there are no
+    others.
+    """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
     return min(judged or found, key=lambda one: one.rank)
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
-    """Return the finding with the largest utilisation, else the most severe finding.
+    """Return the finding with the largest utilisation or, without utilisations, the most severe
+    finding.
 
     If utilisations are equal, the most severe of these findings is returned.
     """
@@ -430,7 +435,8 @@ def governing(findings: Iterable[Finding]) -> Finding:
 
 
 def told_of_rule(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Findings that represent a rule: the governing one, and the worst if its state is graver.
+    """Select the findings to report for a rule: the governing one, and the worst one if its state
+    is more severe.
 
     Each has its own value, limit and component. The governing finding stands for other estimates
     and accepted findings unless it passes.
@@ -445,18 +451,18 @@ def told_of_rule(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
-    """The governing finding of each rule, in the order in which the rules come."""
+    """Return the governing finding of each rule, in the order in which the rules first occur."""
     return [governing(each) for each in by_rule(findings).values()]
 
 
 def _is_overridden(finding: Finding) -> bool:
-    """Whether a failure is accepted, or a utilisation of more than all."""
+    """Return whether an accepted finding is a failure, or has a utilisation above 100 %."""
     fails = finding.unaccepted is State.FAIL or (finding.utilisation or 0.0) > 1.0
     return finding.state is State.ACCEPTED and fails
 
 
 def conclusion_of(findings: Iterable[Finding]) -> Conclusion:
-    """Conclude from all findings of a mooring."""
+    """Return the conclusion from all findings of a mooring."""
     found = [*findings]
     states = {one.state for one in found}
     if State.FAIL in states:

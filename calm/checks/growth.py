@@ -29,7 +29,7 @@ CHAIN_BREADTH = 1.8
 def grown(
     pieces: Sequence[files.Piece], given: LegResult, fouling: files.Fouling
 ) -> tuple[files.Piece, ...]:
-    """Return the pieces with growth on everything above a given depth in still water.
+    """Return the pieces with biofouling on all parts above a given depth in still water.
 
     A cable or chain that extends deeper is split there; both parts keep its label.
 
@@ -74,7 +74,7 @@ def _grown_pieces(
 def grown_component(
     component: files.Component, fouling: files.Fouling, gravity: float
 ) -> files.Component:
-    """A component with growth all over it; an anchor has none.
+    """Return a component with biofouling all over its surface; an anchor is unchanged.
 
     Parameters
     ----------
@@ -104,7 +104,9 @@ def grown_component(
 def _larger(
     component: RigidComponent | FlexibleComponent, t: float
 ) -> tuple[dict[str, Any], float]:
-    """The figures of drag that growth changes, and its volume [m³, per metre of line]."""
+    """Return the drag values that biofouling increases, and the volume of the growth [m³, or m³ per
+    metre of line].
+    """
     if isinstance(component, files.Cable):
         d = component.diameter
         return {"diameter": d + 2.0 * t}, pi * t * (d + t)
@@ -134,7 +136,9 @@ def _larger(
 
 
 def _scales(component: files.Component, kn: float, t: float) -> tuple[float, float, float]:
-    """Ratios of the areas across and along the axis with and without growth; growth volume [m³]."""
+    """Return the ratios of the areas normal to the axis and along it with and without growth, and
+    the growth volume [m³].
+    """
     if isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length
         wide, long = d + 2.0 * t, length + 2.0 * t
@@ -152,7 +156,7 @@ def _scales(component: files.Component, kn: float, t: float) -> tuple[float, flo
 
 
 def _parted(piece: files.Piece, share: float) -> tuple[files.Piece, files.Piece | None]:
-    """A piece above and below a share of its length, with their clamps; None for nothing below."""
+    """Split a piece, with its clamps, at a fraction of its length; the lower part may be None."""
     if share >= 1.0 or piece.length is None:
         return piece, None
     at = share * piece.length

@@ -1,4 +1,4 @@
-"""Deployment and recovery: back-up buoyancy, launch and rise."""
+"""Rules on deployment and recovery: back-up buoyancy, launch, ascent."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -31,13 +31,16 @@ FAST_RISE_SPEED = 3.0
 
 
 def is_hauled_in(handling: Handling) -> bool:
-    """Whether a line has a surface float and no release, and so is recovered by hauling."""
+    """Return whether a line is recovered by hauling, since it has a surface float and no
+    release.
+    """
     return handling.leg.file.release is None and reaches_the_surface(handling.leg)
 
 
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Check the net buoyancy left to recover the release after a break or the loss of a float.
+    """Check the net buoyancy that remains to recover the release after a break or the loss of a
+    float.
 
     Breaks above the back-up floats are considered, and the loss of any one buoyant element. The net
     buoyancy should be a tenth of the weight it lifts, and raise it at `minimum_rise_speed`. A
@@ -94,7 +97,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-strength", once=True, case="L")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
-    """Tension of every piece as the line falls behind its anchor.
+    """Check the tension in every piece as the line falls behind its anchor.
 
     It may be `launch_working_factor` times the working load, and the breaking load over
     `launch_safety_factor`, whichever is less.
@@ -135,7 +138,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-speed", once=True, case="L")
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
-    """Judge the speed of the anchor as it meets the seabed."""
+    """Check the touchdown speed of the anchor."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
         yield from _unsolved(handling, "descent", launch)
@@ -163,7 +166,9 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
 
 @rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
-    """Terminal speed of the line as it rises without its anchor, unless it is hauled in."""
+    """Check the terminal rise speed of the line without its anchor, unless the line is
+    hauled in.
+    """
     if is_hauled_in(handling):
         message = "A line without a release is hauled in with its anchor, so it has no ascent."
         yield verdict_on(None, State.NOT_JUDGED, message)
@@ -232,8 +237,8 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
 
 
 def _unsolved(handling: Handling, motion: str, failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Report a motion without a solution; a line without equilibrium is reported by `equilibrium`
-    alone.
+    """Report a motion that could not be solved; a line without equilibrium is left to the rule
+    `equilibrium`.
     """
     if handling.result is not None:
         message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"

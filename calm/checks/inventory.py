@@ -62,14 +62,14 @@ class Total:
 
 
 def total_of(items: Sequence[InventoryItem]) -> Total:
-    """The sums over pieces and clamps."""
+    """Sum the values of pieces and clamps."""
     masses, weights = [each.dry_mass for each in items], [each.wet_weight for each in items]
     mass, weight = (sum(one for one in each if one is not None) for each in (masses, weights))
     return Total(mass, masses.count(None), weight, weights.count(None))
 
 
 def inventory_of(leg: Leg) -> tuple[InventoryItem, ...]:
-    """Every piece from the top to the anchor, each with its clamps after it."""
+    """List every piece from the top to the anchor, each followed by its clamps."""
     try:
         lengths: list[float | None] = [*leg.line.length.tolist()]
     except NoEquilibrium:
@@ -119,7 +119,8 @@ def _in_all(component: Component, figure: float | None, length: float | None) ->
 
 
 def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:
-    """Mass in air of an anchor of a weight in water: of steel, and of concrete [kg].
+    """Return the mass in air of an anchor with a given weight in water, if made of steel and of
+    concrete [kg].
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The rule `joints`: connecting hardware between unlike pieces of metal."""
+"""Rule `joints`: connecting hardware between pieces of different metals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from calm.files.pieces import STAND_IN
 from calm.physics.materials import materials_in
 
 MOST_NAMED = 5
-"""Joints that the message names."""
+"""Maximum number of joints listed in the message."""
 
 
 @rule("joints", once=True)
@@ -52,7 +52,7 @@ def _needs_hardware(one: Piece, other: Piece) -> bool:
 
 
 def _is_hard(piece: Piece) -> bool:
-    """Whether only hardware can join a piece: chain, wire and rigid pieces."""
+    """Return whether a piece can be joined by hardware only: chain, wire or a rigid piece."""
     if not isinstance(piece.component, Cable):
         return True
     metal = any(one.family == "metal" for one in materials_in(piece.component.material))

@@ -64,7 +64,9 @@ class LegGraph:
         return any(_SEABED in chain for chain in self.chains)
 
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
-        """Connected parts of the net after it parts below some places of its chains, `cut`."""
+        """Return the connected parts of the net after a break below given places (`cut`) of its
+        chains.
+        """
         parts: list[set[Hashable]] = []
         for number, chain in enumerate(self.chains):
             for at, one in enumerate(chain):
@@ -78,7 +80,7 @@ class LegGraph:
         return parts
 
     def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """Pieces of each part without a fixed end, in the order of the file."""
+        """Return the pieces of each part without a fixed end, in file order."""
         return [
             sorted(one for one in part if isinstance(one, int))
             for part in self.parts(cut)
@@ -86,7 +88,7 @@ class LegGraph:
         ]
 
     def _rising(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """Free parts with a release, after all releases open."""
+        """Return the free parts that contain a release, after all releases open."""
         return [
             part
             for part in self._free(self.opened | set(cut))
@@ -95,8 +97,8 @@ class LegGraph:
 
     @property
     def coming_up(self) -> set[int]:
-        """Return the pieces that surface after all releases open; without a release, all except
-        anchors.
+        """Return the pieces that surface after all releases open; without a release, all pieces
+        except anchors.
         """
         parts = self._rising(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}
@@ -134,8 +136,8 @@ class LegGraph:
         return float(lift.sum()), weight, required_margin(whole, weight, drag)
 
     def _beyond_help(self, chain: Sequence[Hashable], at: int, part: list[int]) -> bool:
-        """Whether a break parts the cluster of all remaining floats, or a short lead from it to the
-        release, as for a single line.
+        """Return whether a break strands the net in any design: it divides the cluster of all
+        remaining floats, or a short lead from that cluster to the release.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
@@ -159,7 +161,7 @@ class LegGraph:
         return component.kind in what or component.role in what
 
     def losses(self, whole: Leg) -> tuple[Loss, ...]:
-        """Return the loss of each buoyant piece or clamp that surfaces."""
+        """Return the loss of each buoyant piece or clamp that would otherwise surface."""
         return tuple(
             loss
             for part in self._rising(())
@@ -172,7 +174,7 @@ class LegGraph:
         )
 
     def release_verdicts(self) -> Iterator[Verdict]:
-        """Return which floats no release frees from their anchors."""
+        """Report the floats that stay attached to an anchor after all releases open."""
         held = [
             self.pieces[one]
             for part in self.parts(self.opened)

@@ -1,4 +1,4 @@
-"""The rule `missing`: figures that components do not give, each once for all rules and pieces."""
+"""Rule `missing`: missing values of components, each reported once for all rules and pieces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from calm.files import Clamp, Piece
 from calm.files.rule_texts import RULES
 
 MOST_NAMED = 3
-"""Maximum number of other pieces in a message; the finding has the full list."""
+"""Maximum number of additional pieces in a message; the finding contains the full list."""
 
 _INSTEAD = {
     "working_load": ("breaking_load",),
@@ -22,7 +22,7 @@ _INSTEAD = {
 
 
 def alternatives(quantity: str) -> tuple[str, ...]:
-    """Return the keys of a component any of which resolves a missing value."""
+    """Return the keys of a component of which any one would replace a missing value."""
     return quantity, *_INSTEAD.get(quantity, ())
 
 
@@ -52,15 +52,15 @@ def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Ve
 
 
 def is_lacking(finding: Finding) -> bool:
-    """Whether a rule could not judge for want of a figure that nobody has accepted."""
+    """Return whether a finding is unknown because of a missing value that nobody has accepted."""
     return finding.state is State.UNKNOWN and finding.lacks is not None
 
 
 def gathered(
     lacking: Iterable[Finding], parts: Mapping[str, Piece | Clamp]
 ) -> dict[tuple[str, str], list[Finding]]:
-    """Group findings that lack a value by component id and value, and attach the full
-    `MissingFigure`.
+    """Group the findings that lack a value by component id and value, and attach the
+    `MissingFigure` of each group.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Depths at which instruments hang in still water, compared with their planned depths."""
+"""Rule on instrument depths: in still water, compared with the planned depths."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from calm.files import MooringFile
 from calm.quantities import say
 
 SHARE_OF_THE_PLAN = 0.02
-"""Share of the planned depth that is always allowed, for stretch and the error of a sounding."""
+"""Depth error that is always allowed for stretch and sounding, as a fraction of the planned
+depth.
+"""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,9 @@ class PlannedPart:
 
     @property
     def off(self) -> float:
-        """Depth error [m], positive if too deep; if the depth is a range, the smallest error."""
+        """Depth error [m], positive if too deep. If the planned depth is a range, the smallest
+        error.
+        """
         return min(max(self.planned, self.least), self.most) - self.planned
 
 
@@ -60,8 +64,8 @@ def _judge(handling: Handling) -> Iterator[Verdict]:
 
 
 def _counted(handling: Handling) -> Iterator[Verdict]:
-    """Yield the verdict on each part, and the common verdict if all are off by the same amount; the
-    findings of a sample may differ from those of the design.
+    """Yield the verdict on each part, and the common verdict if all parts are off by the same
+    amount. Findings of a sample may differ from those of the design.
     """
     if handling.result is not None:
         yield from _judged(handling.result)[1]
@@ -72,7 +76,7 @@ planned_depth = replace(rule("planned-depth", once=True, case="0")(_judge), coun
 
 
 def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
-    """The parts with a planned depth, and the verdict on each."""
+    """Return the parts with a planned depth, and the verdict on each part."""
     parts = planned_parts(result)
     return parts, [
         _verdict(result.file, part, _remedy(result, parts, number))
@@ -81,14 +85,16 @@ def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
 
 
 def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]) -> bool:
-    """Whether several parts are off by the same amount, and at least one of them by too much."""
+    """Return whether several parts are off by the same amount, and at least one exceeds its
+    tolerance.
+    """
     amounts = [part.off for part in parts]
     alike = max(amounts) - min(amounts) <= result.file.checks.planned_depth_warning
     return len(parts) > 1 and alike and any(one.state is not State.PASS for one in found)
 
 
 def planned_parts(result: LegResult) -> list[PlannedPart]:
-    """The pieces and clamps with a planned depth, down the line."""
+    """Return the pieces and clamps with a planned depth, down the line."""
     length = result.components.length
     above = np.cumsum(length) - length
     found = []
@@ -110,7 +116,9 @@ def planned_parts(result: LegResult) -> list[PlannedPart]:
 
 
 def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
-    """The verdict on one part: a warning beyond the allowance, a failure beyond the limit."""
+    """Return the verdict on one part: a warning if the error exceeds the allowance, a failure if it
+    exceeds the limit.
+    """
     checks, off = file.checks, part.off
     allowed = max(checks.planned_depth_warning, SHARE_OF_THE_PLAN * part.planned)
     limit = max(allowed, checks.planned_depth_limit * part.planned)
@@ -125,7 +133,7 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
 
 
 def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
-    """Combine the verdicts on all parts into one, with the values of the most severe."""
+    """Combine the verdicts on all parts to one verdict, with the values of the most severe."""
     amounts = sorted((part.off for part in parts), key=abs)
     message = f"All {len(parts)} parts with a planned depth are "
     message += f"{_amount(amounts[0], amounts[-1])} in still water."
@@ -138,7 +146,7 @@ def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) 
 
 
 def _amount(least: float, most: float) -> str:
-    """An amount, or a range of amounts, in words."""
+    """Format an amount, or a range of amounts."""
     way = "too deep" if most > 0.0 else "too shallow"
     shown = dict.fromkeys(say("depth", abs(each)) for each in (least, most))
     return f"{' to '.join(shown)} {way}"
@@ -146,7 +154,7 @@ def _amount(least: float, most: float) -> str:
 
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
     """Name the lengths to check: those between the parts that are off by the same amount and the
-    next part towards the end that holds them.
+    next part on the side of the fixed end.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning
@@ -165,8 +173,8 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
 
 
 def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:
-    """Whether lengths above a part determine its depth: below a float at the surface, and above a
-    piece that is cut to fit a depth of the top.
+    """Return whether the lengths above a part determine its depth: below a float at the surface, or
+    above a piece whose length is fitted to the top depth.
     """
     if result.type == "surface":
         return True

@@ -19,10 +19,14 @@ LEAST_TOP_DEPTH = 10.0
 """Default minimum depth of the top of a sub-surface line [m]."""
 
 MOST_OF_A_RATING = 0.5
-"""Maximum share of a depth rating used as margin, so that shallow-water equipment can be used."""
+"""Maximum margin on depth, as a fraction of the depth rating, so that shallow-water equipment can
+be used.
+"""
 
 JUDGED_ROLES = ("float", "instrument", "release")
-"""Roles that need a depth rating; other parts are checked only if they have a rating."""
+"""Roles of parts that need a depth rating; other parts are checked only if a rating is
+specified.
+"""
 
 
 AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
@@ -30,7 +34,7 @@ AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
 
 
 def reaches_the_surface(leg: Leg) -> bool:
-    """Whether the line is intended to have its float at the surface in still water.
+    """Return whether the line is intended to have its float at the surface in still water.
 
     A float with a key that only surface floats have counts as intended for the surface, even if it
     is too small to surface. A line longer than the water depth has no unique shape in still water
@@ -47,7 +51,7 @@ def reaches_the_surface(leg: Leg) -> bool:
 
 
 def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
-    """Return the rules of a whole line that say nothing of a leg with these ends."""
+    """Return the rules for whole lines that do not apply to a leg with given ends."""
     top, bottom = legs_of(file)[0].ends
     of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
     return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
@@ -55,7 +59,8 @@ def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
 
 @criteria("tilt")
 def tilt(leg: Leg) -> Iterator[Criterion]:
-    """Tilt of instruments and releases against their own limits and the design's.
+    """Check the tilt of instruments and releases against their own limits and the limit of the
+    design.
 
     The makers': an Aanderaa RCM deviates by 27 degrees at most (BODC), a single-point Doppler by
     30, an ADCP by 20 and is doubtful from 15, a release by 45, a sediment trap by 10.
@@ -96,7 +101,8 @@ def _doubtful_words(
 
 @criteria("depth-rating")
 def depth_rating(leg: Leg) -> Iterator[Criterion]:
-    """Depth in the current plus a margin, against the depth rating of floats and instruments.
+    """Check the depth in the current plus a margin against the depth ratings of floats and
+    instruments.
 
     A float that is knocked down below its rating implodes, and the line sinks. A surface float has
     no depth rating; `freeboard` and `reserve` cover one that is pulled under.
@@ -128,16 +134,18 @@ def _rating_words(
 
 
 _STRETCH = 0.02
-"""Share of the water depth below which an unknown stretch is ignored: the error of a sounding."""
+"""Stretch, as a fraction of the water depth, below which an unknown stretch is ignored: the error
+of a sounding.
+"""
 
 _MEASURED = 0.2
-"""Share of the breaking load assumed as the working load, if the latter is unknown."""
+"""Fraction of the breaking load used in place of an unknown working load."""
 
 
 @rule("stretch")
 def stretch(result: LegResult) -> Iterator[Verdict]:
     """Check the possible stretch of ropes of unknown stiffness, and the load under which ropes are
-    cut.
+    cut to length.
     """
     limit, lengths = _STRETCH * result.leg.water.depth, result.leg.line.length.tolist()
     rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
@@ -172,7 +180,7 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
 
 @criteria("top-depth")
 def top_depth(leg: Leg) -> Iterator[Criterion]:
-    """Minimum depth of the top of a sub-surface line, clear of waves, vessels and nets.
+    """Check the minimum depth of the top of a sub-surface line, clear of waves, vessels and nets.
 
     If the design sets no `minimum_top_depth`, the default only causes a warning.
     """
@@ -195,19 +203,21 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
 
 _SHELF = 200.0
-"""Water depth up to which fish bite is ignored [m]; a default of CALM.
+"""Water depth below which fish bite is ignored [m]; a default of CALM.
 
 Severe fish bite is known from moorings far from the continental shores (Berteaux and others 1987).
 """
 
 
 _POLAR = 60.0
-"""Latitude from which fish bite is ignored [°]; a default of CALM, without a published limit."""
+"""Latitude above which fish bite is ignored [degrees]; a default of CALM, without a published
+limit.
+"""
 
 
 @rule("fish-bite")
 def fish_bite(result: LegResult) -> Iterator[Verdict]:
-    """Compare the minimum depth of each synthetic rope with the depth of the fish-bite zone."""
+    """Check the minimum depth of each synthetic rope against the depth of the fish-bite zone."""
     limit, position = result.file.checks.fishbite_depth, result.file.position
     polar = position is not None and abs(position.latitude) >= _POLAR
     if result.leg.water.depth <= _SHELF or polar:
@@ -261,7 +271,7 @@ def _of_the_top(
     limit: float | None,
     words: Callable[[float, str], tuple[str, str]],
 ) -> Iterator[Criterion]:
-    """Yield the limit on a quantity of the top, if the design sets one."""
+    """Yield the limit for a quantity of the top, if the design sets one."""
     if limit is not None:
         allowed = say(quantity, limit)
         top = pieces_of(leg)[0]
@@ -270,7 +280,7 @@ def _of_the_top(
 
 @criteria("reserve")
 def reserve(leg: Leg) -> Iterator[Criterion]:
-    """Reserve buoyancy of the surface float as a share of its total buoyancy.
+    """Check the reserve buoyancy of the surface float, as a fraction of its total buoyancy.
 
     The default of 0.3 is an allowance for waves, which a static solution does not include.
     """
@@ -298,7 +308,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
 
 @rule("freeboard")
 def freeboard(result: LegResult) -> Iterator[Verdict]:
-    """Check that a float intended for the surface has a freeboard."""
+    """Check that a float intended for the surface has freeboard."""
     if not reaches_the_surface(result.leg):
         return
     top, height = result.file.pieces[0], result.top.freeboard
@@ -323,7 +333,7 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
 
 
 def _too_long(leg: Leg) -> str:
-    """Remedy for a float without any key of surface floats: its line may be too long."""
+    """Remedy for a float without keys of surface floats: its line may be too long."""
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
         return ""
@@ -332,7 +342,7 @@ def _too_long(leg: Leg) -> str:
 
 @rule("watch-circle")
 def watch_circle(result: LegResult) -> Iterator[Verdict]:
-    """Radius √(L² - h²) of the watch circle of a surface float, with the line taut.
+    """Check the watch-circle radius √(L² - h²) of a surface float, for a taut line.
 
     L is the line length from the float to the anchor, h the height of the surface above the
     anchor's top.
@@ -357,7 +367,7 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
 
 @rule("scope")
 def scope(result: LegResult) -> Iterator[Verdict]:
-    """Report the scope of a surface mooring: cut length over water depth; there is no limit."""
+    """Report the scope of a surface mooring: cut length over water depth. There is no limit."""
     if not reaches_the_surface(result.leg):
         return
     depth = result.leg.water.depth

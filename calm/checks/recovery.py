@@ -73,7 +73,7 @@ class Recovery:
 
     @property
     def hangs_at(self) -> Floats:
-        """Return (n,) depths of the upper ends of the pieces when all is up [m]."""
+        """(n,) depths of the upper ends of the pieces after all pieces have surfaced [m]."""
         return np.array([self.depth_at(piece, 0.0) for piece in range(len(self.arrival))])
 
     def depth_at(self, piece: int, share: float) -> float:
@@ -158,7 +158,9 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 
 
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
-    """Net forces (n,) of the pieces with their clamps at their depths in equilibrium, + up [N]."""
+    """Return the net forces (n,) of the pieces with their clamps at their depths in equilibrium,
+    positive up [N].
+    """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
     density = water.density_at(np.maximum(depth, 0.0))
@@ -166,7 +168,7 @@ def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
 
 
 def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[FreeMotion, bool]:
-    """The rise of the whole line, and whether it is that in still water."""
+    """Solve the rise of the whole line; the flag is true if the solution is for still water."""
     try:
         return solve_rise(line, water, top, settings), False
     except NoEquilibrium:
@@ -176,7 +178,7 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 def _risers(
     line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
-    """Yield the pieces that are buoyant enough to surface alone, with their times [s].
+    """Yield the pieces that are buoyant enough to surface on their own, and their times [s].
 
     `length` [m] is stretched and `lifts` [N] are net forces, both (n,). The upper end of the line
     is at depth `top` [m] and rises with `speed` [m/s] at first. The line below a surfaced float
@@ -200,7 +202,7 @@ def _risers(
 
 
 SHORT_LEAD = 50.0
-"""Maximum length of line from the lowest floats to the release that is exempt from break checks
+"""Maximum length of line between the lowest floats and the release that is exempt from break checks
 [m]; a default of CALM.
 
 Those floats are the back-up of everything above them. If all floats are so close to the release, as
@@ -253,8 +255,8 @@ class Loss:
 
 
 def _down_to_the_release(leg: Leg) -> tuple[Floats, Floats]:
-    """Net forces (n,) [N] of the pieces down to the lowest release, with the line upright, and
-    their drags in an ascent [N/(m/s)²].
+    """Return net forces (n,) [N] of the pieces down to the lowest release, in the upright line, and
+    their drags during ascent [N/(m/s)²].
 
     Both are empty for a line without a release, or if no length fits.
     """
@@ -267,7 +269,7 @@ def _down_to_the_release(leg: Leg) -> tuple[Floats, Floats]:
 
 
 def drags_of(line: Line, pieces: Sequence[Piece]) -> Floats:
-    """(n,) drag of each piece of a line with its clamps in a rise [N/(m/s)²].
+    """Return the (n,) ascent drag of each piece of a line with its clamps [N/(m/s)²].
 
     Parameters
     ----------
@@ -277,7 +279,7 @@ def drags_of(line: Line, pieces: Sequence[Piece]) -> Floats:
 
 
 def losses_of(leg: Leg) -> tuple[Loss, ...]:
-    """Return the loss of each buoyant piece or clamp above the lowest release, from the top.
+    """List the loss of each buoyant piece or clamp above the lowest release, from the top.
 
     A lost element provides no buoyancy. If its mass and the density of its material are known, it
     is assumed flooded and its weight in water is added; otherwise it is assumed gone. Cables are
@@ -288,7 +290,7 @@ def losses_of(leg: Leg) -> tuple[Loss, ...]:
 
 
 def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats, drag: float) -> tuple[Loss, ...]:
-    """Return the losses among pieces that surface together, with their net forces [N] and their
+    """List the losses among pieces that surface together, given their net forces [N] and their
     total drag [N/(m/s)²].
     """
     gravity = leg.water.gravity
@@ -315,7 +317,7 @@ def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats, drag: float) -
 
 
 def _weight_when_flooded(component: Component, gravity: float) -> float:
-    """Weight in water of the shell of a flooded float [N]; 0 if unknown."""
+    """Return the weight in water of a flooded float's shell [N]; 0 if unknown."""
     named = (material.density for material in materials_in(component.material))
     density = next((value for value in named if value and value > CATALOGUE_DENSITY), None)
     if density is None or component.mass is None:
@@ -324,15 +326,15 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
 
 
 def required_margin(leg: Leg, weight: float, drag: float) -> float:
-    """Net buoyancy required after a break [N], for a remaining weight in water [N] and drag
-    [N/(m/s)²]: a share of the weight, and at least enough to rise at `minimum_rise_speed`.
+    """Return the net buoyancy required after a break [N], for a remaining weight in water [N] and
+    drag [N/(m/s)²]: a fraction of the weight, and at least enough to rise at `minimum_rise_speed`.
     """
     checks = leg.file.checks
     return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)
 
 
 def breaks_of(leg: Leg) -> tuple[Break, ...]:
-    """Return the breaks at every connection above the lowest release, from the top.
+    """List the breaks at all connections above the lowest release, from the top.
 
     The net force of a piece includes its clamps, at its depth in the upright line. For a break
     inside a cable, the remaining net buoyancy lies between those of the breaks at its two ends. A
@@ -372,7 +374,8 @@ def breaks_of(leg: Leg) -> tuple[Break, ...]:
 
 
 def _beyond_help(above: Sequence[Piece], lift: Floats, length: Floats, *between: str) -> range:
-    """Range of breaks inside the lowest cluster of floats, and in a short lead below it.
+    """Return the range of breaks that strand the release in any design: inside the lowest cluster
+    of floats, and in a short lead below it.
 
     `lift` [N] and `length` [m] are those of the pieces above the release; `between` lists kinds and
     roles of pieces allowed between the floats of a cluster.

@@ -1,4 +1,4 @@
-"""The rule `serials-and-dates`: contradictions between labels, serial numbers, codes and days.
+"""Rule `serials-and-dates`: contradictions between labels, serial numbers, release codes and dates.
 
 No figure depends on these entries, but sheets and labels print them.
 """
@@ -21,7 +21,7 @@ Part = Piece | Clamp
 
 @rule("serials-and-dates", once=True)
 def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
-    """Yield warnings about repeated labels and serial numbers, and days in the wrong order."""
+    """Warn about repeated labels and serial numbers, and dates in the wrong order."""
     file = handling.leg.file
     parts = parts_of(file.pieces)
     yield from _repeated_labels(parts)
@@ -34,7 +34,9 @@ def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
 
 
 def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Yield labels that several rows of the line give; connectors and anchors may share one."""
+    """Report labels that several rows of the line use; only connectors and anchors may share a
+    label.
+    """
     rows: dict[str, dict[tuple[int, int], Part]] = defaultdict(dict)
     for part in parts:
         if part.place.part >= 0 and part.place.is_clamp:
@@ -52,7 +54,7 @@ def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Yield serial numbers that are used for more than one item of a component."""
+    """Report serial numbers that are used for more than one item of a component."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
         for serial in part.serials:
@@ -70,7 +72,7 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _releases(file: MooringFile) -> Iterator[Verdict]:
-    """Yield release codes without a release in the line, and codes given twice."""
+    """Report release codes without a release in the line, and repeated codes."""
     for message in unknown_releases(file.releases, file.pieces, file.deployed):
         yield _warning(None, message, "Check the serial numbers of the releases.")
     serials = [one.serial for one in file.releases if one.serial is not None]
@@ -84,7 +86,9 @@ def _releases(file: MooringFile) -> Iterator[Verdict]:
 
 
 def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict]:
-    """Yield batteries that end too early and calibrations after the deployment."""
+    """Report batteries that end before the deployment or the calibration, and calibrations after
+    the deployment.
+    """
     deployed = file.deployed.date[:10] if file.deployed and file.deployed.date else None
     for part in parts:
         battery, calibrated = part.equipment.battery_until, part.equipment.calibrated
@@ -104,7 +108,7 @@ def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict
 
 
 def _document(document: DocumentKeys) -> Iterator[str]:
-    """Yield contradictions between the title block and its history."""
+    """Report contradictions between the title block and the revision history."""
     history = document.history
     dated = [one for one in history if one.date is not None]
     for earlier, later in pairwise(dated):

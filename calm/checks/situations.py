@@ -35,7 +35,7 @@ from calm.solve import Status
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
 SOLVES = 3.0
-"""About how many lines are solved for one mooring in one environment."""
+"""Approximate number of lines that are solved for one mooring in one environment."""
 
 FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 
@@ -46,7 +46,7 @@ _AT_STOP, _AT_LEAN = "at its lower stop", "at its largest wire angle"
 
 
 def case_of(environment: int, situation: str) -> str:
-    """The code of a load case.
+    """Return the code of a load case.
 
     Parameters
     ----------
@@ -65,7 +65,9 @@ _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 Situations = tuple[Situation, ...]
-"""One situation of a design, leg by leg; a failure of the design is a single entry."""
+"""One situation of a design, leg by leg. If the design has no solution, the tuple has a single
+entry.
+"""
 
 
 def situations_of(design: Design) -> tuple[Situations, ...]:
@@ -89,7 +91,7 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 
 
 def solved(name: str, design: Design) -> Situations:
-    """Solve a design in the situation of a name."""
+    """Solve a design in a named situation."""
 
     # all environments of a mooring that are as deep and dense have still water in common
     environment = replace(design.environment, name=None)
@@ -108,7 +110,7 @@ def solved(name: str, design: Design) -> Situations:
 
 
 _STILL: deque[tuple[object, Situations]] = deque(maxlen=4)
-"""Cache of the latest situations in still water, with their keys."""
+"""Cache of the latest solutions in still water, by key."""
 
 
 def _changed(
@@ -141,7 +143,7 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the file in still water, at high and low water, and in still low water."""
+    """Yield the file with other water: still water, high water, low water, and still low water."""
     environment, tide = file.environment, file.environment.depth_range
     if water.moving or environment.wind is not None:
         still = replace(environment, current=_NO_CURRENT, wind=None)
@@ -154,7 +156,9 @@ def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, Moor
 
 
 def strumming_file(file: MooringFile) -> MooringFile | None:
-    """Return the file with Cn × 1.5 on its cables; None if it has a strumming law or no cables."""
+    """Return the file with Cn × 1.5 on its cables; None if the file has a strumming law or no
+    cables.
+    """
     if file.solver.strumming is not None:
         return None
     if not any(isinstance(piece.component, Cable) for piece in file.pieces):
@@ -164,7 +168,7 @@ def strumming_file(file: MooringFile) -> MooringFile | None:
 
 
 def _shapeless(situation: Situation) -> bool:
-    """Whether the situation is still water in which a slack line has no unique shape."""
+    """Return whether a situation is still water in which a slack line has no unique shape."""
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
@@ -173,7 +177,7 @@ def _shapeless(situation: Situation) -> bool:
 _Part = TypeVar("_Part", Piece, Clamp)
 
 SOUNDING = 1.0, 0.023
-"""95 % error of a sounding: fixed part [m] and share of the depth (IHO S-44, order 2)."""
+"""95 % error of a sounding: fixed part [m], and fraction of the depth (IHO S-44, order 2)."""
 
 
 def as_deployed(design: Design) -> Design:
@@ -195,7 +199,7 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Apply `deployed` to a file without pieces that are cut to fit."""
+    """Apply `deployed` to a file that has no piece of fitted length."""
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}
@@ -214,7 +218,7 @@ def _deployed_file(file: MooringFile) -> MooringFile:
 
 
 def differs(designed: MooringFile, deployed: MooringFile) -> bool:
-    """Whether the mooring was deployed at another depth, or with other lengths, than designed."""
+    """Return whether the depth or the lengths of the mooring as deployed differ from the design."""
     return deployed.environment.depth != designed.environment.depth or any(
         there.length != piece.length
         for piece, there in zip(designed.pieces, deployed.pieces, strict=True)
@@ -257,8 +261,9 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
 
 
 _ANOTHER_SITE = 20.0
-"""Distance from the planned position beyond which the currents of the design are of elsewhere
-[km]."""
+"""Distance from the planned position above which the design currents are considered invalid
+[km].
+"""
 
 
 def _far_away(leg: Leg) -> Verdict | None:
@@ -295,12 +300,12 @@ def _numbered(part: _Part, items: dict[str, DeployedItem]) -> _Part:
 
 
 LEAST_CURRENT = 0.01
-"""Speed below which a current counts as none [m/s]."""
+"""Current speed that is treated as zero [m/s]."""
 
 
 @rule("equilibrium")
 def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Report a missing equilibrium."""
+    """Report that there is no equilibrium."""
     message = f"{failure.status}: {failure.message}"
     yield verdict_on(None, State.FAIL, message, failure.advice)
 
@@ -312,21 +317,26 @@ STILL_ONLY = verdict_on(
     "are not checked.",
     "Add a current, or an environment that has one.",
 )
-"""Verdict of `equilibrium` on a mooring without significant current."""
+"""Verdict of the rule `equilibrium` on a mooring without significant current."""
 
 USUAL_CURRENT = 0.2
 """Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
-"""Share of the strongest current of its own record below which a judged one is too weak."""
+"""Ratio to the strongest current of the underlying record below which the design current is too
+weak.
+"""
 
 WEAK_BESIDE_OTHERS = 0.02
-"""Share of the strongest current below which another was typed in another unit: 1/100 is cm/s."""
+"""Ratio to the strongest current of all environments below which a current has probably another
+unit: 1/100 is cm/s.
+"""
 
 
 @rule("current")
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
-    """Check the strongest current of all environments, and the depths that each profile omits.
+    """Check the strongest current of all environments, and the depths that the current profiles do
+    not cover.
 
     Each verdict comes with the leg in its environment.
     """
@@ -365,7 +375,9 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
 
 
 def _records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
-    """Return the strongest current of each record that an environment is a time of [m/s]."""
+    """Return the strongest current of each record from which an environment takes one time
+    [m/s].
+    """
     sources = {leg.file.environment.current.record: leg for leg in legs}
     for source, leg in sources.items():
         if source is not None:

@@ -18,14 +18,17 @@ from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
-"""Share of the strength of the cables on both its sides below which a piece is a weak link."""
+"""Ratio of a piece's strength to that of the cables on both sides below which the piece is a weak
+link.
+"""
 
 WEIGHT_OF_A_HINGE = 0.5
-"""Weight in water below which a piece without length is not hardware [N]."""
+"""Weight in water below which a piece without length is not treated as hardware [N]."""
 
 
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
-    """Allowable load of a component in use [N]; None if neither of its loads is known.
+    """Return the allowable load of a component in use [N]; None if neither its working load nor its
+    breaking load is known.
 
     The smaller of its working load and its breaking load divided by the safety factor, as far as
     known and applicable. The factor is that for a surface mooring, synthetic rope or steel.
@@ -47,14 +50,14 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 
 def wanted_load(component: Component) -> str:
-    """Key of the load to request if a component has none: ropes and wires are sold by breaking
-    load, other components by working load.
+    """Return the key of the load to ask for if a component has none: breaking load for ropes and
+    wires, working load for other components.
     """
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
 def passes_load_on(file: MooringFile, index: int) -> bool:
-    """Whether the line tension passes through a piece.
+    """Return whether the line tension passes through a piece.
 
     The top piece, the anchor and a piece at the free end of a leg are loaded at one end only; the
     adjoining shackle carries their load. A hinge of another program's design, without length or
@@ -68,13 +71,13 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
 
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
-    """The safety factor asked on the breaking load of a component."""
+    """Return the safety factor on breaking load that applies to a component."""
     factor: float = getattr(factors, safety_factor_name(component, surface))
     return factor
 
 
 def safety_factor_name(component: Component, surface: bool) -> str:
-    """Name of the `safety_factor` that applies to a component."""
+    """Return the name of the `safety_factor` that applies to a component."""
     if surface:
         return "surface"
     return "synthetic" if is_synthetic(component) else "steel"
@@ -125,7 +128,7 @@ def _strength_words(
 
 
 def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: str = "") -> str:
-    """State the load on a piece [N], such as ``Tension in wire 1 is 5.31 kN``.
+    """Describe the load on a piece [N], such as ``Tension in wire 1 is 5.31 kN``.
 
     Parameters
     ----------
@@ -137,14 +140,14 @@ def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: s
 
 
 def no_load_known(load: str) -> tuple[str, str]:
-    """Message and remedy for a piece that has neither a working load nor a breaking load."""
+    """Return message and remedy for a piece without a working load and a breaking load."""
     message = f"{load}; its working load and breaking load are unknown."
     return message, "Set its `working_load` or `breaking_load`."
 
 
 @criteria("release-load")
 def release_load(leg: Leg) -> Iterator[Criterion]:
-    """Compare the load on every release, while deployed and on opening, with its rated loads.
+    """Check the load on every release, while deployed and on opening, against its rated loads.
 
     On opening it carries the tension below it, limited by its `opening_load`. Without an
     `opening_load`, the allowable load while deployed applies, and the message mentions that.
@@ -185,8 +188,8 @@ def _release_words(
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Report weak links: pieces whose strength is less than half that of the cables on both sides,
-    and whose tension exceeds half of the latter.
+    """Report weak links: pieces with less than half the strength of the cables on both sides, and a
+    tension above half of their own strength.
 
     A line of uneven strength carries unnecessary weight and parts at its weak link. If there is
     none, the piece closest to one is reported. Chain is excluded because it is oversized against
@@ -218,7 +221,7 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
 
 
 def _is_estimated(component: Component) -> bool:
-    """Whether the load in use for a component is the lower bound of an estimate."""
+    """Return whether the allowable load of a component is the lower bound of an estimate."""
     return any(
         getattr(component, one.quantity) in (one.low, one.low_in_waves)
         for one in component.estimate or ()
@@ -229,8 +232,8 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """Yield, for each piece between two cables: strength ratio, piece, its load, the weaker cable's
-    [N].
+    """Yield, for each piece between two cables: strength ratio, piece, load of the piece, load of
+    the weaker cable [N].
     """
     cables = [
         load if isinstance(piece.component, Cable) else None
@@ -246,7 +249,8 @@ def _steps(
 
 @criteria("slack")
 def slack(leg: Leg) -> Iterator[Criterion]:
-    """Minimum tension in each wire and rope above the release, or in the whole line without one.
+    """Check the minimum tension in each wire and rope above the release, or in the whole line
+    without a release.
 
     A slack line wears, kinks and takes snap loads. Mooring groups require about 500 to 1000 N above
     the release at slack water. No published rule exists, so the defaults are 500 N for wire and 300
@@ -285,7 +289,9 @@ _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 
 @criteria("anchor-weight", of_anchor=True)
 def anchor_weight(leg: Leg) -> Iterator[Criterion]:
-    """Weight in water ≥ factor (V + H / friction): Dewey's rule for deadweights, factor 1.5."""
+    """Check that the anchor's weight in water is at least factor (V + H / friction): Dewey's rule
+    for deadweights, factor 1.5.
+    """
     weight = _weight(leg)
 
     def words(required: float, result: LegResult) -> tuple[str, str]:
@@ -309,7 +315,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("anchor-uplift", of_anchor=True)
 def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
-    """Upward pull V ≤ weight in water / factor."""
+    """Check that the upward pull V is at most the anchor's weight in water / factor."""
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     limit = None if weight is None else weight / factor
 
@@ -329,7 +335,7 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("anchor-sliding", of_anchor=True)
 def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
-    """Horizontal pull H ≤ friction (weight in water / factor - V)."""
+    """Check that the horizontal pull H is at most friction (weight in water / factor - V)."""
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     friction, seabed = leg.file.anchor_friction, leg.file.environment.seabed
     down = "" if seabed is None else f" on a slope of {seabed.slope:.4g}°"
@@ -360,7 +366,7 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 def _weight(leg: Leg) -> float | None:
-    """Weight of the anchor in water [N]; None for a mass of unknown material."""
+    """Return the weight of the anchor in water [N]; None for a mass of unknown material."""
     return leg.anchor_weight if leg.file.anchor.material_known else None
 
 
@@ -370,7 +376,7 @@ def _heavier(leg: Leg, weight: float) -> str:
 
 
 def _in_air(leg: Leg, weight: float) -> str:
-    """Masses in air of steel and concrete with this weight in water [N]."""
+    """Return the masses in air of steel and of concrete that have a given weight in water [N]."""
     water = leg.water
     density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)

@@ -1,4 +1,4 @@
-"""Wave rules: maximum tension, slack line, and fatigue life."""
+"""Rules on waves: maximum tension, slack line, and fatigue life."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class MooringInWaves:
 
 @rule("wave-strength")
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Compare the maximum tension of each piece in waves with its loads.
+    """Check the maximum tension of each piece in waves against its loads.
 
     The limits are its working load, and its breaking load over the factor that API RP 2SK requires
     for dynamic analysis. Without waves, a mooring that reaches the surface is unknown.
@@ -85,7 +85,9 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 @rule("wave-slack")
 def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Compare the minimum tension of each piece in waves with zero, where snap loads begin."""
+    """Check that the minimum tension of each piece in waves exceeds zero, where snap loads
+    begin.
+    """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         return
@@ -104,7 +106,9 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 @rule("fatigue")
 def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Judge the life of every piece whose curve is published, by the service time × the factor."""
+    """Check the fatigue life of every piece with a published curve against the service time × the
+    factor.
+    """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         return
@@ -132,7 +136,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 
 def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
-    """Return the range of tensions from measurements at sea, as a sentence."""
+    """Describe the range of tensions according to measurements at sea."""
     if row.measured_low is None or row.measured_high is None:
         return ""
     tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
@@ -141,7 +145,9 @@ def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
-    """Turn a failure into unknown if a rope without stiffness makes the tensions too high."""
+    """Turn a failure into unknown if a rope of unspecified stiffness makes the computed tensions
+    too high.
+    """
     if verdict.state is not State.FAIL or not waves.warnings:
         return verdict
     message = f"{verdict.message} {' '.join(waves.warnings)}"

@@ -13,6 +13,10 @@ _NO_TERMINAL = (
     "`calm run FILE --schematic` prints the line"
 )
 
+_REDIRECTED = (
+    "calm build draws its screen on the standard error output, which is redirected: leave out `2>`"
+)
+
 
 def build(
     file: Path | None = None,
@@ -45,7 +49,12 @@ def build(
     # the builder needs a terminal, or the driver in TEXTUAL_DRIVER
     terminal = all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
     if not (terminal or os.environ.get("TEXTUAL_DRIVER")):
-        raise UsageError(_NO_TERMINAL)
+        raise UsageError(_REDIRECTED if _is_redirected() else _NO_TERMINAL)
     from calm.tui.start import build
 
     return ExitCode(build(file, environment, catalog or []))
+
+
+def _is_redirected() -> bool:
+    """Whether standard input and output are a terminal, but not the standard error output."""
+    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout))

@@ -6,7 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cyclopts import CycloptsError, MissingArgumentError, UnknownCommandError, UnusedCliTokensError
+from cyclopts import (
+    CoercionError,
+    CycloptsError,
+    MissingArgumentError,
+    UnknownCommandError,
+    UnknownOptionError,
+    UnusedCliTokensError,
+)
 
 from calm.cli.help import metavar
 from calm.errors import nearest
@@ -23,12 +30,32 @@ def complaint(error: CycloptsError) -> str:
         return f"unexpected argument: {extra}; see `{command} --help`"
     if type(error) is MissingArgumentError and error.argument is not None:
         return _missing(command, error, error.argument)
+    if isinstance(error, UnknownOptionError) and (told := _about_option(error)):
+        return f"`{command}`: {told}"
+    if isinstance(error, CoercionError) and error.token is not None:
+        path = error.token.value
+        file = f" For a file: -o {path}" if Path(path).suffix in (".yaml", ".yml") else ""
+        return f"{error}{file}"
     if isinstance(error, UnknownCommandError):
-        word = next(iter(error.unused_tokens or ()), "")
+        word, *others = error.unused_tokens or [""]
+        if word == "help":
+            return f"the help of a command is `{' '.join(('calm', *others))} --help`"
         if Path(word).suffix and Path(word).exists():
             return f"`{word}` is a file, not a command; see `calm --help`, or `calm run {word}`"
         return f"{error} See `{command} --help`."
     return str(error)
+
+
+def _about_option(error: UnknownOptionError) -> str:
+    """Name the options that begin with the one typed, such as --environment for --env; "" if none
+    does.
+    """
+    word = error.token.keyword or error.token.value
+    if word == "-":
+        return "the standard input is not read; give a file"
+    names = [name for one in error.argument_collection for name in one.names]
+    longer = [name for name in names if name.startswith(word) and word.startswith("--")]
+    return f"unknown option {word}; did you mean {' or '.join(longer)}?" if longer else ""
 
 
 def _missing(command: str, error: MissingArgumentError, argument: Argument) -> str:

@@ -37,14 +37,14 @@ from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 FAINT = 0.1
-"""Current in which a line is drawn that still water leaves slack [m/s]."""
+"""Speed of the weak current in which a line is drawn that is slack in still water [m/s]."""
 
 _Listed = TypeVar("_Listed")
 
 
 @dataclass(frozen=True)
 class RecoveredItem:
-    """Piece or clamp in order of surfacing.
+    """Piece or clamp in the order of surfacing.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class RecoveredItem:
 
 @dataclass(frozen=True)
 class Lift:
-    """Lift: a piece at the rail with its clamps, and everything already over the side.
+    """One lift: a piece at the rail with its clamps, and everything already over the side.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Lifts:
 
     @property
     def heaviest(self) -> Lift | None:
-        """Heaviest single lift of known mass in air."""
+        """Heaviest single lift among those of known mass in air."""
         known = [lift for lift in self.deployment if lift.mass is not None]
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
@@ -143,16 +143,16 @@ class Deck:
 
     @property
     def file(self) -> MooringFile:
-        """Return the file as read, in the environment of the sheets."""
+        """File as read, in the environment of the sheets."""
         return self.result.file
 
     @cached_property
     def numbers(self) -> Mapping[str, str]:
-        """Number of each piece and clamp by label, as in the design check."""
+        """Item number of each piece and clamp by label, as in the design check."""
         return item_numbers(self.result)
 
     def leg(self, index: int) -> str:
-        """Name of the leg that contains a piece; "" for a single line."""
+        """Return the name of the leg that contains a piece; "" for a single line."""
         number = leg_numbers(self.file)[index]
         return self.result.legs[number].name if self.result.several else ""
 
@@ -171,7 +171,7 @@ def deck_of(
     streamed: float | None = None,
     course: float | None = None,
 ) -> Deck:
-    """Create the deck sheets of a mooring, or of a net (without drop and rise).
+    """Create the deck sheets of a mooring, or of a net (without anchor drop and ascent).
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def deck_of(
             plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
-            notes.append(f"The anchor drop is not planned: {failure}")
+            notes.append(f"The anchor drop cannot be planned: {failure}")
     return Deck(
         result=result,
         environment=_name(first),
@@ -242,7 +242,7 @@ def deck_of(
 
 
 def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
-    """Handling time of a piece by role [s]; None if not specified."""
+    """Return the handling time of a piece by role [s]; None if unspecified."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 
@@ -281,7 +281,7 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the parts that surface, in order, followed by parts that stay below.
+    """List the parts that surface, in this order, followed by the parts that stay below.
 
     Without a solved rise there are no times, and the parts are in line order.
 
@@ -314,7 +314,7 @@ def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
 def lifts_of(
     inventory: Sequence[InventoryItem], legs: Sequence[int], rising: Collection[int], order: Order
 ) -> Lifts:
-    """The stages of a mooring, leg by leg.
+    """List the lifts of a mooring, leg by leg.
 
     Parameters
     ----------
@@ -336,7 +336,7 @@ def lifts_of(
 
 
 def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:
-    """Return the weight in water of each piece with its clamps [N]."""
+    """Compute the weight in water of each piece with its clamps [N]."""
     weights: dict[int, float | None] = {}
     for one in inventory:
         before, own = weights.get(one.index, 0.0), one.wet_weight

@@ -20,7 +20,7 @@ _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
 
 @dataclass(frozen=True)
 class DeckItem:
-    """A piece, or an instrument clamped on one.
+    """A piece, or an instrument clamped on a piece.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class DeckItem:
 
     @property
     def planned_depth(self) -> float | None:
-        """Depth planned in still water [m]; None without a plan."""
+        """Planned depth in still water [m]; None if there is none."""
         return self.part.planned_depth
 
     @property
@@ -93,12 +93,12 @@ class DeckItem:
 
     @property
     def is_joint(self) -> bool:
-        """Whether the item is hardware that only connects pieces, without data of its own."""
+        """Whether the item only connects pieces and has no data of its own."""
         return self.is_connector and not self._is_told_of
 
     @property
     def is_connector(self) -> bool:
-        """Whether the item is connecting hardware of the line: no cable, chain or clamp."""
+        """Whether the item is in-line connecting hardware, not a cable, chain or clamp."""
         return self.role == "connector" and self.on is None and self.is_rigid
 
     @property
@@ -119,7 +119,7 @@ class DeckItem:
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """Key of consecutive items that share a row.
+        """Key that is equal for consecutive items which may share a row.
 
         Floats and clamps of one component share a row. Items with a serial number or a remark,
         instruments, releases, anchors and cut pieces never do.
@@ -130,7 +130,7 @@ class DeckItem:
 
 @dataclass(frozen=True)
 class DeckRow:
-    """Items that share a printed row, such as glass floats on chain or floats shackled together.
+    """Items that share a printed row, such as glass floats on chain, or floats shackled together.
 
     Attributes
     ----------
@@ -146,33 +146,33 @@ class DeckRow:
 
     @property
     def joints(self) -> tuple[DeckItem, ...]:
-        """Return all hardware of the row."""
+        """All connecting hardware of the row."""
         return (*self.between, *self.after)
 
     @property
     def ends(self) -> bool:
-        """Whether a swivel follows, so that no further items join the row."""
+        """Whether a swivel follows and ends the row."""
         return any(one.is_swivel for one in self.after)
 
     @property
     def first(self) -> DeckItem:
-        """Return the first of the items."""
+        """First item of the row."""
         return self.items[0]
 
     @property
     def label(self) -> str:
-        """Label of the item, or labels of the first and the last item."""
+        """Label of the item, or the labels of the first and the last item."""
         return label_of_run(self.items)
 
     @property
     def name(self) -> str:
-        """Names with their counts, or names of the floats on a chain."""
+        """Names with their counts, or the names of the floats on a chain."""
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
     @property
     def cluster(self) -> tuple[object, ...]:
-        """Key of chains with floats that share a row, or an empty key."""
+        """Key of chains with floats that may share a row; empty for other items."""
         if not self.floats or any(one._is_told_of for one in (*self.items, *self.floats)):
             return ()
         first, floats = self.first, [(one.name, one.places) for one in self.floats]
@@ -181,19 +181,19 @@ class DeckRow:
 
     @property
     def lengths(self) -> str:
-        """Cut length of a cable or chain, with the number of pieces."""
+        """Cut length of a cable or chain, with the number of pieces of this length."""
         many = f"{len(self.items)} × " if len(self.items) > 1 else ""
         return many + QUANTITIES["length"].format(self.first.cut_length)
 
 
 def hardware_text(joints: Iterable[DeckItem]) -> str:
-    """Describe connecting hardware, such as `2 × 13 shackle`; "" if there is none."""
+    """Describe connecting hardware, such as `2 × 13 shackle`; "" for none."""
     counts = Counter(one.hardware for one in joints)
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
 def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
-    """The rows in which items that follow one another are listed or drawn, in their order.
+    """Group successive items into the rows in which they are listed or drawn, in line order.
 
     In a drawing, hardware that stands apart has a row of its own.
     """
@@ -219,7 +219,7 @@ def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[De
 
 
 def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
-    """The rows, like clusters of floats that one `count` has made joined."""
+    """Yield the rows; successive rows of one cluster of floats are joined."""
     joined: list[DeckRow] = []
     key: tuple[object, ...] = ()
     for row in rows:
@@ -234,7 +234,9 @@ def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
-    """Return whether some clamps are the only ones of a row's cable, and floats."""
+    """Return whether a run of clamps consists of floats, and comprises all clamps on a
+    row's cable.
+    """
     first = run[0]
     if first.role != "float" or first.on is None or first.kind == (first.label,):
         return False
@@ -248,7 +250,7 @@ def label_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def name_of_run(items: Sequence[DeckItem]) -> str:
-    """Format the name of an item, or the number of items of each name."""
+    """Format the name of an item, or the number of items with each name."""
     counts = Counter(item.name for item in items)
     if len(items) == 1:
         return items[0].name
@@ -256,8 +258,8 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
-    """Labels of the pieces that govern a check with more than `SHOWN_USE`, or have an open
-    finding.
+    """Find the labels of pieces that govern a check with a utilisation above `SHOWN_USE`, or have
+    an open finding.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)
@@ -269,11 +271,12 @@ def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
 
 
 SHOWN_USE = 0.4999
-"""Utilisation above which the governing finding of a rule is shown in a row of its own."""
+"""Utilisation above which the governing finding of a rule has a separate row."""
 
 
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
-    """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece.
+    """List the items down the line to the anchor, or down each leg; the clamps of a piece follow
+    the piece.
 
     Connecting hardware with a label in `apart` is drawn in a row of its own.
     """
@@ -319,7 +322,7 @@ def _deck_item(
 
 @dataclass(frozen=True)
 class Extreme:
-    """Extreme depth [m], and its environment."""
+    """Extreme depth [m], and the environment in which it occurs."""
 
     depth: float
     environment: str
@@ -347,7 +350,7 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
 ) -> tuple[DeckInstrument, ...]:
-    """The instruments and releases, down the line; the first result is that of the sheets."""
+    """List the instruments and releases, down the line; the first result is that of the sheets."""
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
     for one in parts:
@@ -370,14 +373,14 @@ def instruments_of(
 
 
 class Order(StrEnum):
-    """Deployment order of the line."""
+    """Order of deployment over the side: anchor first or anchor last."""
 
     ANCHOR_LAST = "anchor-last"
     ANCHOR_FIRST = "anchor-first"
 
 
 def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
-    """Sort the pieces in the order over the side, each followed by its clamps.
+    """Sort the pieces in the order of deployment, each followed by its clamps.
 
     Anchor first, the lower end of a piece leads, so its lowest clamp comes first.
     """

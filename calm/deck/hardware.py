@@ -1,4 +1,4 @@
-"""Lists of cut lengths with tolerances, connecting hardware with spares, and freight."""
+"""Cutting list with tolerances, hardware list with spares, and shipping list."""
 
 import re
 from collections import Counter
@@ -19,13 +19,13 @@ from calm.files.pieces import parts_of
 from calm.solve import expect_many
 
 LENGTH_ERROR = 0.005
-"""Relative error of a length: the tolerance, and the error whose effect is reported."""
+"""Relative error of a cut length: the default tolerance, and the error whose effect is reported."""
 
 ORDINARY = 20
-"""Number of pieces of an ordinary line, for estimates of computing time."""
+"""Number of pieces in an ordinary line, for estimates of computing time."""
 
 LEAST_TOLERANCE = 0.02
-"""Least error with which a wire is measured on a deck [m]."""
+"""Smallest error with which a wire can be measured on deck [m]."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Cut:
-    """A wire, a rope, or a chain that bears clamps.
+    """A wire, a rope, or a chain with clamps.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Cut:
 
     @property
     def marks_text(self) -> str:
-        """The marks as ``label@metres`` from the upper end, `;` between them."""
+        """Marks as ``label@metres`` from the upper end, separated by `;`."""
         return ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in self.marks)
 
 
@@ -121,7 +121,9 @@ def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Increase in depth of the top if a piece is cut too long, in the same water [m]."""
+    """Compute the increase in depth of the top if one piece is cut too long, in unchanged water
+    [m].
+    """
     number = leg_numbers(result.file)[index]
     longer = result.design.with_length(index, length * (1.0 + LENGTH_ERROR))
     try:
@@ -133,9 +135,7 @@ def _effect(result: Result, index: int, length: float) -> float | None:
 
 
 SPARE_SHARE = 0.1
-"""Share of spares in the number fitted, with a minimum of one, or two for small parts (CALM
-default).
-"""
+"""Ratio of spares to fitted items, with a minimum of one, or two for small parts (CALM default)."""
 
 _KINDS = {
     "cotter pins": r"cotter",
@@ -147,7 +147,7 @@ _KINDS = {
     "rings": r"\bring\b",
     "links": r"\blink\b|\bpear\b|\bsling\b|hammerlock",
 }
-"""Kinds of hardware by words of id, name and label, the first that is there."""
+"""Kinds of hardware by words in id, name and label; the first match applies."""
 _OTHER, _CHAIN = "other connectors", "chains"
 ORDER = ("shackles", "pins", "cotter pins", *(kind for kind in _KINDS if kind not in
          ("shackles", "cotter pins")), _CHAIN, _OTHER)  # fmt: skip
@@ -183,7 +183,7 @@ class Stock:
 
     @property
     def total(self) -> int:
-        """To be brought."""
+        """Number of items to bring, spares included."""
         return self.count + self.spares
 
 
@@ -239,7 +239,9 @@ def _pins(groups: dict[tuple[str, str], list[DeckItem]]) -> Iterator[Stock]:
 
 
 def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
-    """Yield isolators and anodes for the contacts of which `calm check` warns."""
+    """Yield isolators and anodes for the contacts of dissimilar metals that `calm check`
+    reports.
+    """
     contacts = [
         (base, noble)
         for leg in legs
@@ -302,7 +304,7 @@ class ShippedComponent:
 def shipped_of(
     file: MooringFile, inventory: Sequence[InventoryItem]
 ) -> tuple[ShippedComponent, ...]:
-    """A row for each component, in the order of the line."""
+    """Create a row for each component, in line order."""
     components = {
         (piece.index, part.label): part.component
         for piece in file.pieces
@@ -313,15 +315,15 @@ def shipped_of(
 
 
 def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
-    """Total of the shipping list."""
+    """Return the total of the shipping list."""
     names = ("count", "mass", "volume", "missing_masses", "missing_volumes")
     sums = {name: sum(getattr(one, name) for one in shipped) for name in names}
     return ShippedComponent(use="", name="Total", length=None, **sums)
 
 
 def volume_of(component: Component, length: float | None) -> float | None:
-    """Volume of a piece [m³], from the dimensions of spheres, cylinders and cables, else from
-    displacement.
+    """Return the volume of a piece [m³], from the dimensions of spheres, cylinders and cables, else
+    from displacement.
 
     None if unknown.
     """

@@ -1,4 +1,4 @@
-"""Descent of the anchor to the seabed, with the line behind it as a chain of nodes without
+"""Descent of the anchor to the seabed, with the line behind it modelled as a chain of nodes without
 inertia.
 """
 

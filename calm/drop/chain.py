@@ -1,4 +1,4 @@
-"""A line as a chain: straight bars between nodes, and the loads on the bars.
+"""A line as a chain of straight bars between nodes, and the loads on the bars.
 
 A cable or chain is cut into bars, a rigid piece is one bar, and all pieces rigidly connected to the
 free end form one bar. The force of a load is distributed to the two nodes of its bar by the lever
@@ -18,16 +18,16 @@ from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 
 MIN_BAR_SHARE = 0.12
-"""Smallest share of all bars in a cable or chain that is not short, since it may be the one that
-lies down on the seabed.
+"""Smallest fraction of all bars for each cable or chain that is not short, since any of these may
+be the part that comes to lie on the seabed.
 """
 SHORT_SHARE = 0.02
-"""Share of all cables and chains above which one is not short."""
+"""Fraction of the total length of cables and chains above which one of them is not short."""
 
 
 @dataclass(frozen=True)
 class Elements:
-    """The k loads of a chain, by growing bar; every bar has one at least.
+    """The k loads of a chain, sorted by bar; every bar has at least one.
 
     Attributes
     ----------
@@ -69,11 +69,11 @@ class Elements:
 
     @cached_property
     def share(self) -> Floats:
-        """(2, k) share of a load on its bar's upper node and on the lower node."""
+        """(2, k) fractions of each load that act on the upper and on the lower node of its bar."""
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:
-        """Sum values per load (..., k) over every bar, (..., n)."""
+        """Sum values per load (..., k) to values per bar (..., n)."""
         total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
         return total
 
@@ -84,7 +84,7 @@ class Elements:
 
 @dataclass(frozen=True)
 class FloatOnChain:
-    """The first float at the surface, by its draft as a share of its height, 0 to 1.
+    """The first float at the surface, as a function of its draft divided by its height, 0 to 1.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class FloatOnChain:
 
 @dataclass(frozen=True)
 class BarChain:
-    """n bars between n + 1 nodes, free end first.
+    """Chain of n bars between n + 1 nodes, free end first.
 
     Attributes
     ----------
@@ -178,7 +178,7 @@ def chain_of(line: Line, count: int) -> BarChain:
 
 
 def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
-    """Length and piece of every bar, followed by bars and span of every piece."""
+    """Return the length and piece of every bar, and the bars and length of every piece."""
     pieces, head = len(line.length), head_count(line)
     cable = float(line.length[line.flexible].sum())
     share = line.length / max(cable, 1e-300)
@@ -210,7 +210,9 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Bar, and position on it, of points at a share of the length of their pieces."""
+    """Return bar, and position on the bar, of points at given fractions of the length of their
+    pieces.
+    """
     first, end = bars[piece].T
     begin, stop = span[piece].T
     way = begin + share * (stop - begin)
@@ -259,12 +261,12 @@ def _elements(
 
 
 _DRAFTS = 401
-"""Number of points in the table of a hull at the surface."""
+"""Number of points in the table of a float's hull."""
 
 
 def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
-    """Return the buoyancy and drag of a line's first float by its draft; None if its hull is
-    unknown.
+    """Return buoyancy and drag of a line's first float as functions of its draft; None if its hull
+    is unknown.
     """
     floating = line.floating
     if floating is None or floating.hull is None:

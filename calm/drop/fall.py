@@ -1,4 +1,4 @@
-"""The anchor drop: the line is towed, released, and settles on its anchor."""
+"""Anchor drop: the line is towed, released, and settles on its anchor."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -14,23 +14,25 @@ from calm.solve import Status
 from calm.solve.bracketed_root import bracketed_root
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
-"""Thickness of the layer in which floats lose their buoyancy: share of the depth, and upper limit
-[m].
+"""Thickness of the surface layer in which floats lose their buoyancy: as a fraction of the depth,
+and its upper limit [m].
 """
 AT_REST = 1e-7
-"""Motion in a step, as a share of the depth, below which the line has settled."""
+"""Motion per time step, as a fraction of the depth, below which the line is at rest."""
 MAX_STEP = 1e6
-"""Length of the longest step [s], after which a line has settled."""
+"""Length of the longest time step [s], after which a line is at rest."""
 SLOWEST_FLOW = 0.01
-"""Slowest flow past a line that is streamed less far than at the ship's speed [m/s]."""
+"""Slowest flow past a line whose streamed distance is limited [m/s]."""
 STREAMED_WITHIN = 1e-4
-"""Tolerance of the streamed distance, as a share of the length of the line."""
+"""Tolerance of the streamed distance, as a fraction of the line length."""
 LEAST_COMPRESSION = 1e-4
-"""Smallest compression of a settled bar that is laid down, as a share of all weights."""
+"""Smallest compression of a settled bar that is laid down, as a fraction of the sum of all
+weights.
+"""
 _FALLS = 3
 RELEASED_SHARE = 0.6
-"""Share of the anchor's weight that the ship still carries in the second step, and factor on this
-share for each further step. The anchor is released gradually to avoid a jerk.
+"""Fraction of the anchor's weight that the ship still carries in the second step, and factor on
+this fraction for each further step. This gradual release avoids a jerk.
 """
 _GROWTH = 1.3
 _REST_GROWTH = 1.6
@@ -40,7 +42,9 @@ _MOST = 20
 
 @dataclass(frozen=True)
 class Fineness:
-    """Approximate number of bars of cables and chains, and of steps of the fall."""
+    """Approximate number of bars of cables and chains, and approximate number of time steps of the
+    fall.
+    """
 
     bars: int
     steps: int
@@ -48,7 +52,7 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Ship:
-    """The ship that drops the anchor: its velocity to the east and north over the ground [m/s].
+    """Ship that drops the anchor: its velocity to the east and north over the ground [m/s].
 
     `streamed` is the horizontal distance from the anchor to the free end [m]; None uses the
     distance under tow.
@@ -61,7 +65,7 @@ class Ship:
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of a chain: states in order of time, one for each step."""
+    """Motion of a chain as a sequence of states, one per time step."""
 
     mover: Mover
     states: tuple[ChainState, ...]
@@ -112,7 +116,7 @@ def towed(
 def fall(
     line: Line, water: Water, anchor: FallingAnchor, start: ChainState, fineness: Fineness
 ) -> Motion:
-    """Compute the fall of a line from its shape under tow until its anchor reaches the seabed.
+    """Compute the fall of a line, from its shape under tow until its anchor reaches the seabed.
 
     The instant of the touchdown is interpolated within the last step. Raises NoEquilibrium:
     ``anchor-lifts`` if the anchor does not reach the seabed, ``not-converged`` if a step is not
@@ -157,7 +161,7 @@ def nothing_limits() -> NoEquilibrium:
 def settle(
     line: Line, water: Water, anchor: FallingAnchor, landed: ChainState, fineness: Fineness
 ) -> Motion:
-    """Compute how a line settles on its anchor.
+    """Compute how a line settles on the anchor after touchdown.
 
     Raises NoEquilibrium: ``not-converged`` if it does not settle.
     """
@@ -170,7 +174,7 @@ def _sea(water: Water) -> WaterColumn:
 
 
 def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState:
-    """Return the state at which the lower end is at a height [m]."""
+    """Return the state at which the lower end passes a given height [m]."""
     high, low = float(before.node[-1, 2]), float(after.node[-1, 2])
     share = (high - bottom) / (high - low)
     return ChainState(
@@ -182,7 +186,9 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """Make a step, or a shorter one if necessary; NoEquilibrium: ``not-converged``."""
+    """Advance by one time step, or a shorter step if necessary; raises NoEquilibrium
+    ``not-converged``.
+    """
     shortest = _SHORTEST * depth
     extrapolations = (False, True) if state.velocity.any() else (True,)
     while step > shortest:
@@ -196,7 +202,7 @@ def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> Chai
 
 
 def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, ...]:
-    """Return the states in ever longer steps until the line has settled.
+    """Return the states in ever longer time steps until the line is at rest.
 
     Bars that then balance upright on their lower end, under compression, are laid down: a long step
     keeps them upright, unlike a short step.
@@ -220,7 +226,8 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
 
 
 def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
-    """Return the state with compressed bars aligned with the next bar above that is under tension.
+    """Return the state after compressed bars are aligned with the next bar above that is under
+    tension.
 
     None if no bar is compressed.
     """
@@ -242,7 +249,8 @@ def _streamed(state: ChainState) -> float:
 
 
 def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Return the line in a slower flow, in which it streams to a given distance [m].
+    """Return the line in a slower flow, in which it streams to a given distance behind the ship
+    [m].
 
     If the free end were held closer in the full flow, the line would bend unlike a rope.
     """
@@ -275,7 +283,9 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
 
 def _drawn(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Return the line with its free end held at a horizontal distance from the other end [m]."""
+    """Return the line with its free end held at a given horizontal distance from the other
+    end [m].
+    """
     end = state.node[0, :2]
     here = float(np.linalg.norm(end))
     for share in np.linspace(0.0, 1.0, 21)[1:]:

@@ -1,4 +1,6 @@
-"""Record of a fall: depths, tensions and shapes of the pieces, from the states of a chain."""
+"""Results of an anchor drop: depths, tensions and shapes of the pieces, from the states of the
+chain.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,14 +16,14 @@ from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Integers
 
 REPORTED_ROLES = ("float", "instrument", "release")
-"""Roles of the pieces and clamps whose depths during the drop are reported."""
+"""Roles of pieces and clamps for which the depth during the drop is reported."""
 MOMENTS = 5
-"""Number of shapes from release to touchdown; the shape at rest is added."""
+"""Number of shapes from release to touchdown; the shape at rest is additional."""
 
 
 @dataclass(frozen=True)
 class DepthReached:
-    """Largest depth of a piece or clamp while the line falls and straightens.
+    """Largest depth of a piece or clamp while the line falls and settles.
 
     Attributes
     ----------
@@ -60,7 +62,7 @@ class Pull:
 
 @dataclass(frozen=True)
 class ShapeInTime:
-    """The shape of the line at a time [s]: distance towards the float and depth of nodes [m]."""
+    """Shape of the line at a time [s]: distance towards the float and depth of the nodes [m]."""
 
     time: float
     name: str
@@ -92,21 +94,22 @@ class FallPath:
 
 
 def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
-    """Positions (m, 3) of points on bars [m]."""
+    """Return the positions (m, 3) of points on bars [m]."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
 
 
 def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Positions (p, 3) of the ends of every piece, upper and lower [m]."""
+    """Return the positions (p, 3) of the upper and the lower ends of all pieces [m]."""
     first, end = chain.bars.T
     last = np.maximum(end - 1, first)
     return place_of(state, first, chain.span[:, 0]), place_of(state, last, chain.span[:, 1])
 
 
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
-    """Tensions (n, 2) of every bar at its upper and at its lower end [N]; 0 for a compressed bar.
+    """Return the tensions (n, 2) at the upper and the lower end of every bar [N]; 0 for a
+    compressed bar.
 
     Parameters
     ----------
@@ -148,7 +151,9 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
 
 
 def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
-    """Shapes at equal intervals from release to touchdown, and the shape at rest if known."""
+    """Return the shapes at equal intervals from release to touchdown, and the shape at rest if
+    known.
+    """
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
     shown = [drop.states[i] for i in chosen]
@@ -163,7 +168,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """Largest depths of floats, instruments and releases, from release to rest."""
+    """Return the largest depths of floats, instruments and releases, from release to rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     depth = np.array([_depths(chain, state) for state in states])
@@ -182,14 +187,14 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> Floats:
-    """Depths of every piece, at its deeper end, and of every clamp [m]."""
+    """Return the depths of the deeper end of every piece, and of every clamp [m]."""
     upper, lower = piece_ends(chain, state)
     clamps = place_of(state, chain.clamp_bar, chain.clamp_place)
     return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
 
 
 def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
-    """Maximum tension in every piece from release to touchdown."""
+    """Return the maximum tension in every piece, from release to touchdown."""
     _, tension = piece_tensions(drop)
     latest = tension.argmax(axis=0).tolist()
     return tuple(
@@ -199,8 +204,8 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 
 
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
-    """Tensions of every piece at its ends, (t-1, p, 2), and their maximum over the piece, (t-1, p)
-    [N].
+    """Return the tensions at both ends of every piece (t-1, p, 2), and the maximum over the piece
+    (t-1, p) [N].
 
     The first state is omitted, since the ship still tows then and the flow past the line differs.
     Pieces that are rigidly connected to the free end are one bar, and share the tensions of its
@@ -216,7 +221,9 @@ def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
 
 
 def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
-    """Tensions (t, p, 2) of the pieces from those (t, n, 2) of the bars [N]."""
+    """Select the tensions at the ends of pieces (t, p, 2) from those at the ends of bars (t, n, 2)
+    [N].
+    """
     first, end = drop.mover.chain.bars.T
     last = np.maximum(end, first + 1) - 1
     found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)
@@ -227,7 +234,7 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 
 
 def rest_difference(result: LegResult, rest: Motion) -> float:
-    """Largest distance of a piece's end, at rest, from its equilibrium position [m].
+    """Return the largest distance between a piece's end at rest and in equilibrium [m].
 
     If the line has a touchdown before its anchor, pieces on the seabed are excluded: the
     equilibrium has them at the foot of the anchor, while here they lead up to its top.

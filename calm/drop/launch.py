@@ -21,20 +21,18 @@ from calm.quantities import bearing_of
 from calm.solve import looped
 
 AXIAL_DRAG_BAND = 2.0
-"""Factor by which the tangential drag of the line and the drag of the anchor may be larger or
-smaller than specified.
-"""
+"""Uncertainty factor on the tangential drag of the line and on the drag of the anchor."""
 SHIP_SPEED = 1.0
 """Speed of a ship that tows the line out [m/s], about two knots."""
 SLOWEST_SHIP = 0.05
 """Lowest ship speed through the water that streams a line [m/s]."""
 CHECK_FINENESS = Fineness(bars=50, steps=50)
-"""Resolution for the design check, half the resolution of the plan."""
+"""Resolution of the fall for the design check, half the resolution of a drop plan."""
 
 
 @dataclass(frozen=True)
 class Launch:
-    """The fall of a line behind its anchor, from a ship that tows it at 1 m/s against the current.
+    """Fall of a line behind its anchor, from a ship that tows it at 1 m/s against the current.
 
     The jerk as the line straightens, and its swing, are not included.
 
@@ -68,7 +66,7 @@ class Launch:
     tangles: tuple[int, ...]
 
     def components(self) -> list[dict[str, Any]]:
-        """Values of the pieces above the anchor, by their names in JSON."""
+        """Values of the pieces above the anchor, by JSON name."""
         pairs = zip(self.tension_top.tolist(), self.tension_bottom.tolist(), strict=True)
         return [
             {"index": index, "tension_top": top, "tension_bottom": bottom}
@@ -122,7 +120,7 @@ def _let_go(
 
 
 def falling_line(leg: Leg) -> Line:
-    """Return the line of a mooring with the drag of its clamps during the fall."""
+    """Return the line of a mooring with the clamp drag that applies during the fall."""
     return with_axial_clamps(leg.line, leg.file.pieces[:-1])
 
 
@@ -132,13 +130,13 @@ def falling_anchor(leg: Leg) -> FallingAnchor:
 
 
 def course_into_current(water: Water) -> float:
-    """Course against the current at the surface, north in still water [degrees]."""
+    """Return the course against the surface current, or north in still water [degrees]."""
     east, north, _ = water.current_at(np.zeros(()))
     return bearing_of(-east, -north) if east or north else 0.0
 
 
 def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None) -> Ship:
-    """Return the ship that tows the line of a mooring.
+    """Return the ship, with its velocity, that tows the line of a mooring.
 
     Parameters
     ----------
@@ -169,8 +167,8 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
 
 
 def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -> Motion:
-    """Recompute the last step of a fall with the tangential drag of the line, and the drag of the
-    anchor, multiplied by factors.
+    """Recompute the last step of a fall after the tangential drag of the line, and the drag of the
+    anchor, are multiplied by factors.
     """
     landed, falling = drop.states[-1], drop.mover
     # the step ends at the touchdown and may be very short
@@ -187,6 +185,6 @@ def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -
 
 
 def _tangles(drop: Motion) -> tuple[int, ...]:
-    """Pieces with a bar that is upside down at touchdown."""
+    """Return the pieces with a bar that is upside down at touchdown."""
     chain = drop.mover.chain
     return looped(chain.line, chain.piece, np.diff(drop.states[-1].node[:, 2]))

@@ -11,14 +11,14 @@ from calm.physics.line import Floats, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 
 SLOWEST = 1e-3
-"""Speed below which drag is proportional to the speed instead of its square [m/s]; otherwise a line
+"""Speed below which drag is proportional to the speed instead of its square [m/s]. Otherwise a line
 at rest would have no resistance to motion.
 """
 
 
 @dataclass(frozen=True)
 class WaterColumn:
-    """Water by depth, with its gradients.
+    """Water properties against depth, with their vertical gradients.
 
     Attributes
     ----------
@@ -32,7 +32,9 @@ class WaterColumn:
 
     @cached_property
     def _rows(self) -> tuple[Floats, Floats]:
-        """Rows u, v, w, density at every level, and their increase per metre below it."""
+        """Rows with u, v, w and density at every level, and their increase per metre below this
+        level.
+        """
         water = self.water
         values = np.stack([water.u, water.v, water.w, water.density])
         slopes = np.zeros((4, values.shape[1] + 1))
@@ -40,7 +42,9 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Current (3, k), its increase per metre of depth (3, k), and density (k,)."""
+        """Return current (3, k), its increase per metre of depth (3, k), and density (k,) at given
+        depths.
+        """
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
@@ -134,8 +138,8 @@ _DIAGONAL = np.arange(3), np.arange(3)
 def _friction(
     chain: BarChain, kt: Floats, along: Floats, speed: Floats, slowest: float
 ) -> tuple[Floats, Floats, Floats | None, Floats | None]:
-    """Return the tangential drag, its derivative by the tangential flow and, times the flow, its
-    derivative by the speed.
+    """Return the tangential drag, its derivative with respect to the tangential flow and,
+    multiplied by the flow, its derivative with respect to the speed.
 
     The last result, for Hoerner's law only, is the drag parallel to the flow, divided by the flow.
     None means zero.
@@ -159,7 +163,8 @@ def _friction(
 def _afloat(
     chain: BarChain, sea: WaterColumn, height: Floats, density: Floats
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """Return net force, its derivative by height, wetted share and its derivative, and wind force.
+    """Return net force, its derivative with respect to height, immersed fraction and its
+    derivative, and wind force.
 
     Buoyant loads lose their buoyancy over the surface layer as their top emerges; a load of known
     mass then weighs on the line. A float with a known hull loses buoyancy and drag by its draft.
@@ -195,4 +200,4 @@ def _afloat(
 
 
 _STEP = 1e-3
-"""Step of the draft for the derivative of a hull's buoyancy."""
+"""Step of the draft in the finite difference for the derivative of a hull's buoyancy."""

@@ -1,4 +1,4 @@
-"""A time step of a chain without inertia: positions of its nodes at the end of the step.
+"""One time step of a chain without inertia: positions of its nodes at the end of the step.
 
 The forces on every node cancel at the end of the step, with drag for the velocity V = (X - Xₙ)/Δt
 over the step (implicit Euler), and the length of every bar follows from its tension. Nodes and
@@ -19,27 +19,32 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve.block_tridiagonal import solve_blocks
 
 MOST_ROUNDS = 16
-"""Largest number of Newton iterations; a step that needs more is too long."""
+"""Largest number of Newton iterations; a time step that needs more is too long."""
 LINEAR_DRAG_SPEED = 10.0
-"""Speed below which drag is linear in the speed, in the first iteration of a step from rest
-[m/s].
+"""Speed below which drag is linear in speed, in the first iteration of a time step from
+rest [m/s].
 """
 CHANGE = 1e-5
-"""Tolerance of the last change of a position, as a share of the line, and of a tension, as a share
-of all weights; the remaining error is of the order of its square.
+"""Tolerance of the last change of a position, as a fraction of the line length, and of a tension,
+as a fraction of the sum of all weights. The remaining error is of the order of the square of this
+tolerance.
 """
 BEARING_DEPTH = 1e-4
-"""Penetration of the seabed at which it carries a node, as a share of the water depth."""
+"""Penetration of the seabed at which the seabed carries a node, as a fraction of the water
+depth.
+"""
 
 _UNIT = np.eye(3)
 
 
 class NoStep(ArithmeticError):
-    """Newton's method does not find a step, although it may find a shorter step."""
+    """Newton's method finds no solution for a time step, although it may find one for a shorter
+    step.
+    """
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
-    """Whether a bar has rotated by more than 120°, so that it may be under compression."""
+    """Return whether a bar has rotated by more than 120°, so that it may be under compression."""
     chords = before[1:] - before[:-1], after[1:] - after[:-1]
     along = np.einsum("ij,ij->i", *chords)
     if along.min() >= 0.0:  # almost always
@@ -64,7 +69,7 @@ class FallingAnchor:
 
 @dataclass(frozen=True)
 class ChainState:
-    """State of a chain.
+    """State of a chain at one time.
 
     Attributes
     ----------
@@ -82,7 +87,7 @@ class ChainState:
 
 @dataclass(frozen=True)
 class Mover:
-    """A chain in the sea.
+    """Time-stepping solver for a chain in the sea.
 
     Attributes
     ----------
@@ -136,7 +141,7 @@ class Mover:
 
     @cached_property
     def scale(self) -> float:
-        """Scale of forces [N]: the weight of the anchor plus all absolute buoyancies."""
+        """Scale of forces [N]: weight of the anchor plus the sum of all absolute buoyancies."""
         return self.anchor.weight + float(np.abs(self.chain.elements.buoyancy).sum())
 
     def loads(
@@ -165,8 +170,8 @@ class Mover:
         return loads, axis, length
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
-        """Strain (n,) of the bars and its derivative [1/N]; a compressed rope has the strain at
-        zero tension.
+        """Return the strain (n,) of the bars and its derivative [1/N]; a compressed rope has the
+        strain of zero tension.
         """
         strain, growth = self.chain.compliance * tension, self.chain.compliance.copy()
         for bars, knots in self.chain.elongation:
@@ -180,8 +185,8 @@ class Mover:
     def anchor_force(
         self, node: Floats, velocity: Floats, slowest: float = SLOWEST
     ) -> tuple[Floats, Floats]:
-        """Weight and drag of the falling anchor (3,) [N], and the derivative by its velocity (3,
-        3).
+        """Return weight and drag of the falling anchor (3,) [N], and the derivative with respect to
+        its velocity (3, 3).
         """
         current, _, density = self.sea.at(-node[2, -1:])
         flow = current[:, 0] - velocity[:, -1]
@@ -191,8 +196,8 @@ class Mover:
         return force, -k * (speed * _UNIT + flow[:, np.newaxis] * flow / speed)
 
     def variation(self, state: ChainState) -> Floats:
-        """Ratio (k,) of a smooth body's drag to the constant drag, for the motion of the last
-        step.
+        """Return the ratio (k,) of a smooth body's drag to its drag with constant coefficients, for
+        the motion of the last step.
         """
         on = self.chain.elements
         variation = np.ones(len(on.bar))
@@ -221,7 +226,7 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Return the Newton correction (n+1, 4) of nodes and tensions; the last tension is a
+        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last tension is a
         dummy.
         """
         chain, on = self.chain, self.chain.elements
@@ -266,7 +271,9 @@ class Mover:
 
     @cached_property
     def _bearing(self) -> Floats:
-        """Reaction (n,) of the seabed on a node that has penetrated by `SINKING` [N]."""
+        """Return the reaction (n,) of the seabed on a node that has penetrated by `BEARING_DEPTH`
+        [N].
+        """
         on = self.chain.elements
         weight = on.summed(np.abs(on.buoyancy))
         weight[1:] += weight[:-1]
@@ -275,7 +282,7 @@ class Mover:
 
     @cached_property
     def _fixed(self) -> tuple[int, ...]:
-        """Indices of the known unknowns, at held ends of the chain."""
+        """Indices of unknowns that are fixed, at the held ends of the chain."""
         last = 4 * len(self.chain.length)
         upper = () if self.tether is None else (0, 1)
         return (*upper, last, last + 1, last + 2) if self.held else upper

@@ -1,4 +1,4 @@
-"""Plan of an anchor drop, from a mooring and a ship, for use on board."""
+"""Plan of an anchor drop for use on board, from a mooring and a ship."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -22,8 +22,8 @@ from calm.quantities import bearing_of
 from calm.solve import Status
 
 REST_TOLERANCE = 1e-3
-"""Allowed distance between the line at rest and its equilibrium, as a share of the depth; beyond
-it, results after the touchdown are not shown.
+"""Largest allowed distance between the line at rest and its equilibrium, as a fraction of the
+depth. Above this limit, results after the touchdown are not shown.
 """
 
 SHORT_FALL = 60.0
@@ -32,7 +32,7 @@ SHORT_FALL = 60.0
 
 @dataclass(frozen=True)
 class RunStart:
-    """Start of the run, when the first piece is deployed, and length of the run.
+    """Start of the run, where the first piece is deployed, and length of the run.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class RunStart:
 
 @dataclass(frozen=True)
 class DropPlan:
-    """Anchor drop of a mooring, anchor last, with the line streamed behind the ship.
+    """Plan of an anchor drop, anchor last, with the line streamed behind the ship.
 
     Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
     clockwise from north. Distances are positive towards the float, which is the direction in which
@@ -108,8 +108,8 @@ class DropPlan:
     rest_difference: float | None
 
     def position(self, place: tuple[float, float]) -> Position | None:
-        """Geographic position of a point east and north of the target [m]; None if the target has
-        none.
+        """Return the geographic position of a point east and north of the target [m]; None if the
+        position of the target is unknown.
 
         Uses the tangent plane of the WGS 84 ellipsoid, accurate within 1 m up to 10 km away.
         """
@@ -188,19 +188,19 @@ _AS_THEY_ARE = (
     *("fall_time", "fall_back", "touchdown_speed", "greatest_tension", "tow_past", "aside"),
     *("streamed", "ship_speed", "course", "astern", "anchor_drag", "rest_difference"),
 )
-"""Values of a plan that have the same names in its JSON."""
+"""Attributes of a plan that have the same names in its JSON."""
 
 FINE = Fineness(bars=100, steps=100)
 FINEST = 4
-"""Largest factor by which the number of bars is increased, until the line settles in its
+"""Largest factor by which the number of bars is increased until the line settles in its
 equilibrium.
 """
 DRAG_BAND = 2.0
-"""Factor by which the anchor's drag may be larger or smaller than specified."""
+"""Uncertainty factor on the drag of the anchor."""
 ERROR_SAFETY = 2.0
-"""Safety factor on the changes for steps and bars of twice the length, in the stated errors."""
+"""Safety factor in the error estimates, on the changes for steps and bars of twice the length."""
 LEAST_TIME_ERROR = 5e-4
-"""Smallest relative error of the fall time, in case the changes happen to be small."""
+"""Smallest relative error of the fall time, in case the estimated error is small by chance."""
 
 
 def drop_plan(
@@ -252,7 +252,9 @@ def drop_plan(
         return fall(falling, water, replace(anchor, drag=drag), start, fineness)
 
     def dropped(fine: Fineness) -> tuple[ChainState, Motion, Motion, float | None]:
-        """Return the line under tow, its fall, its rest, and the distance from its equilibrium."""
+        """Compute the line under tow, its fall, its state at rest, and the distance of this state
+        from equilibrium.
+        """
         start = towed(falling, water, anchor, ship, fine)
         drop = let_go(start, anchor.drag, fine)
         rest = settle(leg.line, water, anchor, drop.states[-1], fine)
@@ -341,7 +343,9 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the position of the anchor: distance towards the float, and to the right of it [m]."""
+    """Return the position of the anchor: distance towards the float, and distance to the right of
+    this direction [m].
+    """
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 
@@ -349,7 +353,7 @@ def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
 def _run_start(
     leg: Leg, way: Floats, speed: float, past: float, deck_time: Mapping[str, float]
 ) -> RunStart:
-    """Return the start of the run, with cables paid out at the ship's speed.
+    """Compute the start of the run, with cables paid out at the speed of the ship.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ mooring file is read back as a check.
 from __future__ import annotations
 
 import os
+import re
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,7 @@ from calm.files.yaml_document import read_document
 from calm.whole_file import read_head
 
 _HEAD = 70_000  # bytes from which a format is recognised
+_OWN_KEYS = (rb"^environment:", rb"^(line|legs):")
 
 
 @dataclass(frozen=True)
@@ -89,9 +91,7 @@ def import_file(
     levels = 0 if design.water is None else len(design.water.current)
     for what, count in (("pieces", len(design.items)), ("levels of current", levels)):
         if count > model.MOST_PIECES:
-            raise refused(
-                path, f"has {count} {what}; more than {model.MOST_PIECES} are not imported"
-            )
+            raise refused(path, f"has {count} {what}; the maximum is {model.MOST_PIECES}")
     if environment is not None:
         design.environment = environment_lines(environment, output)
         if design.water is not None:
@@ -120,6 +120,8 @@ def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFor
     if name is not None:
         return _format_named(name)
     content = read_head(path, _HEAD)
+    if all(re.search(key, content, re.MULTILINE) for key in _OWN_KEYS):
+        raise refused(path, f"is a mooring file of CALM already; solve it with: calm run {path}")
     for each in (formats := _readable()):
         if each.detect is not None and each.detect(content):
             return each

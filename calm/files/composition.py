@@ -16,6 +16,8 @@ from yaml import events
 from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import CollectionEndEvent
 
+from calm.files.yaml_mistakes import syntax_mistakes, without_colon
+
 _DEEPEST = 100
 """Maximum depth of nested collections. The time to read brackets increases with its square."""
 
@@ -34,6 +36,8 @@ _KINDS: dict[type[events.Event], Kind] = {
     events.ScalarEvent: "scalar",
 }
 _COLON = re.compile(r"\s*:")
+_TWO_WORDS = re.compile(r"[A-Za-z_]\w*[ :]")
+_DASHED = re.compile(r"-[{\[A-Za-z]")
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
 _NULL_TAG = "tag:yaml.org,2002:null"
 _PLAIN_TAGS = frozenset(
@@ -95,29 +99,10 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
     try:
         return _Reader(text, start, _Parser(plain).get_event).read()
     except MarkedYAMLError as error:
-        return Composition(None, tuple(_syntax_mistakes(plain, error)))
+        return Composition(None, tuple(syntax_mistakes(plain, error)))
     except (YAMLError, ValueError, OverflowError) as error:
         first_line = str(error).partition("\n")[0]
         return Composition(None, ((0, 0, f"is not valid YAML: {first_line}"),))
-
-
-def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Refusal]:
-    """Return a problem for every tab in the indentation, the usual cause, or else that of the
-    parser.
-    """
-    if "\\t" in str(error.problem):
-        found = [
-            (number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
-            for number, line in enumerate(text.splitlines(), 1)
-            if "\t" in line[: len(line) - len(line.lstrip())]
-        ]
-        if found:
-            return found
-    mark = error.problem_mark or error.context_mark
-    what = error.problem or error.context
-    if error.context and error.context_mark and error.problem:
-        what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
-    return [(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
 
 
 class _Reader:
@@ -166,7 +151,7 @@ class _Reader:
             message = f"tags (`{event.tag}`) are not allowed"
             if event.anchor is not None:
                 self._anchors.add(event.anchor)
-                message = "anchors (&) and aliases (*) are not allowed; write it out"
+                message = "YAML anchors (&) and aliases (*) are not supported; repeat the value"
             event.anchor = event.tag = None
             return self._refused(event, depth, message)
         kind = _KINDS[type(event)]
@@ -212,6 +197,8 @@ class _Reader:
             elif (name := _shown(event.value)) in lines:
                 again = f"`{name}` is given twice (first in line {lines[name]})"
                 self._refusals.append(_refusal(event, again))
+            elif not event.style and _DASHED.match(name):
+                self._refusals.append(_refusal(event, "the dash of a list needs a blank behind it"))
             else:
                 mark = event.start_mark
                 lines[name] = line = mark.line + 1
@@ -221,6 +208,8 @@ class _Reader:
                 if value.data is None and value.start == value.end:
                     # Its event is before whatever comes next.
                     colon = _COLON.match(self._text, end)
+                    if colon is None and _TWO_WORDS.match(name):
+                        self._refusals.append(_refusal(event, without_colon(name)))
                     behind = colon.end() if colon else end
                     value = Node("scalar", behind, behind, line, key.column, "", None)
                 keys.append(key)

@@ -80,14 +80,15 @@ class LineReader:
         """Return the items of a list, which are all mappings."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
-            section.refuse((key,), f"`{key}` must be a list of items")
+            section.refuse((key,), f"`{key}` must be a list of items, as `{key}: [{{use: sbe37}}]`")
             return []
         items = []
         for i, item in enumerate(found[: MOST_PIECES + 1]):
             if isinstance(item, dict):
                 items.append(section.child(key, i))
             else:
-                message = f"`{shown(item)}` is not an item; write `{{use: {shown(item) or '…'}}}`"
+                use = shown(item).removeprefix("use ") or "…"
+                message = f"`{shown(item)}` is not an item; write `{{use: {use}}}`"
                 section.refuse((key, i), message)
         return items
 

@@ -322,7 +322,7 @@ def _check_slides(
             )
         elif depth is not None and depth + deeper <= 0.0:
             complaints.append(
-                f"by its slope the seabed is {-depth - deeper:.3g} m above the water here"
+                f"the seabed slope puts the seabed {-depth - deeper:.3g} m above the surface here"
             )
         for one in complaints:
             top.refuse_at(piece.line, piece.column, one)

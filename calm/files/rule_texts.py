@@ -38,7 +38,7 @@ _ONCE = "checked once for a mooring, by `calm check`"
 
 RULES = {
     "equilibrium": RuleText("Equilibrium", "",
-        "reported if there is none, with its status and advice",
+        "reported if the solver finds no equilibrium, with its status and advice",
         "",
         "A mooring without an equilibrium cannot be checked"),
     "current": RuleText("Current", "speed",

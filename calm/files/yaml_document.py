@@ -227,7 +227,7 @@ def _explain(
             keys = [*(name for one in forms for name in one.model_fields), *also_allowed]
             if also_allowed:
                 keys.remove("kind")
-            near = _nearest_key(name, keys)
+            near = "toward" if name == "from" else _nearest_key(name, keys)
             if near:
                 misspelt.add((location[:-1], near))
             kind = _tag(model) if len(details["loc"]) == 1 else None
@@ -261,6 +261,8 @@ def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
 def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> str:
     if value is None and name[:1].isdigit():
         return f"`{shown(name)}` is not a key; a decimal comma? (write 0.8, not 0,8)"
+    if name == "from" and "toward" in keys:
+        return "unknown key `from`; the key is `toward`, the direction in which it flows"
     return unknown_key(name, keys, f" for kind {kind}" if kind else "")
 
 
@@ -325,7 +327,10 @@ _SHAPES: Mapping[str, str] = {
 
 def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     """Return an example of the value of a key, if it is a mapping or a list and has an example."""
-    field = model.model_fields.get(str(loc[0])) if len(loc) == 1 else None
+    field = model.model_fields.get(str(loc[0])) if loc else None
+    inside = {key for one in _models_in(field and field.annotation) for key in one.model_fields}
+    if loc[1:] and (len(loc) > 2 or loc[1] in inside or isinstance(loc[1], int)):
+        field = None  # below the key, not a form of its value
     shape = field.examples[0] if field is not None and field.examples else None
     shape = shape[:1] if isinstance(shape, list) else shape
     return f", as `{loc[0]}: {_flow(shape)}`" if isinstance(shape, (dict, list)) else ""

@@ -22,17 +22,17 @@ from calm.errors import UsageError
 from calm.gridding.samples import Floats, Samples
 
 NODES = 60
-"""Depths at which mean and standard deviation of the record are kept."""
+"""Number of depths of the mean profile."""
 TIMES_FOR_SCALES = 60
-"""Times from which the scales are found."""
+"""Number of times used to fit the scales."""
 TIMES_LEFT_OUT = 240
-"""Times at which sensors are left out in turn."""
+"""Number of times at which sensors are left out in turn."""
 BLOCK = 128
-"""Times that are solved together, which bounds the memory."""
+"""Number of times solved together, which limits the memory."""
 SAMPLES_FOR_PROFILE = 30_000
-"""Samples from which the mean profile is made."""
+"""Maximum number of samples used for the mean profile."""
 OWN_SHARE = 0.5
-"""Part of the variance of a depth's error that is the instrument's own."""
+"""Share of the variance of depth errors that is independent between instruments."""
 REMAINING = 0.5
 """Share of variance remaining at a level, above which a value is poorly constrained."""
 HALF_WIDTH = 1.96
@@ -69,14 +69,14 @@ class RecordProfile:
 
 @dataclass(frozen=True)
 class GriddedQuantity:
-    """A quantity of which the scales are known.
+    """A quantity with fitted correlation scales.
 
     Attributes
     ----------
-    samples, profile, scales : what it is estimated from
+    samples, profile, scales : samples, mean profile and correlation scales
     noise : standard deviation of a sensor, in the unit of the quantity
-    in_time : whether the neighbours of a time count for it
-    widened : factors on the deviations, by what sensors that are left out in turn show
+    in_time : whether neighbouring times are used
+    widened : factors on the deviations, from leaving out each sensor in turn
     """
 
     samples: Samples
@@ -102,7 +102,7 @@ class Widening:
 
 
 class LevelPosterior(NamedTuple):
-    """Mean and standard deviation at some depths, and the share of the variance that is left."""
+    """Mean and standard deviation at some depths, and the share of the variance that remains."""
 
     mean: Floats
     deviation: Floats
@@ -124,7 +124,7 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
     ----------
     samples : from two instruments at least
     noise : standard deviation of a sensor
-    in_time : whether the neighbours of a time count for it
+    in_time : whether neighbouring times are used
 
     Raises
     ------
@@ -166,7 +166,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
 
 
 def spacing(samples: Samples) -> float:
-    """Median vertical spacing of the instruments [m]; closely spaced pairs count once."""
+    """Return the median vertical spacing of the instruments [m], counting close pairs once."""
     place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
     apart = np.diff(place)
     wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
@@ -373,7 +373,7 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
 
 
 MIN_RESIDUALS = 20
-"""Misses of a sensor from which a factor is made."""
+"""Minimum number of residuals of a sensor for a factor."""
 
 
 def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening | None:

@@ -70,7 +70,7 @@ class GriddedRecord:
         output: str | Path,
         progress: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
     ) -> None:
-        """Compute the values and write them to a NetCDF file, as ``calm grid -o`` does.
+        """Compute the values and write them to a NetCDF file, like ``calm grid -o``.
 
         Parameters
         ----------
@@ -135,9 +135,9 @@ MOST_DRAWN = 600
 def draw_section(
     axes: Any, samples: Samples, levels: Floats, values: Any, flags: Any, colours: str
 ) -> Any:
-    """Draw values (n, k) over time and depth with the depths of the instruments; return the mesh.
+    """Draw values (n, k) over time and depth, with the depths of the instruments.
 
-    Doubtful values are pale.
+    Doubtful values are pale. The mesh is returned.
     """
     every = max(len(values) // MOST_DRAWN, 1)
     time = samples.time[::every].astype("datetime64[s]").astype(object)

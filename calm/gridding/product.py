@@ -1,4 +1,4 @@
-"""The gridded file: values, deviations and flags on levels, laid out as archives want it."""
+"""Layout and writing of the gridded file: values, deviations and flags on levels."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -75,13 +75,13 @@ def grid_layout(
 
     Parameters
     ----------
-    fields : of each quantity
-    levels : [m]
-    depths : which the places of the instruments are from
-    inputs : names of the files it is made of, with their hashes
-    names : of each quantity in the file
-    averaged : the step that values are means of; None where they are those of a time
-    cards : what was read from each of the files
+    fields : field of each quantity
+    levels : depths of the levels [m]
+    depths : depths of the instruments
+    inputs : names of the input files, with their hashes
+    names : name of each quantity in the file
+    averaged : averaging interval of the values; None for values at a time
+    cards : summary card of each file
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
@@ -157,7 +157,7 @@ def grid_layout(
 
 
 def method_sentence(field: GriddedQuantity) -> str:
-    """Return how a quantity was put onto levels, with its scales."""
+    """Describe the gridding of a quantity, with its scales."""
     scales = field.scales
     time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
     return (
@@ -175,17 +175,17 @@ def write_grid(
     output: Path,
     shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
-    """Write a gridded file block by block; it gets its final name on completion.
+    """Write a gridded file block by block, under its final name only on completion.
 
     Parameters
     ----------
-    names : of each quantity in the file
-    shown : passes the blocks on, and shows how many are done
+    names : name of each quantity in the file
+    shown : wraps the iteration over blocks, to show progress
 
     Raises
     ------
     UsageError
-        The system refuses, e.g. because the disk is full.
+        The file cannot be written, for example because the disk is full.
     """
     time = next(iter(fields.values())).samples.time
     capitals = all(one.isupper() for one in names.values())

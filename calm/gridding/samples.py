@@ -32,12 +32,11 @@ class MooringDepths:
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    places : the points, with their depths in the calmest hours: a twentieth of the times is less
-        deep
-    depth, deviation : (n, p) and standard deviation [m]
-    place : latitude and longitude [degrees]; empty where not known
-    seabed : depth of the last piece, the anchor [m]; NaN where not known
-    attributes : of the file
+    places : the points, with their depths in the calmest hours (5th percentile)
+    depth, deviation : (n, p) depths and standard deviations [m]
+    place : latitude and longitude [degrees]; empty if unknown
+    seabed : depth of the last piece, the anchor [m]; NaN if unknown
+    attributes : attributes of the file
     """
 
     time: NDArray[np.datetime64]
@@ -67,8 +66,8 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
             continue
         if name not in dataset.variables or spread not in dataset.variables:
             raise UnreadableError(
-                f"has no `{spread}`: the depths of a result of calm motion are wanted, which have "
-                "their uncertainty"
+                f"has no `{spread}`: depths with their uncertainty are required, from a "
+                "result of calm motion"
             )
         mine = labels_of(dataset, f"{dimension}_label")
         labels += mine
@@ -97,7 +96,7 @@ ANOTHER_PLACE = 30.0
 """Difference between pressure [dbar] and depth [m] that indicates another instrument."""
 
 MOST = 5_000_000
-"""Times that are written, at most: a second each for two months."""
+"""Maximum number of times written: one a second for two months."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +106,9 @@ class Samples:
     Attributes
     ----------
     time : (n,) rising
-    label : (s,) of the instruments
-    depth, deviation : (n, s) where each was, and standard deviation of that [m]
-    value : (n, s) in the unit of the quantity; NaN where nothing was measured
+    label : (s,) labels of the instruments
+    depth, deviation : (n, s) depths of the instruments and standard deviations [m]
+    value : (n, s) in the unit of the quantity; NaN if not measured
     """
 
     time: Times
@@ -122,7 +121,7 @@ class Samples:
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Return the times of the field: those of the depths, or equally spaced times.
+    """Return the times of the field: the times of the depths, or equally spaced times.
 
     They cover the period in which both depths and values are known.
 
@@ -162,7 +161,7 @@ def gather(
 
     Parameters
     ----------
-    points : of each series that is used, its point
+    points : point of each series in use, by index
     time : (n,) see `common_times`
 
     Raises
@@ -175,7 +174,7 @@ def gather(
     for at, below in each:
         if each.count((at, below)) > 1:
             who = ", ".join(series[i].source for i in points if points[i] == at)
-            raise UsageError(f"two series are of `{depths.places.label[at]}`: {who}; leave one out")
+            raise UsageError(f"two series are of `{depths.places.label[at]}`: {who}; remove one")
     order = sorted(points, key=lambda i: still[points[i]] + series[i].below)
     shape = len(time), len(order)
     value, depth, deviation = (np.full(shape, np.nan) for _ in range(3))

@@ -62,7 +62,7 @@ def read_sensors(
             with cf_files.opened(path) as dataset:
                 parts = instrument_series.instruments_apart(dataset)
                 each = (_from_arrays(part, path, flags, latitude, seabed) for part in parts)
-                mine = [one for part in each for one in part]
+                mine = instrument_series.with_one_card([one for part in each for one in part])
         else:
             mine = _from_csv(path, latitude)
         if label:

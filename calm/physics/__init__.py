@@ -1,1 +1,3 @@
-"""Physics of a line in the sea: drag, current, one element, the march. Numbers and arrays only."""
+"""Physics of a line in the sea: drag, current, balance of one element, march. Inputs are numbers
+and arrays only.
+"""

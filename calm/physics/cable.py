@@ -1,4 +1,4 @@
-"""A stretch of cable or chain: straight segments, hinged, each in moment equilibrium."""
+"""March along a cable or chain: straight segments joined by hinges, each in moment equilibrium."""
 
 from collections.abc import Sequence
 from math import inf, sqrt
@@ -37,33 +37,33 @@ from calm.physics.strumming import (
 from calm.physics.track import CableStretch
 
 PASSES, STALLED = 200, 50
-"""Largest number of passes over a segment, and the number after which passes are damped by one
-half. A slack segment at the upper edge of a current would otherwise alternate between hanging plumb
-and trailing with the current.
+"""Largest number of iterations for one segment, and the number after which the iterations are
+damped by one half. Without damping, a slack segment at the upper edge of a current would alternate
+between hanging vertically and trailing with the current.
 """
 SWITCH_TOLERANCE = 1e-6
-"""Accuracy of the position at which a drag law switches, as a share of the segment."""
+"""Accuracy of the position at which a drag law switches, as a fraction of the segment."""
 OF_FRICTION, OF_STRUMMING = range(2)
-"""Laws that switch, see `switch_at`."""
+"""Kinds of drag laws that switch, see `switch_at`."""
 AT_A_LEVEL, TRIALS = 1e-9, 10
-"""Distance from a level within which a part of a segment ends at the level, as a share of the
-segment's depth range, and the largest number of passes to find this part.
+"""Distance from a level that is treated as reaching the level, as a fraction of the segment's depth
+range; and the largest number of iterations to end a part of a segment at a level.
 """
 Passed = tuple[float, State, float, State, float]
-"""A marched part of a segment: its unstretched length [m]; the state between its halves and the
-strain of the upper half, or the state above and 0 if it is not halved; the state below, and the
-strain of the lower half or of the whole part.
+"""A marched part of a segment: its unstretched length [m]; the state at its midpoint and the strain
+of its upper half (or, if it is not halved, the state at its top and 0); the state at its bottom and
+the strain of its lower half (or of the whole part).
 """
 SETTLED_ROTATION = 1e-6
-"""Squared rotation of a segment [rad²] in the last of a few Newton steps that is accepted if full
-precision is not required.
+"""Squared rotation of a segment [rad²] in the last of a few Newton steps below which an approximate
+march accepts the segment.
 """
 
 
 @within
 def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
-    """Strain of a cable at a tension [N], from its elongation curve, or from its compliance if it
-    has no curve.
+    """Return the strain of a cable at a tension [N], from its elongation curve or, without a curve,
+    from its compliance.
     """
     if cable.first_knot == cable.end_knot:
         return cable.compliance * tension
@@ -72,13 +72,14 @@ def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> flo
 
 @within
 def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float) -> float:
-    """Net buoyancy of a segment of unstretched length `cut` [m], positive up [N]."""
+    """Return the net buoyancy of a segment of unstretched length `cut` [m], positive up [N]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
 @within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Length of unstretched cable in reference water with the same drag as a segment [m].
+    """Return the equivalent length of a segment for drag [m]: unstretched cable of this length in
+    reference water has equal drag.
 
     If the volume is conserved (thinning ½), the drag grows by √(1 + strain); else (0) it does not
     grow.
@@ -101,7 +102,9 @@ def segment_drag(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Drag of a current on a segment of axis t [N], by the law of its friction."""
+    """Return the drag of a current on a segment of axis t [N], with the tangential drag law of the
+    cable.
+    """
     if friction == BERTEAUX:
         return drag_force(kn, kt, u, v, w, tx, ty, tz)
     qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
@@ -209,7 +212,7 @@ def pass_halves(
     near: float,
     expected: Vector,
 ) -> Passed:
-    """Integrate a segment, or a part of a segment, as one straight piece or as two straight halves.
+    """March a segment, or a part of a segment, as one straight piece or as two straight halves.
 
     `near` and `expected` are as in `pass_segment`.
     """
@@ -236,7 +239,7 @@ def vibrating_share(
     ty: float,
     tz: float,
 ) -> tuple[float, float]:
-    """`drag_share` of a strumming cable, and the factor on its Cn.
+    """Return `drag_share` for a strumming cable, and the factor on its normal drag coefficient.
 
     Parameters
     ----------
@@ -269,8 +272,8 @@ def touchdown(
     expected: Vector,
     bed: Bed,
 ) -> Passed:
-    """Integrate the hanging part of a segment, down to the touchdown, where the force normal to the
-    seabed vanishes.
+    """March the part of a segment above its touchdown, where the force normal to the seabed
+    vanishes.
 
     `halves`, `near` and `expected` are as in `pass_halves`.
     """
@@ -305,8 +308,8 @@ def pass_part(
     expected: Vector,
     share: float,
 ) -> Passed:
-    """Integrate a segment down to the first level, or to the first switch of a drag law, that
-    splits it.
+    """March a segment down to the first level, or to the first switch of a drag law, that splits
+    the segment.
 
     Parameters
     ----------
@@ -339,8 +342,8 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Length of the part of a segment above the first level, or switch of a drag law, that splits
-    it [m].
+    """Return the length of a segment above the first level, or switch of a drag law, that splits it
+    [m].
 
     Parameters
     ----------
@@ -374,7 +377,7 @@ def until_level(
     k: int,
     share: float,
 ) -> float:
-    """Length of the part of a segment down to a level of the profile [m].
+    """Return the length of a segment above a level of the profile [m].
 
     It follows from the mean load of the segment. If full precision is required, it is then refined
     by secants.
@@ -412,8 +415,8 @@ def until_level(
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
-    """Depth gained per metre along a segment under a uniform load [N/m], from the force above
-    it.
+    """Return the increase in depth per metre along a segment under a uniform load [N/m], given the
+    force above the segment.
     """
     half = 0.5 * length
     x, y, z = fx + half * load[0], fy + half * load[1], fz + half * load[2]
@@ -435,8 +438,8 @@ def until_switch(
     expected: Vector,
     law: int,
 ) -> float:
-    """Length of a part of a segment down to the switch of a drag law, or `part` if no law switches
-    [m].
+    """Return the length of a part of a segment above the switch of a drag law [m]; if no law
+    switches, the length `part`.
 
     Uses regula falsi; the value at an end that stays fixed is halved (Illinois method).
 
@@ -469,7 +472,7 @@ def until_switch(
 
 
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
-    """Quantity that changes its sign at the switch of a drag law.
+    """Return the quantity whose sign changes at the switch of a drag law.
 
     For friction, which jumps if its size is constant: the flow along the cable times the tension,
     positive down the line [N m/s]. For strumming: the margin between the factor on Cn and its
@@ -497,8 +500,8 @@ def segment_length(
     reach: float,
     share: float,
 ) -> float:
-    """Longest allowed length of the next segment [m], from its rotation and depth, the next level,
-    and the depth of minimum flow.
+    """Return the longest allowed length of the next segment [m], from the segment's rotation and
+    depth, the next level, and the depth of minimum flow.
 
     The rotation is computed from the loads at both ends of the segment, and the tension at its top.
     Near a free end the tension vanishes; a lower limit keeps the number of segments finite. `share`
@@ -536,7 +539,8 @@ def rate_of_turn(
     tz: float,
     angle_step: float,
 ) -> float:
-    """Tension divided by the allowed length [N/m], for the load at a depth on a cable of axis t.
+    """Return the ratio of tension to allowed segment length [N/m], for the load at a depth on a
+    cable of axis t.
 
     A slack line, whose tension is little more than its own weight, rotates faster as its tension
     falls. So the terms for rotation and fall are added: the tension falls by less than half in a

@@ -1,4 +1,4 @@
-"""Compilation of the physics functions by numba, from the same source that CPython runs.
+"""Compilation of the physics functions ("laws") by numba, from the source that CPython runs, too.
 
 A *law* is a function over floats, named tuples and sequences of named tuples that CPython runs
 directly. The compiled law is the same function, but its globals refer to compiled laws; sequences
@@ -24,18 +24,18 @@ SOURCES = ("physics", "solve", "batch")
 """Packages that contain functions to compile."""
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
-"""Compiled laws allocate nothing, so the costly reference counting of arrays is switched off. No
-law divides by zero or raises an exception.
+"""Compiler options. Laws allocate nothing, so reference counting of arrays is switched off for
+speed; they never divide by zero or raise an exception.
 """
 
 NEWEST = (0, 68)
-"""Latest version of numba whose internals are known to match `calm.physics.law_compiler`."""
+"""Latest version of numba whose internals are compatible with `calm.physics.law_compiler`."""
 
 Fn = TypeVar("Fn", bound=Law)
 
 
 def within(law: Fn) -> Fn:
-    """Mark a short law for inlining into its callers."""
+    """Mark a short function for inlining into its callers."""
     _within.add(law)
     return law
 
@@ -44,7 +44,7 @@ _within: set[Law] = set()
 
 
 def set_row(rows: Any, i: int, row: Any) -> None:
-    """Replace row i of a list of named tuples (an array of records in compiled code)."""
+    """Replace row i of a list of named tuples, which compiled code sees as an array of records."""
     rows[i] = row
 
 
@@ -52,7 +52,8 @@ _entries: dict[Law, Any] = {}
 
 
 def entry(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of given arguments, which are not checked again.
+    """Return a law compiled for the types of the given arguments; later calls do not check types
+    again.
 
     All later arguments must have these types; this saves time in short solves.
     """
@@ -67,12 +68,12 @@ def entry(law: Law, *arguments: Any) -> Any:
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
-    """Call a law with some arguments, interpreted or compiled by `entry`."""
+    """Call a law, interpreted or as compiled by `entry`."""
     return (entry(law, *given) if compiled else law)(*given)
 
 
 def by_address(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of given arguments, to be called by its address.
+    """Return a law compiled for the types of the given arguments, to be called by its address.
 
     Its additional last argument and its result are floats. Its callers are compiled without it,
     which saves its compilation time for each caller. As for `entry`, all later arguments must have
@@ -91,7 +92,7 @@ def by_address(law: Law, *arguments: Any) -> Any:
 
 @cache
 def called(law: Law) -> Any:
-    """Return a law compiled for inclusion in its callers."""
+    """Return a law compiled for inclusion in the compiled code of its callers."""
     import numba
 
     if law is set_row:
@@ -101,7 +102,7 @@ def called(law: Law) -> Any:
     resolve, plain = dispatcher.get_call_template, numba.types.unliteral
 
     def once_for_all_numbers(types: Any, named: Any) -> Any:
-        """Compile once for numbers instead of once per constant."""
+        """Compile the law once for all values of an integer, not once per constant."""
         return resolve(tuple(map(plain, types)), named)
 
     dispatcher.get_call_template = once_for_all_numbers
@@ -109,14 +110,14 @@ def called(law: Law) -> Any:
 
 
 def _linked_options() -> dict[str, Any]:
-    """Compiler options of a law that is only called by other laws."""
+    """Return the compiler options of a law that is called by other laws only."""
     wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     return {**OPTIONS, **wrappers, "pipeline_class": _law_compiler()}
 
 
 @cache
 def _law_compiler() -> Any:
-    """Compiler class for laws, or numba's own if numba is newer than `NEWEST`."""
+    """Return the compiler class for laws, or numba's own class if numba is newer than `NEWEST`."""
     numba: Any = __import__("numba")
     if numba.version_info.short > NEWEST:
         return numba.core.compiler.Compiler
@@ -127,7 +128,7 @@ def _law_compiler() -> Any:
 
 @cache
 def _record_setter() -> Law:
-    """Compiled form of `set_row`, which copies field by field."""
+    """Return the compiled form of `set_row`, which copies a record field by field."""
     numba: Any = __import__("numba.extending")
 
     def set_record(rows, i, row):  # type: ignore[no-untyped-def]
@@ -144,7 +145,9 @@ def _record_setter() -> Law:
 
 
 def clone(law: Law) -> Law:
-    """Copy a function, with its callees replaced by compiled laws and its tables by arrays."""
+    """Copy a function with compiled laws in place of its callees, and arrays in place of its
+    tables.
+    """
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}
     for name in law.__code__.co_names:
@@ -159,7 +162,7 @@ def clone(law: Law) -> Law:
 
 
 def kept(compiler: Callable[..., Any], law: Law) -> Any:
-    """Compile a law, cached on disk if there is a cache folder."""
+    """Compile a law, and store the result on disk if a cache folder exists."""
     import numba
 
     folder, options = cache_folder(), {**OPTIONS, "pipeline_class": _law_compiler()}
@@ -175,14 +178,14 @@ def kept(compiler: Callable[..., Any], law: Law) -> Any:
 
 
 def packed(value: Any) -> Any:
-    """Convert a named tuple for compiled code: its sequences become arrays."""
+    """Convert a named tuple for compiled code; its sequences become arrays."""
     named: Any = type(value)
     return named(*[pack(part) for pack, part in zip(_packers(named), value, strict=True)])
 
 
 @cache
 def _packers(named: Any) -> tuple[Callable[[Any], Any], ...]:
-    """Functions that convert each field of a named tuple."""
+    """Return the functions that convert the fields of a named tuple."""
     return tuple(map(_packer, get_type_hints(named).values()))
 
 
@@ -199,7 +202,7 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
 
 @cache
 def record_type(named: type) -> np.dtype[Any]:
-    """The numpy record type of a named tuple of numbers."""
+    """Return the numpy record type of a named tuple of numbers."""
     return np.dtype(
         [
             (name, np.intp if kind is int else np.float64)
@@ -210,7 +213,7 @@ def record_type(named: type) -> np.dtype[Any]:
 
 @cache
 def cache_folder() -> Path | None:
-    """Folder for compiled code, or None if it cannot be written.
+    """Return the folder for compiled code, or None if no folder can be written.
 
     `NUMBA_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
     has its own subfolder, since numba itself only checks a single source file.
@@ -226,7 +229,9 @@ def cache_folder() -> Path | None:
 
 
 def is_cached(law: str) -> bool:
-    """Whether the compiled code of a law is in the cache folder, from this or another process."""
+    """Return whether the cache folder contains the compiled code of a law, from this or another
+    process.
+    """
     folder = cache_folder()
     return folder is not None and next(folder.rglob(f"*.{law}-*.nbi"), None) is not None
 
@@ -240,7 +245,7 @@ def _user_cache() -> Path:
 
 
 def fingerprint() -> str:
-    """Hash of all sources that may be compiled."""
+    """Return a hash of all source files that may be compiled."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[1]
     for folder in SOURCES:

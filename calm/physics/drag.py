@@ -1,5 +1,4 @@
-"""Drag coefficients by shape, independent of Reynolds number, and laws of tangential drag on
-cables.
+"""Drag coefficients by shape, independent of Reynolds number, and tangential drag laws of cables.
 
 Every function gives the drag of a shape at 1 m/s in sea water of 1025 kg/m³: Kn normal to its axis,
 Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5 (cylinders
@@ -29,8 +28,8 @@ CHAIN_CN = 2.75
 CHAIN_CT = 0.46
 CABLE_CN = 1.3
 CABLE_CT = {"smooth": 0.005, "rough": 0.009, "very-rough": 0.013}
-"""Ct on the wetted surface. Smooth: parallel fibre in a sheath, plastic-coated wire; rough:
-braided; very rough: laid strands.
+"""Tangential drag coefficients of cables, based on the wetted surface. Smooth: parallel fibre in a
+sheath, plastic-coated wire; rough: braided; very rough: laid strands.
 """
 BLOCK_CD = 1.05
 """Drag coefficient of a cube with one face towards the flow (Hoerner, Fluid-Dynamic Drag, 1965)."""
@@ -46,7 +45,9 @@ _END_CT = (1.17, 1.07, 0.97, 0.86, 0.82)
 
 
 def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    """Value y at x, linear between points of increasing x and constant beyond both ends."""
+    """Interpolate y at x linearly between points of increasing x; y is constant beyond both
+    ends.
+    """
     if x <= xs[0]:
         return ys[0]
     low, high = 0, len(xs) - 1
@@ -62,7 +63,8 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 def finite_length_factor(slenderness: float) -> float:
-    """Factor κ ≤ 1 on the drag coefficient of a long cylinder for finite length.
+    """Return the factor κ ≤ 1 that reduces the drag coefficient of a long cylinder for finite
+    length.
 
     Parameters
     ----------
@@ -75,7 +77,8 @@ def finite_length_factor(slenderness: float) -> float:
 
 
 def end_face_coefficient(slenderness: float) -> float:
-    """Ct of a cylinder in flow along its axis, based on the area of its end face.
+    """Return the drag coefficient Ct of a cylinder in axial flow, based on the area of its end
+    face.
 
     Parameters
     ----------
@@ -87,8 +90,8 @@ def end_face_coefficient(slenderness: float) -> float:
 
 
 def sphere_drag(diameter: float, cx: float | None = None) -> float:
-    """Drag K = ½ρ Cx πD²/4 of a sphere of a diameter [m], independent of direction; Cx is 0.5 by
-    default.
+    """Return the drag K = ½ρ Cx πD²/4 of a sphere of a given diameter [m], independent of
+    direction; Cx is 0.5 by default.
     """
     return _HALF_DENSITY * (SPHERE_CX if cx is None else cx) * pi * diameter**2 / 4
 
@@ -96,7 +99,8 @@ def sphere_drag(diameter: float, cx: float | None = None) -> float:
 def cylinder_drag(
     diameter: float, length: float, cn: float | None = None, ct: float | None = None
 ) -> tuple[float, float]:
-    """Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder of diameter and length [m].
+    """Return the drags Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder of given diameter and
+    length [m].
 
     By default Cn is 1.2 κ(L/D), and Ct is that of the end face.
     """
@@ -109,22 +113,24 @@ def cylinder_drag(
 
 
 def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
-    """Kn = ½ρ Cn D and Kt = ½ρ Ct πD per metre of cable or chain of a diameter [m]."""
+    """Return the drags per metre Kn = ½ρ Cn D and Kt = ½ρ Ct πD of a cable or chain of a given
+    diameter [m].
+    """
     return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
 
 
 def area_drag(area: float, cd: float) -> float:
-    """Drag K = ½ρ Cd A of a body with a reference area [m²] and a drag coefficient."""
+    """Return the drag K = ½ρ Cd A of a body with a reference area [m²] and a drag coefficient."""
     return _HALF_DENSITY * cd * area
 
 
 def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
-    """Drag K fitted to measurements: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
+    """Return the drag K fitted to measurements: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
     return sum(f / v for v, f in zip(speeds, forces, strict=True)) / sum(speeds)
 
 
 class Friction(Enum):
-    """Law of the tangential drag on a cable or chain, by its name in files.
+    """Tangential drag law of a cable or chain, by its name in files.
 
     With Kt for a metre at 1 m/s, t the unit vector along the cable and Vt = (V·t) t:
 
@@ -148,8 +154,8 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """Pull per m/s of current from a tangential drag that is not parallel to the cable [N/(m/s)],
-    for Kt in N/(m/s)².
+    """Return the coefficient of a tangential drag that is not parallel to the cable [N/(m/s)], for
+    Kt in N/(m/s)²; its product with the current velocity is a force.
 
     The pull acts along the current u, v, w [m/s] and rotates the cable, unlike a friction along the
     cable.
@@ -160,7 +166,9 @@ def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float
 def friction_force(
     law: int, kt: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Tangential drag of the current u, v, w [m/s] on a cable of axis t [N], for Kt in N/(m/s)²."""
+    """Return the tangential drag of the current u, v, w [m/s] on a cable of axis t [N], for Kt in
+    N/(m/s)².
+    """
     if law == HOERNER:
         pull = turning_friction(law, kt, u, v, w)
         return pull * u, pull * v, pull * w
@@ -175,7 +183,7 @@ Vector = tuple[float, float, float]
 
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
-    """Solve c |A + c V| = k |V × A| for its smallest root c ≥ 0.
+    """Solve c |A + c V| = k |V × A| for the smallest root c ≥ 0.
 
     Parameters
     ----------
@@ -231,7 +239,8 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
 @within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
-    """Excess of c |A + c V| over a target, the root |A + c V|, and the slope by c times this root.
+    """Return the excess of c |A + c V| over a target, the magnitude |A + c V|, and the slope with
+    respect to c, times this magnitude.
 
     `aa`, `av` and `vv` are the products A·A, A·V and V·V.
     """
@@ -252,7 +261,7 @@ def few_steps_share(
     vz: float,
     steps: int,
 ) -> tuple[float, float]:
-    """Approximate `drag_share` by a given number of Newton steps, if drag rotates the element only
+    """Approximate `drag_share` by a few Newton steps, for drag that rotates the element only
     slightly.
 
     Parameters
@@ -281,7 +290,8 @@ def few_steps_share(
 def axis_along(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float
 ) -> Vector:
-    """Unit axis, from the free end towards the fixed end, opposite to the force A + c V.
+    """Return the unit axis opposite to the force A + c V, which points from the free end towards
+    the fixed end.
 
     If the force vanishes, the element is parallel to the current, or plumb in still water.
     """
@@ -295,7 +305,7 @@ def axis_along(
 
 @within
 def axis_against(x: float, y: float, z: float) -> Vector:
-    """Unit axis opposite to a nonzero force."""
+    """Return the unit axis opposite to a nonzero force."""
     size = sqrt(x * x + y * y + z * z)
     return -x / size, -y / size, -z / size
 
@@ -304,7 +314,9 @@ def axis_against(x: float, y: float, z: float) -> Vector:
 def drag_force(
     kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Kn |Vn| Vn + Kt |Vt| Vt [N] for the axis t and the relative current V [m/s]."""
+    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] for the axis t and the relative current V
+    [m/s].
+    """
     along = vx * tx + vy * ty + vz * tz
     nx, ny, nz = vx - along * tx, vy - along * ty, vz - along * tz
     normal = kn * sqrt(nx * nx + ny * ny + nz * nz)

@@ -1,4 +1,4 @@
-"""A float at the surface: its draft, and its areas exposed to current and wind."""
+"""Float at the surface: its draft, and the areas exposed to current and wind."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from math import acos, asin, isnan, nan, pi, sin, sqrt
 from typing import NamedTuple
 
 AIR_DENSITY = 1.225
-"""Density of the air above the water [kg/m³]: the standard atmosphere at sea level."""
+"""Density of the air above the water [kg/m³], that of the standard atmosphere at sea level."""
 
 AWASH = 0.02
-"""Reserve, as a share of the buoyancy, below which the parts above the surface are submerged
-gradually. This avoids a jump when the line pulls the float under.
+"""Reserve buoyancy, as a fraction of the buoyancy, below which the parts above the surface are
+gradually submerged. This avoids a jump of the drag when the line pulls the float under.
 """
 
 SPHERE, SPAR, TABULATED = range(3)
@@ -21,7 +21,7 @@ SPHERE, SPAR, TABULATED = range(3)
 
 
 class HullRow(NamedTuple):
-    """A row of a hull's table: draft [m], displaced volume [m³] and immersed area [m²]."""
+    """One row of a hull table: draft [m], displaced volume [m³] and immersed area [m²]."""
 
     draft: float
     volume: float
@@ -30,7 +30,7 @@ class HullRow(NamedTuple):
 
 @dataclass(frozen=True)
 class Hull:
-    """An upright hull at the surface.
+    """Upright hull at the surface.
 
     Attributes
     ----------
@@ -46,24 +46,27 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Draft and immersed area, as shares of the whole, at a share of the immersed volume."""
+        """Return draft and immersed area, as fractions of the whole, for a fraction of the
+        displaced volume.
+        """
         return immersed_shares(self.form, self.rows, share)
 
 
 def spherical_hull(diameter: float) -> Hull:
-    """Spherical hull of a diameter [m]: a draft of x diameters immerses x² (3 - 2x) of its
-    volume.
+    """Return a spherical hull of a given diameter [m]; a draft of x diameters immerses x² (3 - 2x)
+    of its volume.
     """
     return Hull(diameter, pi * diameter**2 / 4, SPHERE)
 
 
 def cylindrical_hull(diameter: float, length: float) -> Hull:
-    """Spar hull: an upright cylinder of a diameter and length [m]."""
+    """Return a spar hull, an upright cylinder of given diameter and length [m]."""
     return Hull(length, diameter * length, SPAR)
 
 
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
-    """Hull from rows of draft [m], displaced volume [m³] and immersed area [m²], all increasing.
+    """Return a hull from rows of draft [m], displaced volume [m³] and immersed area [m²], all
+    increasing.
 
     Interpolation is linear between the rows, and from zero to the first row; the last row is the
     whole hull.
@@ -86,7 +89,7 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
 
 
 def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[float, float]:
-    """Draft and immersed area of a hull, as shares of the whole.
+    """Return draft and immersed area of a hull, as fractions of the whole.
 
     Parameters
     ----------
@@ -112,7 +115,7 @@ def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[f
 
 
 class Riding(NamedTuple):
-    """Position of a float at the surface, and the forces on it.
+    """State of a float at the surface: its position, and the forces on it.
 
     Attributes
     ----------
@@ -139,7 +142,7 @@ class Riding(NamedTuple):
 
 @dataclass(frozen=True)
 class Floating:
-    """Properties of a float that matter at the surface, in addition to its buoyancy.
+    """Surface properties of a float, in addition to its buoyancy.
 
     Attributes
     ----------
@@ -166,14 +169,14 @@ class Floating:
         return self.wind != (0.0, 0.0)
 
     def riding(self, used: float) -> Riding:
-        """Compute the position of the float at the surface with a share of its net buoyancy in use,
-        0 to 1.
+        """Compute position and forces of the float at the surface for a used fraction of its net
+        buoyancy, 0 to 1.
         """
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
     @property
     def as_numbers(self) -> SurfaceFloat:
-        """The float in the array form used by the solver."""
+        """The float in the array form of the solver."""
         form, height, area = UNKNOWN_HULL, nan, 0.0
         if self.hull is not None:
             form, height, area = self.hull.form, self.hull.height, self.hull.area
@@ -216,7 +219,8 @@ UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, na
 
 
 def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
-    """Compute the position of a float with a share of its net buoyancy in use, 0 to 1.
+    """Compute position and forces of a float at the surface for a used fraction of its net
+    buoyancy, 0 to 1.
 
     The displaced water carries the weight and the pull of the line, so the immersed share of the
     volume is (weight + used lift)/(weight + lift). `rows` are the rows of its hull.

@@ -1,4 +1,5 @@
-"""numba's compiler reduced to the steps that laws need, which shortens compilation considerably.
+"""Compiler of the physics functions ("laws"): numba's compiler reduced to the necessary steps,
+which is much faster.
 
 Only laws called from Python become machine code. All other laws are linked into these and optimised
 there once; numba itself optimises and translates every law again at each level of the calls. The
@@ -28,21 +29,21 @@ UNUSED_PASSES = {
     "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
     "NoPythonSupportedFeatureValidation", "IRLegalization", "DumpParforDiagnostics",
 }  # fmt: skip
-"""Passes for closures, array expressions and other features that laws do not use."""
+"""Compiler passes for closures, array expressions and other features that laws do not use."""
 
 COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
-"""Indices into numba's own representation of an array, after the members that manage its memory."""
+"""Indices into numba's representation of an array, after the members for memory management."""
 
 GC_THRESHOLDS = 100_000, 20, 100
-"""Thresholds of garbage collection while laws are compiled: almost none of the millions of objects
-can be freed.
+"""Thresholds of garbage collection during compilation, which are high because almost none of the
+millions of objects can be freed.
 """
 
 _seen: dict[Any, Any] = {}
 
 
 def resolving_once(typing: Any) -> Any:
-    """Typing context that remembers the signature of an operation on some types.
+    """Context in which numba stores the signature of each operation by argument types.
 
     numba's own context tries all candidates each time. Only the compiler of laws uses this one.
     """
@@ -60,7 +61,7 @@ def resolving_once(typing: Any) -> Any:
 
 
 def short_name(name: str, given: Any, **more: Any) -> str:
-    """Return a short symbol for a law; with all argument types written out, symbols are pages
+    """Return a short symbol for a law; numba's own symbols list all argument types and are pages
     long.
     """
     digest = hashlib.sha256(repr(given).encode()).hexdigest()[:16]
@@ -68,7 +69,7 @@ def short_name(name: str, given: Any, **more: Any) -> str:
 
 
 class LawArray(_Array):  # type: ignore[misc]
-    """An array passed as its address and shape, from which everything else follows.
+    """Array that is passed as its address and shape; its other properties follow from these.
 
     Functions that numba itself compiles for laws, such as `max`, take only numbers.
     """
@@ -132,7 +133,7 @@ class LawLower(_Lower):  # type: ignore[misc]
 
 @core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
 class LawLowering(_Lowering):  # type: ignore[misc]
-    """Last pass: only laws called from Python become machine code."""
+    """Last compiler pass: translates to machine code only the laws that Python calls."""
 
     _name = "law_lowering"
     lowering_class = LawLower
@@ -162,7 +163,9 @@ OWN_ATTRIBUTES: dict[str, Any] = {
     "cached_internal_func": {},
     "refresh": lambda: None,
 }
-"""Differences from numba's own context, which repeatedly searches for new operations."""
+"""Attributes that replace those of numba's own context, which repeatedly searches for new
+operations.
+"""
 
 
 class LawCompiler(_Compiler):  # type: ignore[misc]
@@ -181,7 +184,7 @@ class LawCompiler(_Compiler):  # type: ignore[misc]
             gc.set_threshold(*collected)
 
     def define_pipelines(self) -> list[Any]:
-        """Return numba's passes without those that laws do not need."""
+        """Return numba's passes, without those that laws do not need."""
         pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         pipeline.passes = [
             (LawLowering if each is _Lowering else each, about)

@@ -1,4 +1,4 @@
-"""Input to the march (line and water as float64 arrays, checked on entry), its state and its
+"""Input of the march (line and water as float64 arrays, checked on construction), its state and its
 record.
 """
 
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 
 class MarchError(ArithmeticError):
-    """The march cannot continue: an element has no balance, or the line needs too many segments."""
+    """Error of a march that cannot continue: an element has no balance, or the line needs too many
+    segments.
+    """
 
 
 State = tuple[float, float, float, float, float, float, float, int]
@@ -35,7 +37,7 @@ half as much as the balance of a segment.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
-"""Outcome of a march: whether it can continue, or the reason why not."""
+"""Outcomes of a march: it can continue, or a reason why it stopped."""
 FAILURES = (
     "",
     "the line extends without limit",
@@ -44,13 +46,13 @@ FAILURES = (
     "the line would need more than 50000 segments",
     "there is no room for so many segments",
 )
-"""Text for each outcome of a march."""
+"""Description of each outcome of a march."""
 NO_BALANCE = -2.0
-"""Value that replaces the strain of a segment, or the rise of a rod, without balance."""
+"""Marker in place of the strain of a segment, or the rise of a rod, that has no balance."""
 
 
 class Bed(NamedTuple):
-    """The seabed below an anchor, as a plane, and its action on a line that lies on it.
+    """Plane seabed below an anchor, and its action on a line that rests on it.
 
     Attributes
     ----------
@@ -67,7 +69,8 @@ class Bed(NamedTuple):
 
 @within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
-    """Height of a point above the seabed plane through another point, from the vector between them.
+    """Return the height of a point above the seabed plane through a second point, given the vector
+    from the second to the first.
 
     For a force: its component normal to the plane, times √(1 + tan² slope).
     """
@@ -76,28 +79,30 @@ def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
 
 @within
 def along_bed(bed: Bed, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Component of a force parallel to the seabed plane."""
+    """Return the component of a force parallel to the seabed plane."""
     across = off_bed(bed, x, y, z) / (1.0 + bed.east * bed.east + bed.north * bed.north)
     x, y = x - across * bed.east, y - across * bed.north
     return x, y, 0.0 - bed.east * x - bed.north * y
 
 
 Record = Any
-"""Columns of numbers written by `write_node`: lists, or rows of an array."""
+"""Record of a march: columns of numbers written by `write_node`, as lists or as rows of an
+array.
+"""
 COLUMNS = 17
 SEGMENT, BETTER = 10, 11
 """Column with the kind of an element's end (see below), and the first of six columns with
 extrapolated positions and forces.
 """
 NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
-"""Kinds of an element's end: not part of a hanging segment; end of a segment; middle of a part that
-is integrated in two halves; level that splits a segment.
+"""Kinds of an element's end: not part of a segment off the seabed; end of a segment; middle of a
+part that is marched in two halves; level that splits a segment.
 """
 
 
 @within
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write node n: the position [m] and the force above it [N] of a state."""
+    """Write node n: position [m] and force above the node [N] of a state."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -121,7 +126,7 @@ def write_element(
 
 @dataclass(frozen=True)
 class Trace:
-    """Nodes and elements of a recorded march, free end first: k + 1 nodes and k elements between
+    """Nodes and elements of a recorded march, free end first: k + 1 nodes, and k elements between
     them.
 
     Attributes
@@ -144,7 +149,7 @@ class Trace:
 
     @staticmethod
     def of(record: Record, nodes: int) -> Trace:
-        """Build the trace of a record with a number of nodes."""
+        """Build the trace of a record that holds a given number of nodes."""
         compiled = isinstance(record, np.ndarray)
         columns = record[:, :nodes].copy() if compiled else np.array([c[:nodes] for c in record])
         return Trace(
@@ -168,11 +173,11 @@ class _Arrays:
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
-        """Complete the arguments by columns that depend on other columns, before conversion."""
+        """Add array fields that depend on other arguments, before conversion."""
         return given
 
     def __getstate__(self) -> dict[str, Any]:
-        """Pickle the fields only, without what `once_per_input` has stored."""
+        """Pickle the fields only, without the values that `once_per_input` has stored."""
         return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
 
     def _same_length(self, *names: str) -> None:
@@ -186,7 +191,9 @@ _Made = TypeVar("_Made")
 
 
 def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]:
-    """Store the result of a function of a `Line` or a `Water` with it, as neither ever changes."""
+    """Cache the result of a function of a `Line` or a `Water` on this object, which never
+    changes.
+    """
     name = f"{make.__module__}.{make.__qualname__}"
 
     @wraps(make)
@@ -206,7 +213,7 @@ _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
 
 
 def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
-    """Make a dataclass convert its arguments to arrays, by the types of its fields.
+    """Make a dataclass convert its arguments to arrays, as declared by the types of its fields.
 
     Raises ValueError if an array has a value that is not finite.
     """
@@ -231,7 +238,9 @@ def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
 
 
 def _frozen(value: Any, kind: Any, name: str) -> NDArray[Any]:
-    """Return a value as a read-only array of a type; read-only arrays are returned unchanged."""
+    """Return a value as a read-only array of a given type; arrays that are already read-only are
+    returned unchanged.
+    """
     if type(value) is np.ndarray and not value.flags.writeable and value.dtype == kind:
         return value
     array = np.array(value, dtype=kind, ndmin=1)
@@ -253,7 +262,7 @@ _ZERO_BY_DEFAULT = {
     "length": ("lift", "diameter", "push_east", "push_north"),
     "clamp_at": ("clamp_lift",),
 }
-"""Columns that default to zeros, by the column that has the same length."""
+"""Fields that default to zeros, each with the field that gives its length."""
 
 _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 
@@ -329,7 +338,7 @@ class Line(_Arrays):
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
-        """Return the arguments, with zeros for forces and diameters that are not given."""
+        """Return the arguments with zeros for missing forces and diameters."""
         absent = {
             name: np.zeros(np.size(given.get(like, ())))
             for like, names in _ZERO_BY_DEFAULT.items()
@@ -382,8 +391,8 @@ class Line(_Arrays):
 
     @property
     def plumb_drag(self) -> Floats:
-        """(n,) drag of each whole piece with its clamps in a flow along the plumb line
-        [N/(m/s)²], in reference water and by constant coefficients.
+        """(n,) drag of each whole piece with its clamps in vertical flow along the vertical line
+        [N/(m/s)²], in reference water and with constant coefficients.
         """
         along = np.where(self.directional, self.tangential_drag, self.normal_drag)
         total: Floats = along * np.where(self.flexible, self.length, 1.0)
@@ -391,14 +400,14 @@ class Line(_Arrays):
         return total
 
     def with_length(self, piece: int, length: float) -> Line:
-        """Return a copy of the line with another unstretched length of one piece [m]."""
+        """Return a copy of the line in which one piece has another unstretched length [m]."""
         lengths = self.length.copy()
         lengths[piece] = length
         return replace(self, length=lengths)
 
     @property
     def _of_pieces(self) -> dict[str, Any]:
-        """Return the columns that have one value per piece."""
+        """Return the names of the fields that have one value per piece."""
         return {
             column.name: getattr(self, column.name)
             for column in fields(self)
@@ -407,8 +416,8 @@ class Line(_Arrays):
         }
 
     def below_a_point(self) -> Line:
-        """Return the line with an additional first piece without length, weight and drag, as a
-        point load.
+        """Return the line with an additional first piece without length, weight and drag, which
+        represents a point load.
         """
         columns: dict[str, Any] = {
             name: np.append(np.zeros(1, column.dtype), column)
@@ -419,7 +428,7 @@ class Line(_Arrays):
         return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
 
     def reversed(self) -> Line:
-        """Return the line listed from its other end, with its clamps measured from there."""
+        """Return the line listed from the other end; clamp positions are measured from this end."""
         on = self.clamp_piece
         return replace(
             self,
@@ -473,11 +482,11 @@ class Water(_Arrays):
 
     @property
     def moving(self) -> bool:
-        """Whether the current is not zero."""
+        """Whether there is any current."""
         return bool(self.u.any() or self.v.any() or self.w.any())
 
     def still(self) -> Water:
-        """Return the water without current."""
+        """Return a copy of the water without current."""
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
 
     def current_at(self, depth: Floats) -> Floats:

@@ -27,8 +27,8 @@ from calm.physics.profile import Profile
 from calm.physics.track import Track
 
 ROOM = 1024
-"""Initial number of segments that the work arrays hold; if a march needs more, it is repeated with
-larger arrays.
+"""Initial number of segments in the work arrays; a march that needs more is repeated with larger
+arrays.
 """
 
 
@@ -41,16 +41,16 @@ class Cuts(NamedTuple):
     counts: Integers
 
     def halved(self) -> Cuts:
-        """Return the cuts with every segment halved."""
+        """Return the cuts with every segment divided into two halves."""
         return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
 
     def first(self, cables: int) -> Cuts:
-        """Return the cuts of the first cables."""
+        """Return the cuts of the first cables only."""
         counts = self.counts[:cables]
         return Cuts(self.lengths[: counts.sum()], counts)
 
     def after(self, cables: int) -> Cuts:
-        """Return the cuts of the remaining cables."""
+        """Return the cuts of the remaining cables only."""
         return Cuts(self.lengths[self.counts[:cables].sum() :], self.counts[cables:])
 
     def and_then(self, others: Cuts) -> Cuts:
@@ -64,7 +64,7 @@ NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.intp))
 
 @dataclass(frozen=True)
 class End:
-    """End of a march: height, force, and the segments used.
+    """Result at the end of a march: height, force, and the segments used.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class End:
 
     @cached_property
     def trace(self) -> Trace:
-        """The recorded shape."""
+        """Recorded shape of the line."""
         return Trace.of(self.record, self.nodes)
 
 
@@ -96,7 +96,7 @@ def march(
     record: bool = False,
     compiled: bool = False,
 ) -> End:
-    """March down the line from a free end at `depth`.
+    """March down a line from a free end at a given depth.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def march(
 def _work_arrays(
     course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool
 ) -> tuple[Any, ...]:
-    """Create the work arrays of a march: cuts, their counts, the record, and its results."""
+    """Create the work arrays of a march: cuts, segment counts, record, and results."""
     cables = len(course.cables)
     if compiled:
         lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.intp))

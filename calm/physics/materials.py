@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 StiffnessLaw = tuple[float, float]
-"""a and b of EA = a D² + b D³ [N/m²], [N/m³]."""
+"""Coefficients a and b of the stiffness law EA = a D² + b D³ [N/m²], [N/m³]."""
 
 STEEL_DENSITY = 7850.0
 CONCRETE_DENSITY = 2400.0
@@ -14,7 +14,7 @@ LEAD_DENSITY = 11340.0
 
 @dataclass(frozen=True)
 class Material:
-    """A material, with its density, corrosion potential and stiffness.
+    """Material with its density, corrosion potential and stiffness.
 
     Attributes
     ----------
@@ -118,13 +118,13 @@ _INSULATED = re.compile(r"plastic|jacket|sheath|coated|insulat", re.IGNORECASE)
 
 
 def materials_in(text: str | None) -> tuple[Material, ...]:
-    """Materials named in a text, in order of appearance."""
+    """Find the materials named in a text, in order of appearance."""
     found = _NAMED.finditer(text or "")
     return tuple(MATERIALS[int((match.lastgroup or "_0")[1:])] for match in found)
 
 
 def density_of(text: str | None) -> float | None:
-    """Density of the single material named in a text [kg/m³].
+    """Return the density of the single material named in a text [kg/m³].
 
     None if the text names no material, or several with different densities.
     """
@@ -133,7 +133,9 @@ def density_of(text: str | None) -> float | None:
 
 
 def fibre_of(text: str | None) -> Material | None:
-    """Fibre of a rope (the first fibre of a blend), or None for wire, with or without a jacket."""
+    """Return the fibre of a rope (of a blend, the first), or None for wire with or without a
+    jacket.
+    """
     named = materials_in(text)
     if any(material.family == "metal" and material.name != "lead" for material in named):
         return None
@@ -141,7 +143,7 @@ def fibre_of(text: str | None) -> Material | None:
 
 
 def potential_of(text: str | None) -> float | None:
-    """Corrosion potential in sea water of the noblest metal named in a text [V].
+    """Return the corrosion potential in sea water of the noblest metal named in a text [V].
 
     None if the text contains no metal, or if the metal is insulated.
     """
@@ -152,7 +154,7 @@ def potential_of(text: str | None) -> float | None:
 
 
 def published_stiffnesses(text: str | None, diameter: float) -> tuple[float, ...]:
-    """All published values of EA for a rope's fibre [N], in increasing order.
+    """Return all published values of the stiffness EA for a rope's fibre [N], in increasing order.
 
     Parameters
     ----------

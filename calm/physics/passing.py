@@ -1,4 +1,4 @@
-"""March along a line from its free end down, stage by stage, in compiled functions.
+"""March along a line from its free end down, stage by stage, as compiled functions.
 
 The march starts at a given position of the free end, which no force acts on from above, and returns
 position and force at the other end. The search for the unknowns that bring this end to the anchor
@@ -45,21 +45,21 @@ MOST_SEGMENTS = 50_000
 
 Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, GROUNDED, FAILURE = range(10)
 """Indices into the results of a march: height [m] and force above [N] of the end; numbers of
-segments used and nodes passed; stage of the touchdown, -1 without; number of hanging nodes;
+segments used and nodes passed; stage of the touchdown, or -1; number of nodes off the seabed;
 unstretched length on the seabed [m]; reason why the march stopped, see `calm.physics.line`.
 """
 LEFT = 10
 
 SHORT = 1e-6
-"""Length of a segment, as a share of the longest, below which its load is no estimate for the
-next.
+"""Segment length, as a fraction of the longest segment, below which the load on a segment does not
+serve as an estimate for the next.
 """
 EXACT, ROUGH = 1e-12, 1e-3
-"""Change of the mean flow along a segment, as a share of the flow, above which the segment is split
-at a level: at full precision, and in other marches.
+"""Relative change of the mean flow along a segment above which the segment is split at a level: at
+full precision, and in other marches.
 """
 ROUNDING = 1e-12
-"""Length of cable, as a share, that remains by rounding of sums and is ignored."""
+"""Relative cable length that may remain from rounding of sums and is ignored."""
 
 
 class How(NamedTuple):
@@ -105,7 +105,7 @@ def pass_line(
     record: Record,
     left: MutableSequence[float],
 ) -> None:
-    """March down a line from a free end at a depth [m].
+    """March down a line from a free end at a given depth [m].
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def pass_cable(
     record: Record,
     nodes: int,
 ) -> tuple[State, float, int, int, int]:
-    """March along a stretch of cable, number `place` among the cables.
+    """March along cable number `place` of a line.
 
     Returns
     -------
@@ -276,7 +276,7 @@ def cut_evenly(
     reach: float,
 ) -> int:
     """Choose equal segments for a cable that is not marched, and return the total number of
-    segments used.
+    segments used so far.
 
     Segments are written only as far as the array extends.
     """

@@ -1,4 +1,4 @@
-"""Current, density and viscosity by depth, as used by the march."""
+"""Current, density and viscosity against depth, as used by the march."""
 
 from collections.abc import MutableSequence, Sequence
 from functools import cached_property
@@ -10,18 +10,18 @@ from calm.physics.line import Floats, Water, once_per_input
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LEAST_PART = 0.01
-"""Smallest part of a segment, as a share, at which a chosen segment may end."""
+"""Smallest fraction of a chosen segment at which it may be cut short."""
 
 
 NEAR_A_LEVEL = 1e-6
-"""Depth range beyond a level, as a share of the segment's depth range, below which a part is not
-split off. In water that is still at the level, every part would otherwise be split.
+"""Depth range beyond a level, as a fraction of the segment's depth range, below which the segment
+is not split at the level. In water that is still at the level, every part would otherwise be split.
 """
 
 
 class Interval(NamedTuple):
-    """Water between two levels: depth of origin [m], values at the origin and their increase per
-    metre.
+    """Water between two levels: depth of the origin [m], values at the origin and their increase
+    per metre of depth.
 
     Values are the current u, v, w [m/s] and the density [kg/m³].
     """
@@ -38,8 +38,8 @@ class Interval(NamedTuple):
 
 
 class Stratum(NamedTuple):
-    """Kinematic viscosity below a depth [m]: its value at the origin [m²/s] and its increase per
-    metre.
+    """Kinematic viscosity below a given depth [m]: value at the origin [m²/s] and increase per
+    metre of depth.
     """
 
     top: float
@@ -68,7 +68,8 @@ class Sea(NamedTuple):
 
 
 def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
-    """Index of the interval that contains `depth` [m], searched from interval `i`.
+    """Return the index of the interval that contains `depth` [m]; the search starts at interval
+    `i`.
 
     Returns `i` if the line has diverged to infinity.
     """
@@ -83,8 +84,8 @@ def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
 
 @within
 def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
-    """Current u, v, w [m/s], density [kg/m³] and interval at a depth [m], searched from interval
-    `i`.
+    """Return current u, v, w [m/s], density [kg/m³] and interval at a depth [m]; the search starts
+    at interval `i`.
     """
     levels = sea.levels
     if not levels[i] <= depth < levels[i + 1]:
@@ -101,7 +102,7 @@ def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float
 
 
 def viscosity_at(sea: Sea, depth: float) -> float:
-    """Kinematic viscosity at a depth [m²/s]."""
+    """Return the kinematic viscosity at a depth [m²/s]."""
     i = len(sea.strata) - 1
     while depth < sea.strata[i].top:
         i -= 1
@@ -112,7 +113,7 @@ def viscosity_at(sea: Sea, depth: float) -> float:
 def distance_to_bend(
     sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Distance along a path to the next kink of the drag [m], for a path that descends by `sinking`
+    """Return the distance to the next kink of the drag [m], along a path that descends by `sinking`
     per metre.
 
     The kink is at the next level, or before it at the depth of minimum flow, if the flow almost
@@ -150,13 +151,14 @@ def distance_to_bend(
 
 
 def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
-    """Whether two depths [m] are in an interval."""
+    """Return whether both of two depths [m] are in an interval."""
     upper, lower = sea.levels[i], sea.levels[i + 1]
     return upper <= start < lower and upper <= end < lower
 
 
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
-    """Index of the first level at which a straight segment has to be split, 0 if there is none.
+    """Return the index of the first level at which a straight segment has to be split, or 0 if
+    there is none.
 
     Parameters
     ----------
@@ -177,7 +179,7 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 
 @within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
-    """Whether a segment that extends beyond a level has to be split there.
+    """Return whether a segment that extends beyond a level has to be split at this level.
 
     The water at the midpoint of a segment is used for the mean along it. If the slope of the
     current changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most
@@ -194,7 +196,7 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
 
 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
-    """Compute the relative change of the slopes of current and density at each level [1/m].
+    """Compute the relative change in slope of current and density at each level [1/m].
 
     Parameters
     ----------
@@ -215,7 +217,7 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
 
 
 class Profile:
-    """A `Water` prepared for the march, extended beyond its first and last level."""
+    """Water profile prepared for the march, extended beyond its first and last level."""
 
     def __init__(self, water: Water) -> None:
         depths = water.level.tolist()
@@ -252,8 +254,8 @@ class Profile:
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """Additional buoyancy per displaced cubic metre at a depth, relative to reference water
-        [N/m³].
+        """Return the additional buoyancy per displaced volume at a depth, relative to reference
+        water [N/m³].
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity
@@ -264,7 +266,9 @@ profile_of = once_per_input(Profile)
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:
-    """Value at the origin and slope of every interval, constant in the first and the last."""
+    """Return the value at the origin and the slope for every interval; the first and the last
+    interval have constant values.
+    """
     values = column.tolist()
     slopes = [
         (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]) for i in range(len(depths) - 1)

@@ -1,4 +1,5 @@
-"""Independent check of the march: load on every element of a shape, and its moment balance.
+"""Independent check of the march: load on every element of a shape, and moment balance of the
+element.
 
 All results follow from the coordinates. The lookup of the flow and the laws of drag and friction
 are independent implementations; only measured curves (stretch, drag, strumming) are shared with the
@@ -18,10 +19,10 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed
 
 ROUNDING = 32.0 * float_info.epsilon
-"""Rounding error of a coordinate, or a force, as a share of the largest."""
+"""Relative rounding error of coordinates and forces, with respect to the largest."""
 SETTLED = 1e-10
-"""Convergence of a segment's load in the passes, as a share: 4e-11 for a segment with a stretch of
-2 %.
+"""Relative tolerance of a segment's load in the march, which converges to 4e-11 for a segment with
+a stretch of 2 %.
 """
 
 
@@ -56,7 +57,7 @@ class RefereeBody(NamedTuple):
 
 
 class Moored(NamedTuple):
-    """A line and its water: the pieces, followed by the clamps. The first `head` pieces form one
+    """A line in its water: the pieces, followed by the clamps. The first `head` pieces form one
     rod.
 
     `friction` is the number of a law, and `frequency` is that of the strumming cables [Hz].
@@ -80,7 +81,7 @@ class Moored(NamedTuple):
 
 
 class RefereeShape(NamedTuple):
-    """A shape, free end first.
+    """Nodes and elements of a shape, free end first.
 
     Attributes
     ----------
@@ -152,14 +153,14 @@ def element_loads(
 
 
 def chord(shape: RefereeShape, top: int, bottom: int) -> Vector:
-    """Vector from one node to another [m]."""
+    """Return the vector from one node to another [m]."""
     x, y, z = shape.record[0], shape.record[1], shape.record[2]
     return x[bottom] - x[top], y[bottom] - y[top], z[bottom] - z[top]
 
 
 def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
-    """Axis of the rod of a rigid piece, or the direction opposite to the force at its ends if the
-    rod has no length.
+    """Return the axis of a rigid piece's rod or, for a rod without length, the direction opposite
+    to the force at its ends.
     """
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
@@ -170,14 +171,16 @@ def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
 
 
 def rod_nodes(moored: Moored, shape: RefereeShape, piece: int) -> tuple[int, int]:
-    """First and last node of the rod that a rigid piece belongs to."""
+    """Return the first and the last node of the rod that a rigid piece belongs to."""
     if piece < moored.head:
         return shape.first[0], shape.last[moored.head - 1]
     return shape.first[piece], shape.last[piece]
 
 
 def flow_at(moored: Moored, depth: float) -> tuple[float, float, float, float]:
-    """Current u, v, w [m/s] and density [kg/m³] at a depth [m], linear between the levels."""
+    """Return current u, v, w [m/s] and density [kg/m³] at a depth [m], interpolated linearly
+    between levels.
+    """
     level = moored.level
     low, high = 0, len(level) - 1
     while high - low > 1:
@@ -209,7 +212,9 @@ def drag_on(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Drag of a current on a body of axis t in reference water, unstretched [N or N/m]."""
+    """Return the drag of a current on a body of axis t, unstretched and in reference water [N or
+    N/m].
+    """
     along = u * tx + v * ty + w * tz
     if not body.directional:
         speed = sqrt(u * u + v * v + w * w)
@@ -237,7 +242,9 @@ def drag_on(
 
 
 def varied(moored: Moored, body: RefereeBody, depth: float, speed: float) -> float:
-    """Ratio of a body's drag to its constant drag, at a speed normal to its axis [m/s]."""
+    """Return the ratio of a body's drag to its drag with constant coefficients, at a speed normal
+    to its axis [m/s].
+    """
     if body.smooth == 0.0:
         return 1.0
     viscosity = interpolated(moored.viscosity_level, moored.viscosity, depth)
@@ -253,7 +260,7 @@ def strumming(
     w: float,
     across: float,
 ) -> float:
-    """Factor by which strumming increases the normal drag of a cable.
+    """Return the factor by which strumming increases the normal drag of a cable.
 
     `across` is the speed of the current normal to its axis [m/s].
     """
@@ -268,7 +275,8 @@ def strumming(
 def worst_moment(
     moored: Moored, shape: RefereeShape, loads: Sequence[MutableSequence[float]]
 ) -> float:
-    """Largest angle between an element's axis and the mean of the forces at its ends [rad].
+    """Return the largest angle between an element's axis and the mean of the forces at its ends
+    [rad].
 
     The forces follow from the loads. The result also covers the deviation of a cable's strain from
     the strain at these forces, if this is larger. Both are counted beyond the rounding of the
@@ -314,7 +322,9 @@ def worst_moment(
 
 
 def greatest_size(shape: RefereeShape, first: int) -> float:
-    """Largest absolute coordinate [m] (first column 0), or largest force [N] (first column 3)."""
+    """Return the largest absolute coordinate [m] (if `first` is 0), or the largest force [N] (if
+    `first` is 3).
+    """
     greatest = 0.0
     for n in range(shape.nodes):
         x, y, z = shape.record[first][n], shape.record[first + 1][n], shape.record[first + 2][n]
@@ -326,8 +336,8 @@ def greatest_size(shape: RefereeShape, first: int) -> float:
 
 
 def expected_strain(moored: Moored, body: RefereeBody, middle: float, half: float) -> float:
-    """Strain of a segment whose tension varies linearly from `middle` - `half` to `middle` + `half`
-    [N].
+    """Return the mean strain of a segment whose tension varies linearly from `middle` - `half` to
+    `middle` + `half` [N].
     """
     if body.first_knot == body.end_knot:
         return body.compliance * middle
@@ -343,7 +353,7 @@ def rod_moment(
     fy: float,
     fz: float,
 ) -> float:
-    """Angle between a rod of several elements and the force that rotates it [rad].
+    """Return the angle between a rod of several elements and the force that rotates it [rad].
 
     This is the force above the rod plus the share of every load given by its lever.
     """
@@ -365,7 +375,7 @@ def rod_moment(
 
 
 def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
-    """Angle between an axis and a reversed force [rad]; 0 if either vanishes."""
+    """Return the angle between an axis and a reversed force [rad]; 0 if either vanishes."""
     cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
     across = sqrt(cx * cx + cy * cy + cz * cz)
     along = -(x * fx + y * fy + z * fz)

@@ -1,4 +1,4 @@
-"""Drag coefficients of smooth shapes against Reynolds number, drag crisis included.
+"""Drag coefficients of smooth shapes against Reynolds number, including the drag crisis.
 
 They hold for clean, smooth bodies in smooth flow. Paint, fittings and biofouling shift the crisis
 or remove it: a 1 m float in 0.5 m/s has Cx = 0.1 as a smooth sphere, while 0.5 to 0.65 is used for
@@ -41,11 +41,11 @@ _CREEPING, _SLOWEST = 0.1, 1.0
 _SCAN = 16
 
 LARGEST_SPHERE, LARGEST_CYLINDER = 1e6, 4.94e6
-"""Reynolds numbers at the ends of the curves; the coefficients are constant above."""
+"""Reynolds numbers at the upper ends of the curves; above these, the coefficients are constant."""
 
 
 def cylinder_coefficient(reynolds: float) -> float:
-    """Cn of a long smooth cylinder in flow normal to its axis.
+    """Return the coefficient Cn of a long smooth cylinder in flow normal to its axis.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def cylinder_coefficient(reynolds: float) -> float:
 
 
 def sphere_coefficient(reynolds: float) -> float:
-    """Cx of a smooth sphere.
+    """Return the coefficient Cx of a smooth sphere.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def sphere_coefficient(reynolds: float) -> float:
 
 
 class Smooth(NamedTuple):
-    """Properties of a smooth sphere or cylinder and of the water that determine its drag.
+    """Properties of a smooth sphere or cylinder, and of the water, that determine its drag.
 
     Attributes
     ----------
@@ -97,8 +97,8 @@ class Smooth(NamedTuple):
 
 
 def drag_variation(smooth: Smooth, speed: float) -> float:
-    """Ratio of the drag at a speed normal to the axis [m/s] to the drag with the constant
-    coefficient.
+    """Return the ratio of the drag at a speed normal to the axis [m/s] to the drag with the
+    constant coefficient.
 
     The constant coefficient is Cx = 0.5 for a sphere and Cn = 1.2 κ for a cylinder.
     """
@@ -117,7 +117,8 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
 def varying_share(
     ax: float, ay: float, az: float, k: float, smooth: Smooth, vx: float, vy: float, vz: float
 ) -> float:
-    """`drag_share` of a smooth element, whose coefficient varies with the speed normal to its axis.
+    """Return `drag_share` for a smooth element, whose coefficient varies with the speed normal to
+    its axis.
 
     Parameters
     ----------
@@ -165,7 +166,7 @@ def varying_share(
 def _turned(
     ax: float, ay: float, az: float, k: float, s: float, vx: float, vy: float, vz: float
 ) -> float:
-    """Left side of the equation at k and s: s |A + k s V|."""
+    """Return the left-hand side of the equation at k and s: s |A + k s V|."""
     c = k * s
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     return s * sqrt(x * x + y * y + z * z)
@@ -190,12 +191,16 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Ratio of the drag to the constant drag at a Reynolds number (see `drag_variation`)."""
+        """Return the ratio of the drag at a Reynolds number to the drag with the constant
+        coefficient (see `drag_variation`).
+        """
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property
     def lengthening(self) -> float:
-        """Ratio of κ above the crisis to κ below it (see `Smooth`)."""
+        """Ratio of the length factor κ above the drag crisis to κ below the crisis (see
+        `Smooth`).
+        """
         if self.slenderness is None:
             return 0.0
         below = finite_length_factor(self.slenderness)
@@ -203,7 +208,8 @@ class DragCurve:
 
 
 def finite_length_factor_above(slenderness: float) -> float:
-    """Factor κ above the crisis, from Re = 2.2e5 (`drag.finite_length_factor` applies up to 1.8e5).
+    """Return the length factor κ above the drag crisis, from Re = 2.2e5
+    (`drag.finite_length_factor` applies up to 1.8e5).
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
-"""A rigid body in moment equilibrium: a piece with its clamps, or the rigid pieces at the head of
-the line.
+"""March along a rigid body in moment equilibrium: a piece with its clamps, or the rigid pieces at
+the head of the line.
 """
 
 from collections.abc import Sequence
@@ -58,7 +58,7 @@ def pass_rod(
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
-    """March from the top of a rod to its bottom.
+    """March along a rod from its top to its bottom.
 
     Parameters
     ----------
@@ -97,7 +97,8 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Depth of the free end at which a length `out` of the head is above the surface [m].
+    """Return the depth of the free end at which a length `out` of the head is above the surface
+    [m].
 
     The inclination of the head follows from its loads, which depend slightly on its depth. The head
     is upright if it has no balance.
@@ -125,8 +126,8 @@ def _record(
     record: Record,
     nodes: int,
 ) -> int:
-    """Record a rod piece by piece; the load of a piece is distributed along it, that of a clamp is
-    concentrated.
+    """Record a rod piece by piece. The load of a piece is distributed along the piece; the load of
+    a clamp is concentrated.
 
     The loads of a rod are listed downwards: for every piece its own load, then its clamps.
     """

@@ -68,7 +68,8 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: fl
 def lone_axis(
     load: Load, sea: Sea, state: State, tx: float, ty: float, tz: float, settled: float
 ) -> Vector:
-    """Axis of a rod with a single load of constant drag, in few passes from another axis.
+    """Return the axis of a rod with a single load of constant drag, by a short iteration from an
+    initial axis.
 
     Its rise is `NO_BALANCE` if the passes do not converge.
     """
@@ -93,7 +94,8 @@ def lone_axis(
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
-    """Axis of a rod in water that changes so much along the rod that `rod_axis` does not converge.
+    """Return the axis of a rod in water that changes too much along the rod for `rod_axis` to
+    converge.
 
     The depths of the loads, and thus the water, follow from the rise of the axis alone. For the
     water at a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s falls
@@ -131,7 +133,9 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Axis in balance for the water at the depths of the loads at a given rise."""
+    """Return the axis in moment balance, with the water at the depths that the loads have for a
+    given rise of the rod.
+    """
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
@@ -152,8 +156,8 @@ def _axis_in_water_at(
 def _turning(
     rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
 ) -> float:
-    """Force that rotates a rod of axis t about its midpoint, as a share of its lift and drag
-    forces.
+    """Return the force that rotates a rod of axis t about its midpoint, as a fraction of its lift
+    and drag forces.
     """
     _, _, z, fx, fy, fz, _, level = state
     own = 0.0
@@ -175,7 +179,7 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Axis of a rod whose drags are combined at another axis, t (see `rod_axis`).
+    """Return the axis of a rod whose drags are combined at another axis t (see `rod_axis`).
 
     The water is sampled at the positions of the loads for a `rise`.
     """
@@ -231,7 +235,9 @@ def _following_axis(
 
 @within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
-    """Buoyancy of a rigid piece or clamp, plus its lift in a current of a squared speed [N]."""
+    """Return the buoyancy of a rigid piece or clamp, plus its lift in a current of given squared
+    speed [N].
+    """
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
     return lift + density / REFERENCE_DENSITY * load.lift * squared
 
@@ -249,7 +255,7 @@ def load_force(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Buoyancy, drag, lift and wind force on a rigid piece or clamp of axis t [N].
+    """Return the buoyancy, drag, lift and wind force on a rigid piece or clamp of axis t [N].
 
     Parameters
     ----------
@@ -269,8 +275,8 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """Ratio of the normal drag of a load with axis t to its constant normal drag, for a viscosity
-    [m²/s].
+    """Return the ratio of the normal drag on a load of axis t to its normal drag with constant
+    coefficients, for a viscosity [m²/s].
     """
     if load.diameter == 0.0:
         return 1.0
@@ -284,7 +290,9 @@ def load_variation(
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:
-    """`load_force` at a depth [m] of the sea, searched from interval `level`."""
+    """Return `load_force` at a depth [m] of the sea; the search for the depth starts at interval
+    `level`.
+    """
     u, v, w, density, _ = water_at(sea, depth, level)
     varied = 1.0
     if load.diameter > 0.0:
@@ -293,6 +301,6 @@ def force_at(
 
 
 def speed_across(u: float, v: float, w: float, tx: float, ty: float, tz: float) -> float:
-    """|V × t| [m/s]."""
+    """Return |V × t| [m/s]."""
     cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
     return sqrt(cx * cx + cy * cy + cz * cz)

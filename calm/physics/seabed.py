@@ -1,4 +1,4 @@
-"""The part of a line on the seabed, a plane: straight, held by friction, and without drag."""
+"""Grounded part of a line: straight on a plane seabed, held by friction, without drag."""
 
 from collections.abc import MutableSequence, Sequence
 from math import sqrt
@@ -14,7 +14,9 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
 NOTHING = 1e-9
-"""Smallest pull at a touchdown, as a share of all loads, that has a direction in the audit."""
+"""Pull at a touchdown, as a fraction of all loads, below which the audit ignores the direction of
+the pull.
+"""
 
 
 def lay_line(
@@ -100,8 +102,8 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Share of a part in which the tension acts against friction up to `hold`, and the tension at
-    the end of the part [N].
+    """Return the fraction of a part along which the tension acts against friction up to `hold`, and
+    the tension at the end of the part [N].
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -111,7 +113,9 @@ def held_back(tension: float, hold: float) -> tuple[float, float]:
 def lying_strain(
     cable: CableStretch, knots: Sequence[Knot], pulled: float, tension: float, left: float
 ) -> float:
-    """Mean strain of a part whose tension falls linearly over a share `pulled` of its length."""
+    """Return the mean strain of a part whose tension decreases linearly over a fraction `pulled` of
+    its length.
+    """
     middle = 0.5 * (tension + left)
     if cable.first_knot == cable.end_knot:
         return pulled * cable.compliance * middle
@@ -126,7 +130,7 @@ Forces = NDArray[np.floating[Any]]
 def required_weight(
     vertical: Forces | float, horizontal: Forces | float, factor: float, friction: float
 ) -> Forces:
-    """Submerged weight that a dead-weight anchor needs to stay in position [N].
+    """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
     It is never negative: an anchor that is pressed on the seabed by the line needs none.
 
@@ -149,7 +153,7 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Relative difference between the sum of the loads and the force at the line's end.
+    """Return the relative difference between the sum of the loads and the force at the line's end.
 
     If the line has a part on the seabed, the loads above its touchdown must leave no force normal
     to the seabed, except for a downward force at a rigid piece or clamp that stands there, and an
@@ -187,7 +191,9 @@ def closure(
 
 
 def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
-    """Whether an element can rest on the seabed at a point: a rigid piece or a clamp."""
+    """Return whether an element can rest on the seabed at a point, as a rigid piece or a
+    clamp can.
+    """
     if element >= shape.nodes - 1:
         return False
     piece = int(shape.record[6][element + 1])
@@ -195,7 +201,7 @@ def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
 
 
 def weight_on_seabed(moored: Moored, shape: RefereeShape, excess: float) -> float:
-    """Submerged weight of the elements on the seabed [N]."""
+    """Return the submerged weight of the elements on the seabed [N]."""
     weight = 0.0
     for i in range(shape.hanging, shape.nodes - 1):
         piece, clamp = int(shape.record[6][i + 1]), int(shape.record[7][i + 1])

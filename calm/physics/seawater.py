@@ -1,4 +1,5 @@
-"""Sea water and gravity: density by TEOS-10, viscosity by Sharqawy, gravity by latitude.
+"""Properties of sea water, and gravity: density by TEOS-10, viscosity by Sharqawy, gravity by
+latitude.
 
 Positions are geographic, in degrees north and east, as in TEOS-10.
 """
@@ -11,22 +12,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 REFERENCE_DENSITY = 1025.0
-"""Density of the sea water [kg/m³] for which buoyancies and drags are given."""
+"""Density of the reference sea water [kg/m³], for which buoyancies and drags are specified."""
 
 REFERENCE_VISCOSITY = 1.36e-6
-"""Default kinematic viscosity [m²/s]: sea water of 10 °C and salinity 35."""
+"""Default kinematic viscosity [m²/s], that of sea water at 10 °C and salinity 35."""
 
 MID_LATITUDE = 45.0
-"""Latitude assumed if no position is given [degrees]. Latitude only affects the conversion of depth
-to pressure: between the equator and a pole the density at 5000 m differs by 0.12 kg/m³.
+"""Latitude assumed if the position is unknown [degrees]. It only affects the conversion of depth to
+pressure: between the equator and a pole, the density at 5000 m differs by 0.12 kg/m³.
 """
 
 SOUTHERNMOST = -86.0
-"""Southern limit of the sea and of the composition atlas [degrees]."""
+"""Southern limit of the ocean and of the atlas of seawater composition [degrees]."""
 
 
 def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np.float64]:
-    """Dynamic viscosity of sea water [Pa s].
+    """Return the dynamic viscosity of sea water [Pa s].
 
     Parameters
     ----------
@@ -51,8 +52,8 @@ def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np
 def kinematic_viscosity(
     temperature: ArrayLike, salinity: ArrayLike, density: ArrayLike
 ) -> NDArray[np.float64]:
-    """Kinematic viscosity of sea water [m²/s], from temperature [°C], salinity and density
-    [kg/m³].
+    """Return the kinematic viscosity of sea water [m²/s], from temperature [°C], salinity and
+    density [kg/m³].
     """
     viscosity: NDArray[np.float64] = dynamic_viscosity(temperature, salinity) / np.asarray(
         density, dtype=float
@@ -61,7 +62,7 @@ def kinematic_viscosity(
 
 
 def gravity(latitude: float) -> float:
-    """Acceleration of gravity at the sea surface [m/s²], by latitude [degrees].
+    """Return the acceleration of gravity at the sea surface [m/s²] for a latitude [degrees].
 
     Its increase of 0.011 m/s² down to 5000 m is neglected.
 
@@ -78,7 +79,7 @@ def density(
     latitude: float = MID_LATITUDE,
     longitude: float | None = None,
 ) -> NDArray[np.float64]:
-    """In situ density [kg/m³] from temperature, salinity and depth.
+    """Return the in situ density [kg/m³] from temperature, salinity and depth.
 
     Parameters
     ----------
@@ -109,8 +110,8 @@ def density(
 def potential_density(
     temperature: ArrayLike, salinity: ArrayLike, depth: ArrayLike
 ) -> NDArray[np.float64]:
-    """Density of water raised adiabatically to the surface [kg/m³]; in stable water it does not
-    decrease with depth.
+    """Return the density of water raised adiabatically to the surface [kg/m³], which in stable
+    water does not decrease with depth.
 
     Parameters
     ----------
@@ -126,7 +127,9 @@ def potential_density(
 
 
 def pressure_at(depth: ArrayLike, latitude: float) -> NDArray[np.float64]:
-    """Pressure of the sea [dbar] at depths [m] and a latitude [degrees], from TEOS-10."""
+    """Return the pressure in the sea [dbar] at depths [m] and a latitude [degrees], from
+    TEOS-10.
+    """
     import gsw
 
     return np.asarray(gsw.p_from_z(-np.asarray(depth, dtype=float), latitude), dtype=float)
@@ -138,7 +141,7 @@ def absolute_density(
     depth: ArrayLike,
     latitude: float = MID_LATITUDE,
 ) -> NDArray[np.float64]:
-    """In situ density [kg/m³] from absolute salinity and conservative temperature.
+    """Return the in situ density [kg/m³] from absolute salinity and conservative temperature.
 
     Parameters
     ----------

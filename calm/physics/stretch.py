@@ -1,4 +1,4 @@
-"""Stretch of a rope, from its elongation curve."""
+"""Stretch of a rope from its elongation curve."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import isfinite, sqrt
 from typing import NamedTuple
 
 TRUSTED_LOAD = 0.8
-"""Share of the breaking load above which an elongation curve is unreliable."""
+"""Fraction of the breaking load above which elongation curves are unreliable."""
 
 _GAUSS = sqrt(1.0 / 3.0)
 
@@ -28,7 +28,8 @@ class Knot(NamedTuple):
 
 
 def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
-    """Strain of a rope at a tension ≥ 0 [N], from the knots `first` to `end` of its curve [-].
+    """Return the strain of a rope at a tension ≥ 0 [N], from the knots `first` to `end` of its
+    curve [-].
 
     Monotone cubic interpolation, with linear extrapolation above the last knot.
     """
@@ -40,8 +41,8 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Mean strain for a tension that varies linearly from `tension` - `half` to `tension` + `half`
-    [-].
+    """Return the mean strain for a tension that varies linearly from `tension` - `half` to
+    `tension` + `half` [-].
 
     Two Gauss points between each pair of knots in the range make this exact.
     """
@@ -65,14 +66,14 @@ def _gauss(knots: Sequence[Knot], first: int, end: int, middle: float, half: flo
 
 
 def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) -> int:
-    """Index of the first knot above a tension, from `first` on."""
+    """Return the index of the first knot above a tension; the search starts at `first`."""
     while first < end and knots[first].tension <= tension:
         first += 1
     return first
 
 
 class ElongationCurve:
-    """Strain of a rope against its tension, through a manufacturer's table.
+    """Strain of a rope against its tension, as a smooth curve through a manufacturer's table.
 
     Monotone cubic interpolation: the curve passes through every point, has a continuous slope and
     decreases only where the table decreases. Above the last point it is linear, with the chord of
@@ -125,11 +126,11 @@ class ElongationCurve:
         )
 
     def strain(self, tension: float) -> float:
-        """Strain at a tension ≥ 0 [N], including permanent elongation [-]."""
+        """Return the strain at a tension ≥ 0 [N], including permanent elongation [-]."""
         return curve_strain(self.knots, 0, len(self.knots), tension)
 
     def stiffer(self, factor: float) -> ElongationCurve:
-        """Return the curve of a rope whose strain at every tension is smaller by a factor."""
+        """Return the curve with all strains divided by a factor."""
         loads = (tension / self.breaking_load for tension in self.tensions)
         strains = (strain / factor for strain in self.strains)
         return ElongationCurve(
@@ -138,7 +139,7 @@ class ElongationCurve:
 
 
 def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:
-    """Return loads and strains of a valid table, starting with (0, 0)."""
+    """Return the loads and strains of a table after validation, starting with (0, 0)."""
     loads, strains = [0.0], [0.0]
     for number, (load, strain) in enumerate(points, start=1):
         if not (isfinite(load) and isfinite(strain)):
@@ -161,8 +162,8 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
 
 
 def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float, float]]:
-    """Coefficients of y in powers of x - xs[i], for every interval and the line beyond the last
-    point.
+    """Return the coefficients of y in powers of x - xs[i], for every interval and for the straight
+    line beyond the last point.
     """
     widths = [b - a for a, b in pairwise(xs)]
     chords = [(b - a) / h for (a, b), h in zip(pairwise(ys), widths, strict=True)]
@@ -176,7 +177,9 @@ def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float,
 
 
 def _slopes(widths: list[float], chords: list[float]) -> list[float]:
-    """Slope at every point: a weighted harmonic mean, but from a parabola at both ends."""
+    """Return the slope at every point: a weighted harmonic mean, at both ends the slope of a
+    parabola.
+    """
     if len(chords) == 1:
         return [chords[0], chords[0]]
     slopes = [_end_slope(widths[0], widths[1], chords[0], chords[1])]

@@ -14,21 +14,21 @@ from typing import NamedTuple
 from calm.physics.drag import drag_share
 
 STROUHAL = 0.2
-"""Strouhal number for static calculations, at all Reynolds numbers."""
+"""Strouhal number for static calculations, used at all Reynolds numbers."""
 
 STRUCTURAL_DAMPING = 0.005
-"""Default damping ratio, as used by DNV-RP-F105 for pipes without concrete."""
+"""Default structural damping ratio, as used by DNV-RP-F105 for pipes without concrete."""
 
 CABLE_MODE = 1.155
-"""Mode factor γ of a taut line, √(4/3): its antinodes move more than a rigid cylinder (γ = 1)
-would.
+"""Mode factor γ of a taut line, √(4/3), which accounts for the larger motion at antinodes; a rigid
+cylinder has γ = 1.
 """
 
 _BLEVINS_CAP = 1.0
 
 
 def shedding_frequency(speed: float, diameter: float, strouhal: float = STROUHAL) -> float:
-    """Frequency St |Vn|/D [Hz] of vortex shedding from a line of a diameter [m].
+    """Return the frequency St |Vn|/D [Hz] of vortex shedding from a line of a given diameter [m].
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def shedding_frequency(speed: float, diameter: float, strouhal: float = STROUHAL
 def reduced_damping(
     mass: float, diameter: float, density: float, damping: float, strouhal: float = STROUHAL
 ) -> float:
-    """Reduced damping S_G = 8π² St² m ζ/(ρ D²) [-].
+    """Return the reduced damping S_G = 8π² St² m ζ/(ρ D²) [-].
 
     Parameters
     ----------
@@ -53,7 +53,8 @@ def reduced_damping(
 
 
 def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
-    """A/D at resonance from the reduced damping S_G: 0.645 γ/(1 + 0.43 S_G)^3.35.
+    """Return the amplitude ratio A/D at resonance from the reduced damping S_G: 0.645 γ/(1 + 0.43
+    S_G)^3.35.
 
     Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, who give
     the double amplitude, 1.29 γ.
@@ -64,7 +65,8 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
 def line_amplitude(
     mass: float, diameter: float, density: float, damping: float = STRUCTURAL_DAMPING
 ) -> float:
-    """A/D of a strumming mooring line: `griffin_skop` with the mode factor of a cable.
+    """Return the amplitude ratio A/D of a strumming mooring line, from `griffin_skop` with the mode
+    factor of a cable.
 
     Parameters
     ----------
@@ -80,7 +82,8 @@ def line_amplitude(
 
 
 def vandiver(amplitude: float) -> float:
-    """Ratio of Cn of a strumming line to Cn at rest: 1 + 1.043 (2 Y_rms/D)^0.65, Y_rms = A/√2.
+    """Return the ratio of Cn of a strumming line to Cn at rest, by Vandiver: 1 + 1.043 (2
+    Y_rms/D)^0.65, Y_rms = A/√2.
 
     Source: Vandiver (1983), Offshore Technology Conference, paper 4490.
     """
@@ -88,7 +91,8 @@ def vandiver(amplitude: float) -> float:
 
 
 def blevins(amplitude: float) -> float:
-    """Ratio of Cn of a strumming line to Cn at rest: 1 + 2.1 A/D, constant above A/D = 1.
+    """Return the ratio of Cn of a strumming line to Cn at rest, by Blevins: 1 + 2.1 A/D, constant
+    above A/D = 1.
 
     Above this limit, the straight line exceeds the values measured on cables: Cn of 2.4 to 3.2, 2.0
     to 2.7 times that at rest (Griffin et al. 1984).
@@ -99,7 +103,8 @@ def blevins(amplitude: float) -> float:
 
 
 def skop_griffin(amplitude: float) -> float:
-    """Ratio of Cn of a strumming line to Cn at rest: 1 + 1.16 (w_r - 1)^0.65, w_r = 1 + 2 A/D.
+    """Return the ratio of Cn of a strumming line to Cn at rest, by Skop & Griffin: 1 + 1.16 (w_r -
+    1)^0.65, w_r = 1 + 2 A/D.
 
     Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884, at resonance
     (reduced speed times Strouhal number equal to 1).
@@ -110,12 +115,12 @@ def skop_griffin(amplitude: float) -> float:
 AMPLIFICATIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
     {"vandiver": vandiver, "blevins": blevins, "skop-griffin": skop_griffin}
 )
-"""Functions for the factor on Cn from A/D, by their names in mooring files."""
+"""Functions that return the factor on Cn for an amplitude ratio A/D, by name in mooring files."""
 
 
 def drag_factor(ratio: float) -> float:
-    """Ratio of the drag of a vibrating cylinder to its drag at rest, by the power balance of
-    Bourget & Marichal.
+    """Return the ratio of the drag of a vibrating cylinder to its drag at rest, by the power
+    balance of Bourget & Marichal.
 
     Parameters
     ----------
@@ -139,7 +144,7 @@ def drag_factor(ratio: float) -> float:
 
 
 class Vibration(NamedTuple):
-    """Law of strumming by Bourget & Marichal in the form used by the march.
+    """Strumming law by Bourget & Marichal in the form used by the march.
 
     Attributes
     ----------
@@ -162,19 +167,20 @@ AT_REST = Vibration(0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 def with_beat(vibration: Vibration, beat: float) -> Vibration:
-    """Return the law of vibration with another beat."""
+    """Return a copy of the strumming law with another `beat`."""
     a1, b1, c1, greatest, _ = vibration
     return Vibration(a1, b1, c1, greatest, beat)
 
 
 def amplitude(vibration: Vibration, angle: float) -> float:
-    """a/D [-] for a cable at an angle φ to the flow [rad]."""
+    """Return the amplitude ratio a/D [-] of a cable at an angle φ to the flow [rad]."""
     phi = angle * (180.0 / pi)
     return vibration.a1 + (vibration.b1 + vibration.c1 * phi) * phi
 
 
 def strummed(vibration: Vibration, across: float) -> float:
-    """C*/C₀ = f(λ), limited to its maximum, from the sine of the angle φ between cable and flow.
+    """Return C*/C₀ = f(λ), limited to its maximum, from the sine of the angle φ between cable and
+    flow.
 
     λ = 2π (a/D) F D/(|V| sin φ). For flow along the cable the factor is the maximum.
     """
@@ -182,7 +188,7 @@ def strummed(vibration: Vibration, across: float) -> float:
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """f(λ) without its limit, but at most twice the limit."""
+    """Return f(λ) without its limit, but at most twice this limit."""
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:
@@ -194,7 +200,8 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """`drag_share` of a strumming cable, whose coefficient k f(sin φ) grows with its inclination.
+    """Return `drag_share` for a strumming cable, whose coefficient k f(sin φ) grows with its angle
+    φ to the flow.
 
     Parameters
     ----------
@@ -239,14 +246,15 @@ def amplified_share(
 def _leaning(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float, flat: float
 ) -> float:
-    """Sine of the angle between A + c V and V, from |A × V|/|V|."""
+    """Return the sine of the angle between A + c V and V, from |A × V|/|V|."""
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     return min(flat / sqrt(x * x + y * y + z * z), 1.0)
 
 
 @dataclass(frozen=True)
 class BourgetMarichal:
-    """Strumming of a towed cable: the ship sets the frequency, the angle sets the amplitude.
+    """Strumming law of a towed cable: the speed of the ship determines the frequency, the local
+    angle determines the amplitude.
 
     Attributes
     ----------
@@ -268,7 +276,7 @@ class BourgetMarichal:
     strouhal: float = 0.166
 
     LEAST_ANGLE = radians(15.0)
-    """Angle below which the cable's Cn at rest is not valid [rad]."""
+    """Angle below which the cable's Cn at rest is invalid [rad]."""
 
     @property
     def greatest(self) -> float:
@@ -276,15 +284,16 @@ class BourgetMarichal:
         return self.ceiling / self.rest
 
     def amplitude(self, angle: float) -> float:
-        """a/D [-] for a cable at an angle φ to the flow [rad]."""
+        """Return the amplitude ratio a/D [-] of a cable at an angle φ to the flow [rad]."""
         return amplitude(self.vibration(0.0), angle)
 
     def vibration(self, beat: float) -> Vibration:
-        """Return the law with a beat (see `Vibration`)."""
+        """Return the law in the form used by the march, with a given `beat` (see `Vibration`)."""
         return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
-        """Frequency F = 0.166 V₀ sin φ_n/D [Hz] of the whole cable of a diameter [m].
+        """Return the frequency F = 0.166 V₀ sin φ_n/D [Hz], common to the whole cable, for a
+        diameter [m].
 
         Parameters
         ----------
@@ -294,14 +303,15 @@ class BourgetMarichal:
         return self.strouhal * speed * sin(ship_angle) / diameter
 
     def factor(self, angle: float, beat: float) -> float:
-        """C*/C₀, at most 3.0/C₀, for a cable at an angle φ to the flow [rad].
+        """Return the drag ratio C*/C₀, at most 3.0/C₀, of a cable at an angle φ to the flow [rad].
 
         `beat` is as in `Vibration`.
         """
         return strummed(self.vibration(beat), min(sin(angle), 1.0))
 
     def coefficient(self, angle: float, ship_angle: float) -> float:
-        """C* of a cable at an angle φ in a uniform flow, at any speed.
+        """Return the drag coefficient C* of a cable at an angle φ in a uniform flow, which is
+        independent of speed.
 
         Parameters
         ----------
@@ -312,7 +322,7 @@ class BourgetMarichal:
     def from_bare_cable(
         self, angle: float, speed: float, diameter: float, weight: float, density: float
     ) -> tuple[float, float]:
-        """C* and a/D of a bare cable from its angle under tow.
+        """Return C* and a/D of a bare cable, from its angle under tow.
 
         Parameters
         ----------
@@ -332,7 +342,7 @@ class BourgetMarichal:
 
 
 def _ratio(factor: float) -> float:
-    """Speed ratio λ for a given factor f(λ), 0 if the factor does not exceed 1."""
+    """Return the speed ratio λ for a given factor f(λ), or 0 if this factor does not exceed 1."""
     if factor <= 1.0:
         return 0.0
     # f is above 1 + ¾ λ² and above 4 λ³/3π

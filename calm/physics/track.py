@@ -1,4 +1,4 @@
-"""A line laid out for the march: rigid rods, stretches of cable, and the loads between them."""
+"""Layout of a line for the march: rigid rods, stretches of cable, and the loads between them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Load(NamedTuple):
-    """A rigid piece or a clamped instrument at `at` metres below the top of its rod.
+    """A rigid piece or a clamped instrument, centred `at` metres below the top of its rod.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ ROD, CABLE, CLAMP = range(3)
 
 
 class Stage(NamedTuple):
-    """A rod, a stretch of cable or a clamp, in the order of the march.
+    """One step of the march: a rod, a stretch of cable or a clamp.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class Stage(NamedTuple):
 
 
 class Course(NamedTuple):
-    """A `Track` in the form used by the march: its parts by kind, down the line.
+    """A `Track` in the form used by the march: its parts by kind, from the top down.
 
     `landing` is the first stage that may touch the seabed, below the last buoyant stage.
     """
@@ -114,7 +114,7 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Track:
-    """A `Line` laid out for the march, from the free end to the anchor: rows of plain numbers.
+    """Layout of a `Line` for the march, from the free end to the anchor, as rows of plain numbers.
 
     Attributes
     ----------
@@ -130,21 +130,21 @@ class Track:
 
     @cached_property
     def course(self) -> Course:
-        """The track as named tuples, for interpreted code."""
+        """The track as named tuples for interpreted code."""
         stages, cables = map(Stage._make, self.stages), map(CableStretch._make, self.cables)
         loads = list(map(Load._make, self.loads))
         return Course(list(stages), loads, list(cables), self.knots, self.vibration, self.landing)
 
     @cached_property
     def packed(self) -> Course:
-        """The track as arrays, for compiled code."""
+        """The track as arrays for compiled code."""
         rows: Any = (self.stages, self.loads, self.cables, self.knots)
         course: Course = packed(Course._make([*rows, self.vibration, self.landing]))
         return course
 
     @property
     def landing(self) -> int:
-        """First stage that may touch the seabed, below the last buoyant stage."""
+        """First stage that may rest on the seabed, below the last buoyant stage."""
         for i in range(len(self.stages), 0, -1):
             kind, first, size, _ = self.stages[i - 1]
             if kind == CABLE:
@@ -170,7 +170,9 @@ class Track:
     @staticmethod
     @once_per_input
     def of(line: Line) -> Track:
-        """Lay out a line, free end first; its head (see `head_count`) becomes one rod."""
+        """Lay out a line for the march, free end first; its head (see `head_count`) becomes one
+        rod.
+        """
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
         track = Track([], [], [], [], vibration)
         rows, head = _Rows(line), head_count(line)
@@ -219,7 +221,8 @@ class Track:
 
 
 def head_count(line: Line) -> int:
-    """Number of pieces at the free end that form one rigid body: down to the first buoyant piece.
+    """Return the number of pieces at the free end that form one rigid body: those down to the first
+    buoyant piece.
 
     Pieces without buoyancy listed above the first buoyant piece (a beacon, ballast) are rigidly
     connected to it. If a cable is in between, or no piece is buoyant, the first piece is separate.
@@ -236,7 +239,7 @@ def head_count(line: Line) -> int:
 
 
 class _Rows:
-    """A line as rows of plain numbers, which are looked up much faster than array elements.
+    """Columns of a line as rows of plain numbers, which are read much faster than array elements.
 
     Attributes
     ----------
@@ -271,7 +274,7 @@ class _Rows:
 
 
 def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
-    """Combine columns, or single values throughout, to rows."""
+    """Combine columns, or single values that apply to all rows, to rows."""
     values = (
         column.tolist() if isinstance(column, np.ndarray) else [column] * count
         for column in columns
@@ -280,7 +283,9 @@ def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
 
 
 def _followed(curves: Sequence[DragCurve | None]) -> tuple[Any, Any]:
-    """Columns `diameter` and `lengthening` of loads with drag curves, 0 without a curve."""
+    """Return the columns `diameter` and `lengthening` of loads with drag curves; 0 without
+    a curve.
+    """
     if not curves:
         return 0.0, 0.0
     return (

@@ -20,14 +20,14 @@ from calm.ranging.ranges import Sound, Survey
 BY_CHANCE = 0.01
 """Probability of rejecting a range from a survey without outliers."""
 FLOOR = 2.0
-"""Scatter that no range is better than [m]: the ship's antenna is some metres from its transducer,
-and both move while the sound travels."""
+"""Minimum scatter of ranges [m], because the ship's antenna is some metres from its transducer, and
+both move while the sound travels."""
 SPARE = 2
 """Minimum number of redundant ranges after rejection; with fewer, two ranges with equal errors
 would outvote a correct third one.
 """
 APART = 10.0
-"""Distance from which two places are two [m]."""
+"""Minimum distance between distinct positions [m]."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +42,11 @@ class RangeModel:
 
     @property
     def unknowns(self) -> int:
+        """Number of unknowns."""
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:
-        """Return (3,) of the unknowns; a given depth is one below the curved surface."""
+        """Return the position (3,) for the unknowns; a given depth refers to the curved surface."""
         if self.depth is None:
             return x
         # the surface is that much below the plane of the frame
@@ -53,6 +54,7 @@ class RangeModel:
         return np.array([x[0], x[1], sagging - self.depth])
 
     def mean_speed(self, x: Floats) -> float:
+        """Return the mean speed of sound from the transducer to a position [m/s]."""
         below = self.frame.position(self.place(x))[2]
         return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
 
@@ -64,19 +66,20 @@ class RangeModel:
         return ranges
 
     def residuals(self, x: Floats) -> Floats:
+        """Return measured minus computed ranges (n,) [m]."""
         computed: Floats = np.linalg.norm(self.ships - self.place(x), axis=1)
         found: Floats = self.measured(x) - computed
         return found
 
     def jacobian(self, x: Floats) -> Floats:
-        """Return (n, unknowns) of the residuals."""
+        """Return the derivatives (n, unknowns) of the residuals."""
         step = 0.01
         steps = step * np.eye(self.unknowns)
         columns = [self.residuals(x + change) - self.residuals(x - change) for change in steps]
         return np.stack(columns, axis=1) / (2.0 * step)
 
     def fitted(self) -> tuple[Floats, Booleans]:
-        """Return the unknowns, and which ranges belong."""
+        """Return the unknowns, and a mask of the ranges in use."""
         count = len(self.ships)
         used = np.ones(count, dtype=bool)
         if count <= self.unknowns + SPARE:
@@ -95,7 +98,7 @@ class RangeModel:
         return x, used
 
     def _robust_fit(self) -> Floats:
-        """Return the unknowns by a fit that outliers hardly move, from several sides."""
+        """Return the unknowns of a robust fit, started from several sides."""
         from scipy.optimize import least_squares
 
         found = []
@@ -112,7 +115,7 @@ class RangeModel:
         return min(found, key=lambda each: each[0])[1]
 
     def _starts(self) -> list[Floats]:
-        """Return the unknowns of places in the middle of the survey, and on its four sides."""
+        """Return starting values: the middle of the survey, and its four sides."""
         middle = self.ships.mean(axis=0)
         _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
         reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
@@ -123,14 +126,14 @@ class RangeModel:
         return starts
 
     def _below(self, x: Floats) -> Floats:
-        """Return the same place below the ship, where a fit has found its mirror image above."""
+        """Return a position below the ship for a fit that converged to the mirror image above."""
         if self.depth is None:
             level = float(self.ships[:, 2].mean())
             x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
         return x
 
     def least_squares(self, x: Floats, used: Booleans) -> Floats:
-        """Return the unknowns that fit the ranges in use best, from a guess."""
+        """Return the least-squares fit to the ranges in use, from a starting value."""
         from scipy.optimize import least_squares
 
         fit = least_squares(
@@ -140,7 +143,7 @@ class RangeModel:
         return self._below(fit.x)
 
     def tested(self, x: Floats, used: Booleans) -> Booleans:
-        """Reject the worst outlier, or restore a range that fits the others.
+        """Reject the worst outlier, or restore a rejected range with a small residual.
 
         A range is tested by its residual over its standard error, as estimated from the others.
         """

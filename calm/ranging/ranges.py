@@ -43,12 +43,12 @@ class Survey:
 
     Attributes
     ----------
-    path : of their file
-    line : in the file, of each
-    latitude, longitude : (n,) of the transducer, WGS 84 [degrees]
-    measured : (n,) ranges [m], or where `timed` times there and back [s]
-    transducer : its depth [m]
-    notices : what of the file was left out
+    path : path of the file
+    line : line number of each range
+    latitude, longitude : (n,) position of the transducer, WGS 84 [degrees]
+    measured : (n,) ranges [m], or two-way times if `timed` [s]
+    transducer : depth of the transducer [m]
+    notices : notes on excluded rows and columns
     """
 
     path: Path
@@ -62,7 +62,7 @@ class Survey:
 
     @cached_property
     def frame(self) -> Frame:
-        """About the middle of the ship's positions, which may lie across 180 degrees."""
+        """Local frame around the mean position of the ship, also across 180 degrees."""
         lam = np.radians(self.longitude)
         middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
         return Frame(float(self.latitude.mean()), float(middle))
@@ -71,18 +71,18 @@ class Survey:
 def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Survey:
     """Return the ranges of a file.
 
-    A row without a range, its cell blank or `nan`, is one that was not answered: it is left out.
-    So is a row that repeats another, which tells nothing new. Other columns are not read.
+    Rows without a range (blank or `nan`), and rows that repeat another row, are excluded. Other
+    columns are not read.
 
     Parameters
     ----------
-    transducer : depth of the ship's transducer [m]; that of the file, or the surface, where it is 0
+    transducer : depth of the ship's transducer [m]; if 0, the depth in the file, or the surface
     hemisphere : letters of positions that have neither letter nor sign, such as ``"S,W"``
 
     Raises
     ------
     InputError
-        With every mistake of the file, each with its line.
+        Lists every mistake of the file with its line.
     """
     problems: list[Problem] = []
     signs = hemisphere_signs(hemisphere)
@@ -181,7 +181,7 @@ def _figure(name: str, text: str, factor: float) -> float:
 
 
 def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
-    """Report fill values and positions that are far from the others."""
+    """Report fill values, and positions far from the rest of the survey."""
     problems = []
     places = []
     for line, latitude, longitude, _ in values:
@@ -227,8 +227,8 @@ class Sound:
     def mean(self, above: float, below: float) -> float:
         """Harmonic mean between two depths [m/s].
 
-        A straight ray at any slope covers equal lengths per depth interval, so its travel time is
-        its length divided by this mean.
+        A straight ray at any slope covers equal lengths per depth interval, so this mean converts
+        its length to travel time.
         """
         if len(self.speed) == 1 or below - above < 1e-6:
             return float(np.interp(0.5 * (above + below), self.depth, self.speed))

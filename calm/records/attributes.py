@@ -144,8 +144,8 @@ def _is_magnetic_text(text: str) -> bool:
 def sense_of_direction(variable: xr.DataArray) -> str | None:
     """Return the convention of a direction that has no standard name.
 
-    The long name and comment decide: ``"to"`` if the current flows to it, ``"from"`` if it comes
-    from it, and None if they do not decide.
+    By its long name and comment, the current flows ``"to"`` this direction or comes ``"from"`` it;
+    None without a clear statement.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

@@ -114,8 +114,10 @@ class ReadCard:
         }
 
 
-def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of several quantities of a file."""
+def joined_cards(cards: Sequence[ReadCard]) -> ReadCard | None:
+    """Merge the cards of several quantities of a file; None without cards."""
+    if not cards:
+        return None
     variables = {role: one for card in cards for role, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)

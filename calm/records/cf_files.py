@@ -21,6 +21,7 @@ from calm.physics.line import Floats
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import reader_of
 from calm.units import QuantityError, unit_factor, unit_line
+from calm.whole_file import no_such_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +82,7 @@ def holds_arrays(path: Path) -> bool:
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
     if not path.is_file():  # opening a pipe or a device could block
-        raise refused(path, "is not a regular file" if path.exists() else "no such file")
+        raise refused(path, "is not a regular file" if path.exists() else no_such_file(path))
     with path.open("rb") as file:
         head = file.read(_SHELL)
     begun = [kind for begin, kind in _KINDS.items() if head.startswith(begin)]
@@ -116,7 +117,7 @@ def reading(path: Path) -> Iterator[None]:
 def opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a dataset; its errors are InputErrors that list the contents of the file."""
     if not path.exists():
-        raise refused(path, "no such file")
+        raise refused(path, no_such_file(path))
     if not holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with reading(path), open_current(path) as dataset, saying_what_it_holds(dataset):
@@ -153,8 +154,9 @@ def _refuse_large(path: Path) -> None:
     """Reject a file that declares more values than may be read at once.
 
     The check precedes all reading. One-dimensional variables are read whole, others by their
-    chunks. A classic NetCDF file cannot declare more values than it holds. UnreadableError: names
-    the variable.
+    chunks. Classic NetCDF files are safe, as their size limits the number of values.
+
+    UnreadableError: names the variable.
     """
     declared: list[tuple[str, Any]] = []
     if path.is_dir():
@@ -187,7 +189,7 @@ def _too_large(name: object, count: int) -> str:
 
 
 def engine_of(path: Path) -> str:
-    """Return the xarray engine for a NetCDF file, from its first bytes; empty for other files."""
+    """Return the xarray engine for a NetCDF file by its first bytes, or an empty text."""
     with path.open("rb") as file:
         return _ENGINES.get(file.read(4), "")
 
@@ -215,7 +217,7 @@ def holdings(dataset: xr.Dataset) -> str:
 
 
 def groups_of(path: Path) -> list[str]:
-    """Return the names of the groups of a NetCDF 4 file; empty for other files."""
+    """Return the names of the groups of a NetCDF 4 file, or an empty list."""
     import h5netcdf
 
     if not path.is_file() or engine_of(path) != "h5netcdf":

@@ -27,6 +27,7 @@ from calm.records.headings import heading, is_time, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.value_tests import CurrentValues, current_doubts, step_doubts
+from calm.whole_file import no_such_file
 
 _BLOCK = 10_000
 AT_ONCE = 50_000
@@ -86,7 +87,7 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
         The options select no profile.
     """
     if not (path.is_file() or path.is_dir()):
-        raise refused(path, "is not a regular file" if path.exists() else "no such file")
+        raise refused(path, "is not a regular file" if path.exists() else no_such_file(path))
     return (ArrayRecord if holds_arrays(path) else CsvRecord)(path, terms, time, every)
 
 

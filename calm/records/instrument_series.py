@@ -207,20 +207,30 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float, nominal: float
 ) -> dict[str, list[InstrumentSeries]]:
-    found: dict[str, list[InstrumentSeries]] = {name: [] for name in names}
-    cards = []
+    found: list[tuple[str, InstrumentSeries]] = []
     with _opened(path) as dataset:
         for part in instruments_apart(velocity.with_components(dataset)):
             file = _SeriesFile(part, path.name, flags, seabed, nominal)
-            mine = {name: file.series(name) for name in names}
-            each = [one.card for series in mine.values() for one in series if one.card is not None]
-            cards += [joined_cards(each)] if each else []
-            for name, series in mine.items():
-                found[name] += series
-        if not any(found.values()):
+            mine = [(name, one) for name in names for one in file.series(name)]
+            whole = joined_cards([one.card for _, one in mine if one.card is not None])
+            found += [(name, replace(one, card=whole)) for name, one in mine]
+        if not found:
             raise UnreadableError(f"holds no {' or '.join(names)}")
+    series = with_one_card([one for _, one in found])
+    quantities = [name for name, _ in found]
+    return {
+        name: [one for one, own in zip(series, quantities, strict=True) if own == name]
+        for name in names
+    }
+
+
+def with_one_card(series: Sequence[InstrumentSeries]) -> list[InstrumentSeries]:
+    """Return the series of a file with one card for all its instruments."""
+    cards = [*{id(one.card): one.card for one in series if one.card is not None}.values()]
+    if len(cards) < 2:
+        return [*series]
     whole = card_of_instruments(cards)
-    return {name: [replace(one, card=whole) for one in each] for name, each in found.items()}
+    return [replace(one, card=whole) for one in series]
 
 
 @contextmanager
@@ -236,10 +246,10 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Split a dataset whose instruments follow each other along one dimension.
 
-    These are the indexed and the contiguous ragged arrays of CF: an index with `instance_dimension`
-    assigns each reading to an instrument, as in the aggregated and hourly products of IMOS, or
-    counts with `sample_dimension` give the readings of each. Readings without an instrument are
-    left out. A dataset without such a variable is returned alone.
+    In CF's indexed ragged arrays, an index with `instance_dimension` assigns each reading to an
+    instrument, as in the aggregated and hourly products of IMOS. In contiguous ragged arrays,
+    counts with `sample_dimension` give the number of readings. Readings without an instrument are
+    excluded. A dataset without such a variable is returned alone.
 
     UnreadableError: the index or the counts do not fit the dimensions.
     """

@@ -310,7 +310,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Minimum and maximum of a sea-water quantity, its unit, and units that are confused with it.
+    """Minimum and maximum of a sea-water quantity, its unit, and units often confused with it.
 
     Each entry of `likely` is a unit, with the factor and the zero for conversion to `unit`.
     """

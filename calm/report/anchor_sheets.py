@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 
 
 _ROWS = 6
-"""Number of rows in the table of the descent."""
+"""Number of rows in the table of the anchor's descent."""
 _DEEPER = 0.5
-"""Extra depth, relative to equilibrium, from which a float is listed [m]."""
+"""Extra depth during the descent, relative to equilibrium, above which a float is listed [m]."""
 
 
 def drop_part(plan: DropPlan) -> ReportPart:
-    """The sheet."""
+    """Build the sheet of the anchor drop plan."""
     shown: tuple[blocks.Block, ...] = (
         _instructions(plan),
         *blocks.warned(plan.warnings),
@@ -114,7 +114,7 @@ def _fall_table(plan: DropPlan) -> Table:
     def column(
         heading: str, name: str, values: Floats, decimals: int = 0, first: int = 0
     ) -> blocks.Field:
-        """Figures from the `first` row on."""
+        """Create a column of values from row `first` on."""
         shown = QUANTITIES.get(name)
         unit, scale = (shown.display_unit, shown.scale) if shown else (name, 1.0)
         at = scale * np.interp(depths, deepest, values)
@@ -184,8 +184,8 @@ def _distance(distance: float) -> str:
 
 
 def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
-    """Describe a place by its distances north and east of the target [m], and its position if
-    known.
+    """Describe a place by its distances north and east of the target [m], and by its position if
+    that of the target is known.
     """
     east, north = place
     position = plan.position(place)
@@ -204,7 +204,7 @@ _DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 
 
 def drop_figure(plan: DropPlan) -> str:
-    """The drop as SVG.
+    """Draw the anchor drop as SVG.
 
     Left, to one scale, the path of the anchor and the line at several times, each with its own
     dashes and an entry in the legend: it reads in black and white too. Right the fall speed over
@@ -263,7 +263,9 @@ _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 
 def located_part(located: Located, water_depth: float) -> ReportPart:
-    """Report the position, its uncertainty and the residual of each range; `water_depth` [m]."""
+    """Report the anchor position, its uncertainty and the residual of each range; `water_depth`
+    [m].
+    """
     outliers = [
         line for line, used in zip(located.survey.line, located.used, strict=True) if not used
     ]
@@ -309,7 +311,7 @@ def _located_figures(located: Located, water_depth: float) -> tuple[tuple[str, s
 
 
 def _residuals(located: Located) -> Table:
-    """A row for each range, in the order of the file."""
+    """Tabulate the residuals, one row per range, in file order."""
     survey, used = located.survey, located.used
     decimals, measured = (4, ("time", "s")) if survey.timed else (1, ("range", "m"))
 
@@ -333,7 +335,7 @@ _PANEL = 290.0
 
 
 def located_figure(located: Located) -> str:
-    """The ranges as SVG: a circle about each place of the ship, at the depth of the transponder.
+    """Draw the ranges as SVG: a circle around each ship position, at the depth of the transponder.
 
     Left the whole survey, right the position with its 95 % ellipse. A range that is not used is
     grey and dashed, and has the number of its line.

@@ -1,4 +1,4 @@
-"""Statistics of a batch on a page with tables and drawings, on a terminal, and as files."""
+"""Statistics of a batch as an HTML page with tables and drawings, on a terminal, and as files."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -30,12 +30,14 @@ from calm.report.result_files import to_json
 
 
 def summary_html(summary: Summary) -> str:
-    """The page of a summary, which needs no other file and no network."""
+    """Render the HTML page of a summary, which needs no other file and no network."""
     return page(summary_report(summary))
 
 
 def summary_report(summary: Summary) -> blocks.Report:
-    """Return how often limits are broken, distributions, worst profiles, return levels, drawn."""
+    """Build the report of a summary: frequency of exceeded limits, distributions, worst profiles,
+    return levels, drawings.
+    """
     lost = State.WARN if summary.count - summary.solved else None
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
     not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
@@ -86,7 +88,7 @@ _EXTRAPOLATED = (
 
 
 def limits_table(summary: Summary) -> Table:
-    """Tabulate how often each limit is exceeded, and the most severe value."""
+    """Tabulate the frequency with which each limit is exceeded, and the most severe value."""
 
     def state(one: Exceedance) -> Cell:
         broken = one.limit.criterion.beyond if one.share else State.PASS
@@ -119,7 +121,7 @@ def limits_table(summary: Summary) -> Table:
 
 
 def statistics_tables(summary: Summary) -> Iterator[Table]:
-    """Yield for each quantity the mean, the percentiles and the maximum of every part."""
+    """Yield a table for each quantity: mean, percentiles and maximum for every part."""
     for name in _QUANTITIES:
 
         def figures(part: Any, name: str = name) -> list[str]:
@@ -140,7 +142,7 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Yield the worst profiles by each response, together with their other responses."""
+    """Yield a table for each response: its worst profiles, with their other responses."""
     for name, profiles in summary.worst.items():
         if not profiles:
             yield Prose((f"The {TITLES[name]} is unknown in all profiles.",), State.UNKNOWN)
@@ -151,7 +153,7 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
 
 
 def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Return levels with their intervals, and why others are not given."""
+    """Yield tables of return levels with their intervals, and the reasons for missing levels."""
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
         fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]
@@ -185,7 +187,7 @@ def _fitted(fit: Fit) -> str:
 
 
 def write_summary(result: Path, mooring: Design) -> Summary:
-    """Summarise a finished result as JSON and HTML files in the same folder.
+    """Write the summary of a finished batch as JSON and HTML files next to the batch file.
 
     The result is only read, so this can be repeated at any time after the batch has finished.
 
@@ -209,7 +211,7 @@ def write_summary(result: Path, mooring: Design) -> Summary:
 
 
 def summary_paths(result: Path) -> tuple[Path, Path]:
-    """Paths of the summary of a result: JSON and HTML page."""
+    """Return the paths of a summary's JSON file and HTML page."""
     return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")
 
 
@@ -223,7 +225,7 @@ _ALL = (
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """Summarise a batch for a terminal of 80 columns, in which long labels wrap.
+    """Build the summary of a batch for a terminal of 80 columns; long labels wrap.
 
     Lists components and clamps with the 99th percentile and the maximum of each quantity, the
     failure rate of each rule, the worst profile by each response, and return levels.
@@ -317,8 +319,8 @@ def series_figure(summary: Summary) -> str:
 
 
 class _Panel(NamedTuple):
-    """Panel of exceedance curves of a quantity, each with stroke and label, and the limit of the
-    quantity.
+    """Panel of exceedance curves for one quantity: each curve with stroke and label, and the limit
+    of the quantity.
     """
 
     title: str
@@ -328,7 +330,7 @@ class _Panel(NamedTuple):
 
 
 def exceedance_figure(summary: Summary) -> str:
-    """Share of the profiles beyond each value: of the responses, as SVG."""
+    """Draw the exceedance curves of the responses, as fractions of the profiles, as SVG."""
     panels = []
     for response in summary.known_responses:
         one, limit = response.distribution, _limit_of(summary, response)
@@ -353,7 +355,7 @@ def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
 
 
 def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
-    """Panels two by two, with one scale of shares."""
+    """Draw panels in two columns, with a common scale of fractions."""
     rows, wide = -(-len(panels) // 2), (_WIDTH - _LEFT - _RIGHT - _GAP) / 2
     page = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
     least = min([0.1, *(one.share[-1] for panel in panels for one, _, _ in panel.curves)])
@@ -381,7 +383,7 @@ def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
 
 
 def _limit_of(summary: Summary, response: Response) -> float | None:
-    """Limit of the design on a response, in display units; None if the design sets none."""
+    """Return the design limit for a response, in display units; None if the design sets none."""
     wanted = {"knockdown": "knockdown", "offset": "excursion"}.get(response.name)
     for rule in summary.rules:
         if rule.name == wanted:

@@ -1,4 +1,4 @@
-"""The statistics of a batch as JSON, with names, times and shares in words."""
+"""Statistics of a batch as JSON and as tables; names, times and fractions as text."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
@@ -19,7 +19,8 @@ from calm.version import __version__
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
-    """The JSON object of a summary: SI and degrees, times in UTC, shares of 1; null is unknown.
+    """Return the JSON object of a summary, in SI units and degrees, with times in UTC, fractions of
+    1, and null for unknown values.
 
     It has `profiles`, how many and how they ended; `components` and `clamps` with their
     distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which they
@@ -120,7 +121,7 @@ def _time(time: np.datetime64 | None) -> str | None:
 
 
 def rules_table(summary: Summary) -> Table:
-    """Tabulate the share of profiles in which each rule fails or warns."""
+    """Tabulate the fraction of profiles in which each rule fails or warns."""
 
     def broken(heading: str, name: str, state: State, unit: str = "%") -> Field:
         def cell(rule: RuleShare) -> Cell:
@@ -146,7 +147,9 @@ def rules_table(summary: Summary) -> Table:
 
 
 def _most_often(rule: RuleShare) -> str:
-    """Name the part that exceeds a limit most often, and count the unknown ones."""
+    """Name the part that exceeds a limit most often, and give the number of profiles with an
+    unknown result.
+    """
     most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
     worst = ""
     if most and most.share:
@@ -156,8 +159,8 @@ def _most_often(rule: RuleShare) -> str:
 
 
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
-    """Tabulate profiles with their responses, and the response for which each is the worst, if
-    stated.
+    """Tabulate profiles and their responses; the first column may name the response for which a
+    profile is the worst.
     """
 
     def response(name: str) -> Field:
@@ -183,7 +186,7 @@ TITLES = {
 """Titles of the responses, by name."""
 
 QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
-"""Quantity of each response, as a name in `calm.quantities`."""
+"""Name of each response's quantity in `calm.quantities`."""
 
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
@@ -200,12 +203,12 @@ DEFINITIONS = (
 
 
 def when(time: np.datetime64 | NDArray[np.datetime64] | None) -> str:
-    """Format a time to the minute, or a dash for None."""
+    """Format a time to the minute; None becomes a dash."""
     return "-" if time is None else str(np.datetime_as_string(time, unit="m")).replace("T", " ")
 
 
 def percent(share: float | None) -> str:
-    """Format a share in percent, with values above zero never shown as 0."""
+    """Format a fraction in percent; positive values are never shown as 0."""
     if share is None:
         return "-"
     if 0.0 < share < 5e-5:
@@ -214,12 +217,12 @@ def percent(share: float | None) -> str:
 
 
 def grouped(count: int) -> str:
-    """A number of profiles, its thousands apart."""
+    """Format a number of profiles with its thousands separated."""
     return f"{count:,}".replace(",", "\u00a0")
 
 
 def extent(summary: Summary) -> str:
-    """Return how many profiles there are, and from when to when."""
+    """Format the number of profiles, and the first and last time."""
     return (
         f"{grouped(summary.count)} profiles, {when(summary.begin)} to {when(summary.end)}, "
         f"{summary.years:.2f} years solved"
@@ -227,13 +230,15 @@ def extent(summary: Summary) -> str:
 
 
 def standing(summary: Summary) -> str:
-    """Return how the profiles ended, by their status."""
+    """Format the number of profiles for each status of the solver."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)
 
 
 def left_out(summary: Summary) -> str:
-    """Describe the number of unsolved profiles with a current, and the effect on statistics."""
+    """Describe the number of profiles that have a current but no solution, and the effect on
+    statistics.
+    """
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved
@@ -245,7 +250,7 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Yield why there are no return levels: each reason once, with the responses it is for."""
+    """Yield each reason for missing return levels, with the names of the responses concerned."""
     reasons: dict[str, list[str]] = {}
     for response in summary.known_responses:
         for fit in response.return_levels:
@@ -258,7 +263,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Tabulate the depths of the profilers' stops, in dbar and metres."""
+    """Tabulate the depths of the profilers' stops, in dbar and in metres."""
     if not summary.stops:
         return
     shares = (*(f"{share:g} %\ndbar" for share in statistics.STOP_SHARES),

@@ -1,4 +1,5 @@
-"""Blocks that CALM speaks in, for every medium: terminal, page, PDF and notebook print the same.
+"""Building blocks of all CALM reports, rendered alike on a terminal, on a web page, in PDF and in a
+notebook.
 
 Every text is plain: a printer escapes it in its own way, and nothing in a text is markup.
 """
@@ -16,7 +17,7 @@ from calm.quantities import QUANTITIES, Quantity
 
 @dataclass(frozen=True)
 class Column:
-    """Heading of a column: title, unit below it, and whether its cells are numbers.
+    """Column heading: title, unit below the title, and whether the cells are numbers.
 
     `share` is the share of the width left over by numbers and short words: 0 for short words, 1 for
     names, more for sentences; numeric columns have a share only if it is not 1. `short` is a title,
@@ -35,7 +36,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Cell:
-    """Cell: its text, a smaller line below it, and the state shown in colour and words.
+    """Table cell: its text, a smaller line below it, and the state shown by colour and words.
 
     `mark` is the sign after a value close to a limit or beyond it. A cell may be indented below the
     row above it, or `strong` to stand out. In print, the detail of a cell that `goes_on` follows on
@@ -59,7 +60,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """Table: rows under columns; the last `totals` rows are sums.
+    """Table with rows under columns; the last `totals` rows are sums.
 
     A row of a single cell is a heading for the rows below it. Rows of a `sortable` table can be
     sorted and filtered. A `dense` table has so many columns that spacing is reduced. A table to
@@ -86,11 +87,11 @@ class Table:
         return self._of(kept) if full and len(kept) < count and not self.by_hand else self
 
     def narrow(self) -> Table:
-        """Return the table without the columns for which there is no room."""
+        """Return the table for a narrow page, without the columns that do not fit."""
         return self._of([n for n, one in enumerate(self.columns) if one.narrow])
 
     def _of(self, kept: Sequence[int]) -> Table:
-        """Columns by their numbers, and their rows; a single cell heads the rows below it."""
+        """Select columns by number; a row with a single cell is a heading and stays."""
         rows = (row if len(row) == 1 else tuple(row[at] for at in kept) for row in self.rows)
         columns = tuple(self.columns[at] for at in kept)
         return replace(self, columns=columns, rows=tuple(rows))
@@ -101,14 +102,14 @@ _EMPTY = Cell()
 
 @dataclass(frozen=True)
 class Pairs:
-    """List of names with their values; a value may have several lines."""
+    """List of names with values; a value may have several lines."""
 
     pairs: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
 class Figure:
-    """SVG drawing with a title that describes it; a `tall` one may fill a page.
+    """SVG drawing, with a title that describes its content; a `tall` drawing may fill a page.
 
     `aside` is printed next to the title, `note` below the drawing.
     """
@@ -122,7 +123,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Part of a sentence, coloured by a state, or `quiet` for secondary text."""
+    """Part of a sentence, with the colour of a state, or `quiet` for secondary text."""
 
     text: str
     state: State | None = None
@@ -130,12 +131,12 @@ class Span:
 
 
 Line = str | tuple[Span, ...]
-"""Sentence, as plain text or as spans."""
+"""Sentence, either plain text or a sequence of spans."""
 
 
 @dataclass(frozen=True)
 class Prose:
-    """Sentences, each a line of its own; `state` marks those that must not be overlooked."""
+    """Paragraphs of one sentence each; `state` marks sentences that must not be overlooked."""
 
     lines: tuple[Line, ...]
     state: State | None = None
@@ -143,14 +144,14 @@ class Prose:
 
 @dataclass(frozen=True)
 class Note:
-    """Sentences about how to read the figures above."""
+    """Explanatory sentences about the table or figure above."""
 
     lines: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Heading:
-    """A title over the blocks that follow."""
+    """Heading over the blocks that follow."""
 
     text: str
 
@@ -216,7 +217,7 @@ class OpenItems:
 
 @dataclass(frozen=True)
 class Beside:
-    """Two groups of blocks side by side in print; the left one has a share of the width.
+    """Two groups of blocks side by side in print; the left group has a given fraction of the width.
 
     If `height` [pt] is set, they have exactly that height in print.
     """
@@ -229,7 +230,7 @@ class Beside:
 
 @dataclass(frozen=True)
 class PageBreak:
-    """Page break, in output that has pages."""
+    """Page break, ignored in output without pages."""
 
 
 Block = (
@@ -240,7 +241,7 @@ Block = (
 
 @dataclass(frozen=True)
 class ReportPart:
-    """Blocks under a heading; the output of a command about one object is a separate part.
+    """Blocks under a heading. A command makes a separate part for each object.
 
     `size` is the font size of its tables in print [pt]; only listings use a smaller one.
     """
@@ -270,7 +271,7 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a report on one mooring or tow: its name, and the parts to print.
+    """Section of a report about one mooring or tow: its name and its printed parts.
 
     A section may be built in a separate process. A section with its own `running` texts starts a
     page and has no other title.
@@ -283,7 +284,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """A whole report.
+    """A report with all its sections.
 
     Attributes
     ----------
@@ -309,13 +310,15 @@ class Report:
 
 
 Field = tuple[Column, Callable[[Any], Any]]
-"""Column, and a function from an item to its content: a cell, text, number, or None."""
+"""Column, and a function that returns the content of its cell for an item: a cell, text, number, or
+None.
+"""
 
 Shown = str | int | Callable[[Any], Any]
 
 
 def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Field:
-    """A column of words for `table_of`.
+    """Create a column of text for `table_of`.
 
     Parameters
     ----------
@@ -334,12 +337,14 @@ def _getter(show: Shown, name: str) -> Callable[[Any], Any]:
 
 
 def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field:
-    """A column of numbers, with the unit below its heading; all else as in `words`."""
+    """Create a column of numbers with the unit below the heading; the other arguments are as in
+    `words`.
+    """
     return words(heading, show, unit=unit, numeric=True, **more)
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt fields to items that are sequences, using the first member of each item."""
+    """Adapt fields to rows that are sequences; the fields show the first item of each row."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])
@@ -348,7 +353,7 @@ def of_first(*fields: Field) -> list[Field]:
 
 
 def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
-    """A column that is filled in by hand."""
+    """Create an empty column, to be filled in by hand."""
     return words(heading, lambda _: None, share, unit=unit)
 
 
@@ -371,11 +376,11 @@ _SHORT = {
     "knockdown": "knock-\ndown",
     "safety_factor": "safety\nfactor\n",
 }
-"""Headings cut so that the table of a line fits 80 columns."""
+"""Short headings, with which the table of a line fits 80 columns."""
 
 
 def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
-    """Create the heading of a quantity's column, in display units."""
+    """Create the heading for a quantity's column, in display units."""
     short = None if heading else _SHORT.get(quantity.name)
     marked = quantity.name in ("tilt", "safety_factor")
     title, unit = heading or quantity.heading, quantity.display_unit
@@ -401,7 +406,7 @@ def table_of(
     sums: Iterable[Any] = (),
     **more: Any,
 ) -> Table:
-    """Build a table with a row for each item and a column for each field.
+    """Build a table with one row per item and one column per field.
 
     Columns without text are omitted, unless the table is to be filled in by hand.
 
@@ -428,11 +433,11 @@ def _cell(shown: Any) -> Cell:
 
 
 def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]:
-    """Create a block of warnings, if there are any."""
+    """Yield a block of warnings, if there are any."""
     lines = tuple(texts)
     return (Prose(lines, state),) if lines else ()
 
 
 def quiet(*texts: str) -> Prose:
-    """Sentences that are read last."""
+    """Create a note in secondary type."""
     return Prose(tuple((Span(text, quiet=True),) for text in texts))

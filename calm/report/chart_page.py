@@ -1,4 +1,4 @@
-"""The chart of a uniform current for one K, on a page of A4.
+"""Chart of a uniform current for one value of K, on an A4 page.
 
 The curve carries its graduations in the angle φ and the arc s′. Three families of loci of the point
 P = (y′ of A, z′ of B) give length, distance and tension of the cable between two of its points A
@@ -40,7 +40,7 @@ _HIGHEST = 3.0
 
 @dataclass(frozen=True)
 class Family:
-    """Family of curves of constant ratio: name, colour, and the values to draw."""
+    """Family of curves, each for one value of a ratio: name, colour, and the values to draw."""
 
     name: str
     colour: str
@@ -58,7 +58,7 @@ _FAMILIES = (
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """Draw the chart of one K (0 to 100) on an A4 page, without overlapping labels.
+    """Draw the chart for one value of K (0 to 100) on an A4 page, without overlapping labels.
 
     The lower ends of the cables are at angles ``below-90`` or ``above-90``. Raises UsageError if K
     is out of range, or for ``above-90`` at K = 0, where the curve ends at 90°. The figure is not
@@ -86,7 +86,9 @@ def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
 
 
 def _points(k: float) -> CurvePoints:
-    """The curve from its apex as high as the page goes, ever finer towards φ_c."""
+    """Compute points of the curve from its apex to the upper edge of the page, ever closer towards
+    φ_c.
+    """
     critical = float(critical_angle(k))
     upright = float(curve(k, _RIGHT).height) if k > 0.0 else np.inf
     highest = min(_HIGHEST, 4.0 * upright)
@@ -100,7 +102,7 @@ _COORDINATES = ("phi", "arc", "distance", "height", "tension")
 
 
 def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
-    """Set axis limits that leave room for the graduations along the curve."""
+    """Set axis limits that leave room for the graduations on both sides of the curve."""
     left = float(points.distance[points.phi >= _RIGHT].min()) if above else 0.0
     right = float(points.distance.max())
     low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
@@ -111,7 +113,7 @@ def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
 
 
 def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
-    """Ticks of φ on the outer side of the curve, of s′ on the inner side."""
+    """Draw the ticks of φ on the outer side of the curve, and of s′ on its inner side."""
     degrees = np.degrees(points.phi)
     for value in range(0, 180, 1):
         if value <= degrees[-1]:
@@ -142,7 +144,7 @@ def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, flo
 def _draw_family(
     axes: Axes, labels: Labels, family: Family, points: CurvePoints, starts: NDArray[np.bool_]
 ) -> None:
-    """Loci of P, as contours over the abscissa of A and the level of B."""
+    """Draw the loci of P as contour lines over the abscissa of A and the level of B."""
     # Evenly in φ, which is close in y′ where the curve turns back; y′ must grow for contours.
     angles = np.linspace(points.phi[starts][0], points.phi[starts][-1], _POINTS)
     lower = [np.interp(angles, points.phi, getattr(points, name)) for name in _COORDINATES]
@@ -197,7 +199,7 @@ _TRIALS = 41
 
 
 class Labels:
-    """Labels and ticks of a pair of axes with final limits, in a figure with a canvas.
+    """Ticks and labels without overlap, for axes with final limits in a figure with a canvas.
 
     A label without a free position is omitted.
     """
@@ -208,7 +210,7 @@ class Labels:
         self._points = axes.figure.dpi / 72.0
 
     def avoid(self, x: Floats, y: Floats) -> None:
-        """Keep labels off a curve."""
+        """Keep labels clear of a curve."""
         from matplotlib.transforms import Bbox
 
         line = self.axes.transData.transform(np.column_stack([x, y]))
@@ -219,8 +221,8 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick to the right of a curve that runs at `angle` [rad]; `size` in points,
-        negative: left.
+        """Draw a tick to the right of a curve that runs at `angle` [rad]. `size` is in points; a
+        negative size draws to the left.
         """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
@@ -230,7 +232,7 @@ class Labels:
     def beside(
         self, text: str, x: float, y: float, angle: float, size: float, colour: str, font: float
     ) -> None:
-        """A text beyond such a tick."""
+        """Write a label beyond the end of such a tick."""
         place, right = self._place(x, y, angle)
         side = right * np.sign(size)
         label = self._text(text, place, 0.0, colour, font)
@@ -263,7 +265,7 @@ class Labels:
         return False
 
     def _place(self, x: float, y: float, angle: float) -> tuple[Floats, Floats]:
-        """A point in pixels and the direction to the right of a curve there."""
+        """Return a point in pixels, and the direction to the right of a curve at this point."""
         step = 1e-6
         here = np.array([x, y])
         ahead = here + step * np.array([np.cos(angle), np.sin(angle)])
@@ -298,7 +300,7 @@ class Labels:
 
 
 def _lengths(line: Floats) -> Floats:
-    """Length along a line of points, from its first."""
+    """Compute the length along a line of points, from the first point."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 
@@ -316,14 +318,16 @@ _NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles 
 
 
 def answer_document(answer: ChartAnswer) -> dict[str, Any]:
-    """Return the JSON object: `status`, `k`, `solutions` (SI, degrees) or else the reason."""
+    """Return the JSON object: `status`, `k`, and `solutions` (SI, degrees) or the reason why there
+    is none.
+    """
     found = {"solutions": [_figures(solution) for solution in answer.solutions]}
     reason = () if answer.solutions else ("message", "advice")
     return members(answer, "status", "k") | found | members(answer, *reason)
 
 
 def answer_part(answer: ChartAnswer) -> ReportPart:
-    """A column for each cable."""
+    """Build a table with one column per cable."""
     figures = [_figures(solution) for solution in answer.solutions]
     several = len(figures) > 1
 
@@ -344,7 +348,7 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
 
 
 def _figures(solution: ChartSolution) -> dict[str, float]:
-    """The figures in SI and degrees."""
+    """Return the values of a solution in SI units and degrees."""
     return {
         name: math.degrees(value) if name.startswith("phi") else value
         for name, value in vars(solution).items()

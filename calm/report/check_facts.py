@@ -14,7 +14,7 @@ from calm.report.result_files import members
 
 @dataclass(frozen=True)
 class StrongestCurrent:
-    """Strongest current of all environments, and the warning if it is weak."""
+    """Strongest current of all environments, and the warning if this current is weak."""
 
     speed: float
     depth: float
@@ -24,7 +24,8 @@ class StrongestCurrent:
 
 @dataclass(frozen=True)
 class LeastFactor:
-    """Minimum safety factor (breaking load over tension) of all environments, and its piece.
+    """Minimum safety factor (breaking load over tension) over all environments, and the piece
+    concerned.
 
     `unknown` counts the pieces without a breaking load.
     """
@@ -37,7 +38,7 @@ class LeastFactor:
 
 
 def key_figures(assessment: Assessment) -> dict[str, Any]:
-    """Return the JSON object, in SI units; unknown values are None."""
+    """Return the key figures as a JSON object, in SI units; unknown values are None."""
     every = [*assessment.every_finding()]
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
     anchor = None
@@ -60,7 +61,7 @@ def key_figures(assessment: Assessment) -> dict[str, Any]:
 
 
 def strongest_current(assessment: Assessment) -> StrongestCurrent:
-    """The strongest current of all environments."""
+    """Find the strongest current of all environments."""
     found = []
     for stand in assessment.stands:
         water = stand.leg.water
@@ -73,7 +74,7 @@ def strongest_current(assessment: Assessment) -> StrongestCurrent:
 
 
 def least_factor(assessment: Assessment) -> LeastFactor | None:
-    """Minimum safety factor over all situations; None if no piece has a breaking load."""
+    """Find the minimum safety factor over all situations; None if no piece has a breaking load."""
     found = []
     for stand, situation in ((one, each) for one in assessment.stands for each in one.situations):
         if situation.result is None:

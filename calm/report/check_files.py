@@ -1,4 +1,4 @@
-"""A design check as JSON and as CSV."""
+"""Results of a design check as JSON and CSV files."""
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import asdict
@@ -28,13 +28,14 @@ from calm.report.result_files import members
 from calm.version import __version__
 
 MUCH_USED = 0.5
-"""Utilisation from which a finding that passes is listed though another governs its rule."""
+"""Utilisation above which a passing finding is listed even if it does not govern its rule."""
 
 
 def listed_findings(
     assessment: Assessment, *, every: bool = False
 ) -> Iterator[tuple[Finding, bool]]:
-    """Yield the listed findings of a mooring, and whether each governs its rule.
+    """Yield the findings to list for a mooring, each with a flag that is true if the finding
+    governs its rule.
 
     The governing finding of each rule is listed, and the governing finding of each rule and
     component over all environments, unless it passes with a utilisation below `MUCH_USED`.
@@ -63,7 +64,7 @@ def _listed_as(finding: Finding) -> Hashable:
 
 
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
-    """Return the JSON object of a design check; None for anything that could not be solved.
+    """Return the JSON object of a design check; null for results without a solution.
 
     Parameters
     ----------
@@ -120,12 +121,14 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
 
 
 def limit_document(key: LimitKey) -> dict[str, Any]:
-    """The JSON object of a limit as used."""
+    """Return the JSON object of a limit and its value in this check."""
     return members(key, "name", "value", "default", "source", "departs")
 
 
 def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
-    """Yield findings, with their probability if those were counted: null without a limit."""
+    """Yield findings as JSON objects. Computed probabilities are included; a finding without a
+    limit has null.
+    """
     for one, leads in listed_findings(assessment, every=every):
         counted = members(one, "probability") if assessment.draws else {}
         yield one.to_dict() | {"governing": leads} | counted
@@ -188,7 +191,7 @@ INVENTORY_HEADER = (
 
 
 def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str:
-    """Write the listed findings as CSV, one mooring after the other; unknown values are empty.
+    """Write the listed findings of all moorings as CSV; unknown values are empty.
 
     Parameters
     ----------
@@ -203,7 +206,9 @@ def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str
 
 
 def inventory_csv(assessments: Sequence[Assessment]) -> str:
-    """A row for every piece and clamp, from the top of each mooring to its anchor."""
+    """Write an inventory as CSV: one row per piece and clamp, from the top of each mooring to its
+    anchor.
+    """
     rows = (
         [each.name, *members(item, *_OF_ITEM).values()]
         for each in assessments

@@ -1,4 +1,6 @@
-"""Design check of many moorings in many environments: a matrix, and a page for each mooring."""
+"""Design check of many moorings in many environments: matrix of utilisations, and one page per
+mooring.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,7 +35,7 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("fish-bite", "slack")
-"""Rules whose limits are of another kind than a load, a depth or an angle: left out of a matrix."""
+"""Rules omitted from the matrix, since their limits are not loads, depths or angles."""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 
@@ -49,7 +51,7 @@ class MatrixCell:
 
 @dataclass(frozen=True)
 class SummaryRow:
-    """Row of a mooring in the summary.
+    """One mooring in the summary: a row of the matrix.
 
     Attributes
     ----------
@@ -73,7 +75,9 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """First environment in which the mooring fails, and the failure; None without failures."""
+        """First environment in which the mooring fails, and the finding that fails; None without
+        failures.
+        """
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.told) for name, cell in cells.items()
@@ -83,7 +87,7 @@ class SummaryRow:
 
 
 def summary_row(assessment: Assessment) -> SummaryRow:
-    """The row of a mooring."""
+    """Create the summary row of a mooring."""
     groups: dict[str, list[Finding]] = {}
     lacking = set()
     for stand in assessment.stands:
@@ -127,7 +131,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
 
 
 def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
-    """Yield the matrix of utilisations, and the governing check of each mooring."""
+    """Yield the matrix of utilisations, and the table with the governing check of each mooring."""
     names, shown, codes = environments_of(rows)
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
@@ -165,7 +169,9 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
-    """Environments of all moorings, those shown (the most severe), and the codes of all."""
+    """List the environments of all moorings, the environments to show (the most severe), and the
+    codes of all.
+    """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
     if len(names) <= _MOST_ENVIRONMENTS:

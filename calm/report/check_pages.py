@@ -1,4 +1,4 @@
-"""Pages 4 to 6 of a design check: checks in full, deployment and recovery, and basis."""
+"""Pages 4 to 6 of a design check: all checks, deployment and recovery, basis."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -56,7 +56,7 @@ from calm.report.sheet import accuracy_text
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield one row per rule, with the governing piece and case, the limit and the remedy."""
+    """Yield the table of all rules: governing piece and case, limit and remedy."""
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
     yield blocks.Heading("Accuracy of these values")
@@ -64,7 +64,7 @@ def checks_page(signed: SignedMooring) -> Iterator[Block]:
 
 
 def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
-    """Tabulate the governing finding of each rule, by decreasing utilisation."""
+    """Tabulate the governing finding of each rule, in order of decreasing utilisation."""
     tags = item_tags(signed)
     rules = [(told_of_rule(found), found) for found in by_rule(findings).values()]
     rules.sort(key=lambda rule: _used_most(rule[0][0]))
@@ -107,13 +107,15 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
 
 
 def _used_most(finding: Finding) -> tuple[float, int]:
-    """Sort key of findings: largest utilisation first, those without one last."""
+    """Sort key that puts findings with the largest utilisation first and those without a
+    utilisation last.
+    """
     used = finding.utilisation
     return 1.0 if used is None else -used, -finding.state.severity
 
 
 _A_DIFFERENCE = 0.1
-"""Smallest difference of two knockdowns that is reported [m]."""
+"""Smallest difference between two knockdowns that is reported [m]."""
 
 
 def _trust(signed: SignedMooring) -> str:
@@ -133,7 +135,7 @@ def _trust(signed: SignedMooring) -> str:
 
 
 def handling_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield launch and recovery in brief, net buoyancy after breaks, and the parts list."""
+    """Yield a summary of launch and recovery, net buoyancy after breaks, and the parts list."""
     assessment = signed.assessment
     if assessment.launch is not None or assessment.recovery is not None:
         yield Beside((_launch(assessment),), (_recovery(assessment),))
@@ -200,12 +202,12 @@ def _recovery(assessment: Assessment) -> Table:
 
 
 def _limit(assessment: Assessment, rule: str) -> str:
-    """Limit of a rule that judges a single value, and its utilisation if available."""
+    """Format the limit of a rule with a single value, and its utilisation if available."""
     return _limit_of([one for one in assessment.findings if one.rule == rule])
 
 
 def _limit_of(found: Sequence[Finding]) -> str:
-    """Limit of the governing one of some findings, and its utilisation if available."""
+    """Format the limit of the governing finding in a group, and its utilisation if available."""
     if not found:
         return ""
     lead = governing(found)
@@ -271,13 +273,13 @@ def _breaks(assessment: Assessment) -> Table:
 
 
 def _runs(numbers: Iterable[str]) -> list[str]:
-    """Join the numbers of clamps on one piece, such as ``7a–7d``."""
+    """Join the item numbers of clamps on one piece, such as ``7a–7d``."""
     groups = groupby(dict.fromkeys(numbers), lambda one: re.sub(r"\D.*", "", one))
     return [run_of([*own]) for _, own in groups]
 
 
 def _inventory(signed: SignedMooring) -> Table:
-    """Tabulate number, length, mass and weight of each component, with item numbers."""
+    """Tabulate number, length, mass and weight of each component type, with item numbers."""
     items = signed.assessment.inventory
     numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
     unit = LOAD.display_unit
@@ -326,7 +328,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
 
 def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
-    """Yield the limits, environment, exclusions, mooring file, and hash of all inputs."""
+    """Yield the limits, environments, exclusions, mooring file, and hash of all inputs."""
     assessment = signed.assessment
     waters = {
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
@@ -353,9 +355,11 @@ def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
 
 
 _AROUND, _ROW, _LISTED = 95.0, 12.6, 6.5
-"""Height of the headings, of a row of a table, and of a line of the file on the last page [pt]."""
+"""Heights on the last page [pt]: all headings together, a table row, and a line of the mooring
+file.
+"""
 _UNJUDGED = 11
-"""Rows of the environment that are as high as what is not judged."""
+"""Height of the exclusions below the environment table, in rows of that table."""
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:
@@ -391,7 +395,7 @@ def _value(key: LimitKey, value: float | None) -> str:
 
 
 def _in_short(source: str) -> str:
-    """Name of the source of a limit, without quotations."""
+    """Return the name of a limit's source without quotations."""
     head = re.split(r"[:;]", source)[0]
     return head if len(head) <= 45 else head.split(",")[0]
 
@@ -401,7 +405,9 @@ _OF_SURFACE = ("safety_factor.surface", "minimum_reserve")
 
 
 def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
-    """The limits that a rule has used: not those of waves, or of the surface, for others."""
+    """Yield the limits that a rule has used; limits for waves or surface moorings are omitted if
+    they do not apply.
+    """
     assessment = signed.assessment
     waves = any(one.leg.file.environment.waves for one in assessment.stands)
     surface = any(reaches_the_surface(one.leg) for one in assessment.stands if one.result)
@@ -415,7 +421,7 @@ _MOST_LEVELS = 12
 
 
 def _environment(waters: dict[str, Water]) -> Table:
-    """Tabulate the current by level, or the strongest current of each of several environments."""
+    """Tabulate the current by level or, for several environments, the strongest current of each."""
     if len(waters) > 1:
         rows = []
         for name, water in waters.items():
@@ -458,7 +464,7 @@ def _water_note(water: Water) -> str:
 
 
 def _history(file: MooringFile) -> Iterator[Table]:
-    """All revisions, where page one has not room for them."""
+    """List all revisions if page one has no room for them."""
     given = file.document
     if given is not None and len(given.history) > MOST_REVISIONS:
         first = words("Revision", "revision", 0.0), words("Date", "date", 0.0)

@@ -1,4 +1,4 @@
-"""The report of a design check: that of one mooring, or a matrix and a page of each of many."""
+"""Report of a design check: of one mooring, or a matrix and one page per mooring."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -25,13 +25,13 @@ _SIZE = 9.0
 
 @dataclass(frozen=True, kw_only=True)
 class CheckedSection(Section):
-    """The section of a mooring in the report of a design check, with its row of the summary."""
+    """Section of one mooring in the report of a design check, with its row in the summary."""
 
     row: SummaryRow
 
 
 def signed_mooring(assessment: Assessment) -> SignedMooring:
-    """Collect the load cases, open items and input hash of a mooring for its report."""
+    """Collect load cases, open items and input hash of a mooring for its report."""
     files = [one.leg.file for one in assessment.stands]
     items = open_items(assessment)
     return SignedMooring(assessment, load_cases(assessment), items, provenance.input_hash(files))
@@ -62,14 +62,14 @@ def _likelihood(assessment: Assessment) -> Iterator[Block]:
 
 
 def short_section(assessment: Assessment) -> CheckedSection:
-    """One page of a mooring, behind the summary of many."""
+    """Build the single page of a mooring that follows the summary of many moorings."""
     signed = signed_mooring(assessment)
     parts = tuple(_pages([chain(mooring_page(signed), _likelihood(assessment))]))
     return CheckedSection(assessment.name, parts, signed.running(), row=summary_row(assessment))
 
 
 def _pages(pages: Iterable[Iterator[Block]]) -> Iterator[ReportPart]:
-    """A part of each page that has anything on it."""
+    """Yield the report parts, one per page; empty pages are omitted."""
     full = [blocks_ for page in pages if (blocks_ := [*page])]
     for number, page in enumerate(full):
         yield _page([*([PageBreak()] if number else []), *page])
@@ -80,7 +80,9 @@ def _page(shown: Sequence[Block]) -> ReportPart:
 
 
 def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
-    """Build the report of a design check, with a summary first if there are several moorings."""
+    """Build the report of a design check, which begins with a summary if there are several
+    moorings.
+    """
     rows = [each.row for each in sections]
     if len(rows) == 1:
         name = sections[0].name

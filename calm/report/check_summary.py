@@ -37,7 +37,7 @@ from calm.report.open_items import (
 from calm.report.page_one import case_columns, governing_rows, shown_cases
 
 MOST_LINES = 40
-"""Maximum number of lines of a mooring without failures."""
+"""Maximum number of terminal lines for a mooring without failures."""
 _WIDTH = 80
 _FRAME = 7  # lines of the head, of what is beyond, around the items and below them
 _MOST_ITEMS = 12  # open items of a mooring that fails
@@ -46,7 +46,7 @@ _HALF = 0.5  # of the capacity: what is used more has a row
 
 
 def check_part(assessments: Sequence[Assessment]) -> ReportPart:
-    """Summarise a design check; states are legible without colour."""
+    """Build the summary of a design check; states are legible without colour."""
     if len(assessments) > 1:
         return ReportPart("", tuple(_of_many(assessments)))
     return ReportPart("", tuple(_of_one(assessments[0])))
@@ -68,7 +68,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _head(assessment: Assessment) -> Line:
-    """Format the name of the mooring on the left, and its kind on the right."""
+    """Format the name of the mooring on the left and its kind on the right."""
     file = assessment.file
     given = file.document
     document = "" if given is None or not given.id else given.id
@@ -91,13 +91,13 @@ def _verdict(assessment: Assessment) -> Line:
 
 
 def _apart(left: str, right: str) -> str:
-    """Two texts at both ends of a line, or one below the other if they have no room there."""
+    """Format two texts at both ends of a line or, if this is too short, on two lines."""
     gap = _WIDTH - len(left) - len(right)
     return f"{left}{' ' * gap}{right}" if gap > 1 else f"{left}\n{right}"
 
 
 def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
-    """Yield the table of load cases; in a net, values are the maxima over its legs."""
+    """Yield the table of load cases; for a net, values are maxima over the legs."""
     every = load_cases(assessment)
     cases, note = shown_cases(every)
     fallen = [one for one in cases if one.failure is not None]
@@ -130,8 +130,8 @@ def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
 
 
 def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
-    """Yield the checks with the largest utilisation, failures first, and summarise the rest in a
-    line.
+    """Yield the table of checks with the largest utilisation, failures first, and one line about
+    the other checks.
     """
     rows, rest = _rows([*assessment.every_finding()])
     if rows:
@@ -151,7 +151,9 @@ def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
-    """Summarise the utilisation of the remaining checks, and explain case codes of rows above."""
+    """Summarise the utilisation of the checks that are not listed, and explain the case codes of
+    the rows above.
+    """
     most = max((one.utilisation or 0.0 for one in rest), default=None)
     others = [f"all other checks: {percent_text(most)} % or less"] if rest else []
     shown = {one.case[-1] for one in rows if one.case}
@@ -167,7 +169,9 @@ def _title(finding: Finding) -> str:
 
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
-    """Select the findings to show in rows, and return the governing ones of other rules."""
+    """Select the findings for the rows of the table; also return the governing findings of the
+    other rules.
+    """
     failed = governing_of_each_rule(one for one in every if one.state is State.FAIL)
     used = [one for one in governing_rows(every) if one not in failed]
     most = [one for one in used if (one.utilisation or 0.0) >= _HALF or _is_open(one)]
@@ -194,7 +198,7 @@ def _bar(finding: Finding) -> Cell | None:
 
 
 def _found(finding: Finding) -> str:
-    """Format a value without its unit, which the limit has."""
+    """Format the value of a finding without its unit, which is printed with the limit."""
     quantity = QUANTITIES.get(RULES[finding.rule].quantity)
     if finding.value is None or quantity is None:
         return ""
@@ -206,7 +210,7 @@ def _where(finding: Finding) -> str:
 
 
 def _in_short(item: OpenItem) -> OpenItem:
-    """An item without long passages in brackets."""
+    """Shorten an open item by its long passages in brackets."""
     text = without_asides(item.text.replace("\u00a0", " "))
     return replace(item, head=item.head.replace("\u00a0", " "), text=text)
 
@@ -227,7 +231,7 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
 
 
 def _height(block: blocks.Block) -> int:
-    """About how many lines a block takes, with the blank one before it."""
+    """Estimate the number of terminal lines for a block, including the blank line before it."""
     if isinstance(block, blocks.Table):
         heads = max(len(column.heading.split("\n")) + bool(column.unit) for column in block.columns)
         columns = zip(*block.rows, strict=True)
@@ -242,14 +246,14 @@ def _height(block: blocks.Block) -> int:
 
 
 def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
-    """Effects that no check covers."""
+    """Describe the effects that no check covers."""
     waves = any(one.rule == "wave-slack" for one in findings)
     beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
     return (f"Not covered: {', '.join(beyond)}.",)
 
 
 def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
-    """Yield a matrix of maximum utilisations, then the open items of the moorings that fail."""
+    """Yield the matrix of maximum utilisations, then the open items of failing moorings."""
     rows = [summary_row(each) for each in assessments]
     names, kept, codes = environments_of(rows)
     failing = [each for each in assessments if each.verdict is Conclusion.FAILS]

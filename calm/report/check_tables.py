@@ -1,4 +1,4 @@
-"""Tables of the design check: findings, worst findings, and the verdict in words."""
+"""Tables of the design check: findings, worst findings, and the verdict as text."""
 
 import re
 from collections import Counter
@@ -33,7 +33,7 @@ def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
 
 
 def _wording(finding: Finding) -> str:
-    """Text of a finding without its component and values."""
+    """Return the message of a finding without its component and values."""
     text = f"{finding.message} {finding.remedy or ''}"
     if finding.component is not None:
         text = text.replace(finding.component, "")
@@ -66,12 +66,12 @@ def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
 
 
 def named_components(findings: Iterable[Finding]) -> str:
-    """Join the labels of the components of findings."""
+    """Join the component labels of findings."""
     return named(one.component or "whole line" for one in findings)
 
 
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
-    """Count parts by their worst state under each rule, over one or more moorings.
+    """Count parts by their worst state under each rule, for one or several moorings.
 
     A missing value of a component counts once, and so does a cluster in which every float fails or
     warns.
@@ -82,12 +82,12 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
 
 
 GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
-"""States that require action."""
+"""States for which the engineer has to act."""
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """Key of findings that count as one: those of equal pieces in one row of the file, such as a
-    cluster of floats, if they require action.
+    """Key of findings that are counted once: findings with a state in `GRAVE` on equal pieces of
+    one file row, such as a cluster of floats.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -97,7 +97,7 @@ def counted_as(finding: Finding) -> tuple[Hashable, ...]:
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
-    """Tabulate limits with their defaults and sources, changed limits first."""
+    """Tabulate limits with defaults and sources; changed limits come first."""
     departs = Cell("changed", state=State.WARN)
     return table_of(
         title,
@@ -113,7 +113,7 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
-    """Tabulate the number and quantity of each component, with room for spares."""
+    """Tabulate number and quantity of each component, with an empty column for spares."""
     note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
     if any(item.dry_mass is None for item in items):
         note += " ≥ marks a lower bound without the unknown masses: do not plan lifts by it."
@@ -138,7 +138,9 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
 
 
 def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
-    """Sum the known values, and count the unknown ones; a sum of masses is a lower bound."""
+    """Sum the known values, and return the number of unknown ones; a sum of masses is a lower
+    bound.
+    """
     if name == "cut_length":
         items = [each for each in items if each.kind in FLEXIBLE_KINDS]
     known = [value for item in items if (value := getattr(item, name)) is not None]

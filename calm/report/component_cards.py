@@ -23,12 +23,12 @@ _FIRST = ("name", "kind", "role")
 _LAST = ("note", "source", "sources", "searched", "date")
 _ELSEWHERE = ("prefer",)
 _AUTHOR = re.compile(r"[,;] (?![^()]*\))")
-"""Separator after the name of the publisher in a source: a comma outside brackets."""
+"""Pattern for the end of the publisher's name in a source: a comma outside brackets."""
 _HEADING_OF_OTHERS = "other"
 
 
 def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportPart:
-    """One line for each definition, under the name of its family."""
+    """Return one line for each definition, under the name of its product family."""
     rows: list[Any] = []
     last = None
     for identifier, definition in definitions.items():
@@ -113,7 +113,7 @@ def _figures(definition: Defined) -> Iterator[tuple[str, str]]:
 
 
 def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
-    """Yield the derived values of a component, in display units."""
+    """Yield derived values of a component, in display units."""
     if sheet is None:
         return
     yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
@@ -181,7 +181,7 @@ def _say(definition: Defined, name: str) -> str:
 
 
 def _text(name: str, value: Any) -> str:
-    """Format a field in one line, with units; nested values are in brackets."""
+    """Format a field in one line, with units; nested values are put in brackets."""
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
     if isinstance(value, EstimatedFigure):
@@ -196,7 +196,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def in_words(missing: MissingFigures) -> str:
-    """Describe the missing values of a component, with unpublished ones last."""
+    """Describe the missing values of a component; values known to be unpublished come last."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"lacks {', '.join(open_yet)}"] if open_yet else []
@@ -205,7 +205,7 @@ def in_words(missing: MissingFigures) -> str:
 
 
 def summarised(missing: Sequence[MissingFigures]) -> str:
-    """Return how many components lack which figure."""
+    """Return the number of components with missing values, and the number for each value."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack values: {figures}"
@@ -214,7 +214,9 @@ def summarised(missing: Sequence[MissingFigures]) -> str:
 def to_objects(
     findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
 ) -> list[dict[str, Any]]:
-    """List findings, then missing values: `id`, `finding`, `message`, `missing`, `searched`."""
+    """Return JSON objects of the findings, followed by those of missing values: `id`, `finding`,
+    `message`, `missing`, `searched`.
+    """
     wrong = [(one.id, True, one.message, (), ()) for one in findings]
     lacking = [(one.id, False, in_words(one), one.figures, one.searched) for one in missing]
     return [

@@ -1,4 +1,4 @@
-"""The deck of one mooring: its pages, and its sheets as files that a spreadsheet opens."""
+"""Deck documents of one mooring: printed pages, and sheets as spreadsheet files."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -23,7 +23,7 @@ Rows = Iterable[Sequence[object]]
 
 
 def deck_csvs(deck: Deck) -> dict[str, str]:
-    """Return the CSV text of each sheet by name (UTF-8, SI units, empty if unknown)."""
+    """Return the CSV text of each sheet, by sheet name (UTF-8, SI units, empty if unknown)."""
     return {f"{name}.csv": table_csv(*sheet) for name, sheet in deck_sheets(deck).items()}
 
 
@@ -62,7 +62,7 @@ def deck_workbook(deck: Deck) -> bytes:
 
 
 def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
-    """Header and rows of each sheet by name, in SI units; None if unknown."""
+    """Return header and rows of each sheet by name, in SI units; unknown values are None."""
     stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
     lifts = [(stage, one) for stage, each in stages.items() for one in each]
     rows: dict[str, Sequence[Any]] = {
@@ -122,7 +122,7 @@ _COLUMNS = {
         condition=- remarks=item.remark
     """,
 }
-"""Columns of each sheet: a heading, then `=` and the attribute if its name differs.
+"""Columns of each sheet: a heading, then `=` and the name of the attribute if the two differ.
 
 A column with `-` is filled in by hand; a column without an attribute shows the object that precedes
 each item.
@@ -137,11 +137,11 @@ _INDEX: dict[str, Callable[[Any], int]] = {
     "deployment": lambda one: one[1].index,
     "recovery": lambda one: one[1].item.index,
 }
-"""For each sheet with a last column `leg`, the function from a row to the index of its piece."""
+"""Function from a row to the index of its piece, for each sheet whose last column is `leg`."""
 
 
 def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
-    """The head of a sheet and its rows."""
+    """Return the header and the rows of a sheet."""
     named = [column.partition("=") for column in columns.split()]
     heads = [head for head, _, _ in named]
     numbered = int(named[0][1:] == ("=", ""))
@@ -192,17 +192,17 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
 
 
 def net_svg(deck: Deck) -> str:
-    """A net from the side and from above."""
+    """Draw a net from the side and from above, as SVG."""
     return line_drawing(deck.result)
 
 
 def diagram_report(deck: Deck, paper: Paper) -> Report:
-    """The diagram alone."""
+    """Build a report of the mooring diagram alone."""
     return Report(deck.file.name, "mooring diagram", (), (), provenance.date(), plates(deck, paper))
 
 
 def plates(deck: Deck, paper: Paper) -> tuple[Figure, ...]:
-    """The pages of the diagram."""
+    """Return the pages of the mooring diagram."""
     pages = diagram_pages(deck, paper)
     return tuple(
         Figure(f"Mooring diagram, {number} of {len(pages)}", svg)

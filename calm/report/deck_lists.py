@@ -29,7 +29,7 @@ _BOX = "☐"
 
 
 def cutting_part(deck: Deck) -> ReportPart:
-    """Lengths, marks, and how exactly they have to be."""
+    """Build the cutting list: lengths, marks, and their tolerances."""
     rows: list[Any] = []
     kinds = {one.label: one for one in deck.parts}
     clusters = {one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items}
@@ -69,7 +69,7 @@ def cutting_part(deck: Deck) -> ReportPart:
 
 
 def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
-    """Format the row of equal cuts."""
+    """Create the row for pieces of equal cut length."""
     cut, last, length = cuts[0], cuts[-1], QUANTITIES["length"]
     many = f"{len(cuts)} × " if len(cuts) > 1 else ""
     load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
@@ -87,7 +87,7 @@ def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
 
 
 def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
-    """List the positions of the marks for equal clamps, and the clamped items."""
+    """List the positions of marks for equal clamps, and the items that are clamped there."""
     marks = [*alike]
     places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
@@ -96,7 +96,7 @@ def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
 
 
 def _length() -> Field:
-    """Create a column of lengths, empty for items without a length."""
+    """Create a column of lengths, empty for items that have none."""
     shown = QUANTITIES["length"]
 
     def text(one: Any) -> str | None:
@@ -106,7 +106,7 @@ def _length() -> Field:
 
 
 def hardware_part(deck: Deck) -> ReportPart:
-    """The hardware with its spares."""
+    """Build the hardware bill with spares."""
     rows: list[Any] = []
     for kind, stocks in groupby(deck.hardware, lambda one: one.kind):
         rows += [Cell(kind), *stocks]
@@ -130,7 +130,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 
 def shipping_part(deck: Deck) -> ReportPart:
-    """Build the shipping list, with the number of values missing in each sum."""
+    """Build the shipping list; each sum states the number of missing values."""
 
     def at_least(heading: str, name: str, value: str, missing: str) -> Field:
         shown = QUANTITIES[name]
@@ -163,7 +163,7 @@ def shipping_part(deck: Deck) -> ReportPart:
 
 
 def lifts_part(deck: Deck) -> ReportPart:
-    """The stages of deployment and recovery."""
+    """Build the table of lifts, the stages of deployment and recovery."""
     said, heaviest, unknown = [], deck.lifts.heaviest, deck.lifts.unknown
     if heaviest is not None:
         said.append(
@@ -189,7 +189,7 @@ def lifts_part(deck: Deck) -> ReportPart:
 
 
 def _stages(deck: Deck) -> blocks.Table:
-    """Tabulate each lift once, with the suspended load during deployment and during recovery."""
+    """Tabulate each lift once, with the suspended loads during deployment and recovery."""
     joints = {one.label for one in deck.parts if one.is_joint}
     recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(
@@ -206,7 +206,9 @@ def _stages(deck: Deck) -> blocks.Table:
 
 
 def instruments_part(deck: Deck) -> ReportPart:
-    """Tabulate every instrument and release: its depth, and its data in the file."""
+    """Build the instrument sheet: every instrument and release, its depth, and its data from the
+    file.
+    """
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
     planned = any(one.item.planned_depth is not None for one in deck.instruments)
     rows: list[Any] = []

@@ -27,13 +27,15 @@ from calm.report.sheet import leg_titles
 
 _BOX = Cell("☐")
 _BLANK = Cell("\u00a0", "\u00a0")
-"""Room to write, as high as two lines of text."""
+"""Writing space as high as two lines of text."""
 _LEAST = 9.0
-"""Size of the texts of a log, which is read and filled in on deck [pt]."""
+"""Font size of the logs, which are read and filled in on deck [pt]."""
 
 
 def deployment_part(deck: Deck) -> ReportPart:
-    """Build the deployment log: preparations, order over the side, and anchor position."""
+    """Build the deployment log: preparations, order of deployment over the side, and anchor
+    position.
+    """
     last = deck.order is Order.ANCHOR_LAST
     said = (
         ("Anchor-last deployment: the top" if last else "Anchor-first deployment: the lower end")
@@ -63,7 +65,7 @@ def deployment_part(deck: Deck) -> ReportPart:
 
 
 def recovery_part(deck: Deck) -> ReportPart:
-    """Build the recovery log: events at the release, and the order of surfacing."""
+    """Build the recovery log: release events, and the order of surfacing."""
     rise = deck.rise
     said = []
     if deck.result.several:
@@ -140,7 +142,7 @@ def _station(deck: Deck, day: str) -> Table:
 
 
 def _deployed(deck: Deck) -> tuple[str, str, str]:
-    """Date, position and depth as deployed; "" if unknown."""
+    """Format date, position and depth of the deployment; "" if unknown."""
     deployed = deck.file.deployed
     if deployed is None:
         return "", "", ""
@@ -150,7 +152,7 @@ def _deployed(deck: Deck) -> tuple[str, str, str]:
 
 
 def placed(items: Sequence[DeckItem], deck: Deck) -> str:
-    """Describe clamp positions: from the upper end of their piece, for anchor-first deployment also
+    """Format clamp positions from the upper end of the piece; for an anchor-first deployment, also
     from the lower end.
     """
     places = [at for one in items for at in one.places]
@@ -169,7 +171,7 @@ def _span(values: Sequence[float]) -> str:
 
 
 def _numbers(row: DeckRow, deck: Deck) -> str:
-    """Return the numbers of the items of a row, which are the same on all sheets."""
+    """Return the item numbers in a row, which are the same on all sheets."""
     return run_of([deck.numbers[one.label] for one in (*row.items, *row.floats, *row.joints)])
 
 
@@ -180,7 +182,7 @@ def _piece(row: DeckRow) -> Cell:
 
 
 def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
-    """Tabulate the releases with their codes, and checks with boxes or room to write."""
+    """Tabulate the releases with their codes, and the checks with boxes or writing space."""
     codes = {one.serial: "\n".join(one.code_lines) for one in deck.file.releases}
     rows = []
     for part in deck.parts:
@@ -235,7 +237,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
 
 def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str, list[DeckItem]]]:
-    """Split a list by legs, each with its title."""
+    """Split a list by legs, each under its title."""
     legs = leg_titles(deck.result)
     return [
         (f"{title}: {legs[name]}" if name else title, own)
@@ -300,7 +302,7 @@ def _surfacing(deck: Deck) -> list[Table]:
 
 
 def _expected(items: Sequence[RecoveredItem]) -> Cell:
-    """Format the time at which the first and the last of the items surface, or their depth if they
+    """Format the times at which the first and the last item surface, or the depth of items that
     stay below.
     """
     said = []

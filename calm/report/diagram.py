@@ -1,4 +1,4 @@
-"""The mooring diagram for the wall, over as many pages as it needs, each with its title block."""
+"""Mooring diagram on as many pages as it needs, each with a title block."""
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
@@ -47,27 +47,28 @@ class Paper(StrEnum):
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height [pt]."""
+        """Width and height of the page [pt]."""
         return {"a4": (595.28, 841.89), "a3": (1190.55, 841.89), "letter": (612.0, 792.0)}[self]
 
     @property
     def columns(self) -> int:
-        """Number of columns side by side."""
+        """Number of diagram columns side by side."""
         return 2 if self is Paper.A3 else 1
 
     @property
     def column_width(self) -> float:
-        """Width of one [pt]."""
+        """Width of a diagram column [pt]."""
         return (self.size[0] - 2 * _MARGIN - (self.columns - 1) * _BETWEEN) / self.columns
 
     def left(self, column: int) -> float:
-        """Left edge of a column [pt]."""
+        """Return the left edge of a diagram column [pt]."""
         return _MARGIN + (column % self.columns) * (self.column_width + _BETWEEN)
 
 
 @dataclass(frozen=True)
 class _PageColumn:
-    """Column of a page: its parts, its connections above and below, and its leg.
+    """One column of a page: its parts, its connections to the columns before and after, and its
+    leg.
 
     `above` and `below` are None if the line ends in the sea or on the seabed.
     """
@@ -80,7 +81,7 @@ class _PageColumn:
 
     @property
     def end(self) -> float:
-        """Lower edge of the last part."""
+        """Lower edge of the last part in the column [pt]."""
         return self.parts[-1].top + self.parts[-1].height
 
 
@@ -122,7 +123,8 @@ class _Diagram:
         self.count = -(-len(self.columns) // paper.columns)
 
     def _even(self, legs: Sequence[tuple[LegResult, Sequence[PlacedPart]]]) -> _Stacks:
-        """The columns of all legs; the last takes over parts until it is as long as the first.
+        """Fill the columns of all legs evenly: parts move to the last column until it is as long as
+        the first.
 
         Below its last part there is room for the seabed and the legend, above the title block.
         """
@@ -201,7 +203,7 @@ class _Diagram:
         page.letters(text, top + _CONTINUED / 2, words, size=FONT, bold=True)
 
     def _draw_legend(self, page: Pen, column: int) -> None:
-        """The symbols that are drawn, each in words, at the foot of a column."""
+        """Draw a legend of the symbols used, at the foot of a column."""
         left = self.paper.left(column)
         top = self.bottom + (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
         page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
@@ -218,7 +220,9 @@ class _Diagram:
             page.letters(x + 18.0, y, symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
-        """Draw the framed fields, blank if unknown; `sheet` is a text such as "2 of 5"."""
+        """Draw the framed fields of the title block, blank if unknown; `sheet` is a text such as "2
+        of 5".
+        """
         step, y = (self.paper.size[0] - 2 * _MARGIN) / _COLUMNS[self.paper], self.bottom
         for row in self.fields:
             height = _height(row)
@@ -235,7 +239,7 @@ class _Diagram:
 
 
 def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
-    """Draw the pages as SVG pictures in final size, with no text below 8 pt.
+    """Draw the pages of the diagram as SVG pictures in final size; no text is smaller than 8 pt.
 
     Pages end above a junction if one is near the page end, else between two pieces, else between
     two clamps. Where a line continues, both ends carry the same letter. Long texts wrap and are
@@ -249,7 +253,7 @@ def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
 
 
 def diagram_svg(deck: Deck, paper: Paper) -> str:
-    """Draw all pages of the diagram below each other in one picture."""
+    """Draw all pages of the diagram in one picture, below each other."""
     diagram, (width, height) = _Diagram(deck, paper), paper.size
     drawn = picture(width, height * diagram.count, diagram.title)
     for number in range(diagram.count):
@@ -263,7 +267,7 @@ _TOP = _MARGIN + _TITLE_ROOM + HEAD
 def _columns(
     line: LegResult, parts: Sequence[PlacedPart], lowest: float, marks: Iterator[str]
 ) -> Iterator[_PageColumn]:
-    """The columns of a line or a leg in reading order.
+    """Return the columns of a line or a leg in reading order.
 
     Parameters
     ----------
@@ -285,7 +289,7 @@ def _columns(
 
 
 def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
-    """Split the parts into groups that fit a column, at a junction near its end if possible."""
+    """Split the parts into groups that fit a column; a group ends at a junction if possible."""
     rest = [*parts]
     while rest:
         heights = [*accumulate(one.height for one in rest)]
@@ -297,8 +301,8 @@ def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPar
 
 
 def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room: float) -> int:
-    """Choose the part before which to break: a junction, else a piece, else a clamp, as low as
-    possible.
+    """Choose the part before which a column ends, as low as possible: a junction, else a piece,
+    else a clamp.
     """
     least = (1.0 - _NEAR_THE_END) * room
     near = [each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least]
@@ -316,11 +320,11 @@ _PAD = 4.0
 
 
 _Fields = tuple[tuple[str, tuple[str, ...]], ...]
-"""A row of the title block: names and lines of text."""
+"""One row of the title block: names and lines of text."""
 
 
 def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
-    """The title block of a mooring, row by row, without the number of its page."""
+    """Return the rows of a mooring's title block, without the page number."""
     environment = environment_text(deck.environment).removeprefix("environment ")
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
     columns = _COLUMNS[paper]
@@ -330,7 +334,7 @@ def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
 
 
 def _known(deck: Deck) -> dict[str, str]:
-    """Texts of the anchor weights, the minimum back-up buoyancy, and the verdict."""
+    """Format the anchor weights, the minimum back-up buoyancy, and the verdict."""
     anchors = [one for one in deck.assessment.inventory if one.role == "anchor"]
     if not deck.result.several:
         anchors = anchors[-1:] or [deck.assessment.inventory[-1]]

@@ -1,4 +1,4 @@
-"""Page 2 of a design check: the mooring from the top to the anchor, a row a part."""
+"""Page 2 of a design check: drawing of the mooring from the top to the anchor, one row per part."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import ceil
@@ -15,16 +15,20 @@ from calm.report.page_one import SignedMooring, afloat, drawn_parts
 from calm.report.sheet import leg_title
 
 _SHEET = {"a4": 688.0, "letter": 648.0}
-"""Room for the rows of a drawing [pt]."""
+"""Height available for the rows of a drawing [pt], by paper size."""
 _WORDS, _DEPTHS = 322.0, 38.0  # width of the words of a row with the depths, and of a depth
 _LINE_HEIGHT = 9.6
 _BOLD, _REGULAR, _WRAPPED = 0.70, 0.77, 1.08
-"""Width of letters over the bound of `text_width`, and of several lines over that of one."""
+"""Estimated text width as a ratio to the bound of `text_width`: bold and regular type; and, for
+wrapped text, the ratio of all lines together to a single line.
+"""
 _SEA_ROW = 16.0
 
 
 def drawing_pages(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
-    """Yield the mooring drawing, top to anchor, one row per part, on one or more sheets."""
+    """Yield the mooring drawing from the top to the anchor, one row per part, on one or more
+    sheets.
+    """
     if not signed.standing:
         return
     numbers = item_numbers(*signed.standing[0].results)
@@ -110,7 +114,7 @@ def _sheets(
 
 
 def _length(items: Sequence[DeckItem], given: str) -> str:
-    """Cut length of a row, or the position of a clamp."""
+    """Format the cut length of a piece, or the position of a clamp."""
     if items[0].on is not None:
         return place_text(items[0].places[0]).removesuffix(".00")
     return " ".join(word.removesuffix(".00") for word in given.split(" "))
@@ -137,8 +141,8 @@ def _end_row(picture: str, name: str, depth: str, cases: int, planned: bool) -> 
 def _row(
     part: ShownPart, width: float, *, first: bool, last: bool
 ) -> tuple[float, tuple[Cell, ...]]:
-    """Return the height and cells of a row; `width` is that of its words. Junctions are set in
-    small letters.
+    """Return the height and cells of a row; `width` is that of its text column. Junctions are in
+    small type.
     """
     (row,) = part.rows
     height = max(row_height(part), _LINE_HEIGHT * _lines(row, part, width) + 3.0)
@@ -154,7 +158,7 @@ def _row(
 
 
 def _lines(row: TextRow, part: ShownPart, width: float) -> int:
-    """Number of lines that the words of a row take in a width."""
+    """Return the number of lines that the text of a row needs in a given width."""
     if part.junction:
         told = _REGULAR * text_width(row.label, 8.0)
     else:
@@ -166,7 +170,7 @@ def _lines(row: TextRow, part: ShownPart, width: float) -> int:
 def _broken(
     heights: Sequence[float], breaks: Sequence[int], room: float
 ) -> Iterator[tuple[int, int]]:
-    """Yield the rows of each sheet; sheets end above a junction if one is near the foot."""
+    """Yield the rows of each sheet; a sheet ends above a junction if one is near its foot."""
     begin = 0
     while begin < len(heights):
         end, used = begin, 0.0

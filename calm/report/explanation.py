@@ -1,4 +1,5 @@
-"""Explanation of a line: its weights, the causes of its knockdown, and the effect of changes.
+"""Report on an explained mooring: its weights, the causes of its knockdown, and the effect of
+changes.
 
 Formats the facts of a result, an explanation, a sizing, and a comparison of two designs.
 """
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from calm.checks.comparison import Compared, Comparison
 
 SMALLEST_SHARE = 0.005
-"""Share of a total below which drag forces are summed in one row."""
+"""Fraction of a total below which drag forces are summed in one row."""
 
 _SHARES = (
     "Shares: all drag forces are increased together from zero to their full value, and each is "
@@ -39,7 +40,7 @@ _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """Describe the rise of a mooring after release, and its mass, each with a title."""
+    """Describe the rise of a mooring after release, and its mass; each description has a title."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -70,7 +71,7 @@ def _rise(result: LegResult) -> str:
 
 
 class _Shown(NamedTuple):
-    """A figure to show: its name in `Figures`, how it is headed, its quantity, unit and scale."""
+    """A value to print: its name in `Figures`, heading, quantity, unit and scale."""
 
     name: str
     heading: str
@@ -79,7 +80,9 @@ class _Shown(NamedTuple):
     scale: float = 1.0
 
     def decimals(self, whole: float) -> int:
-        """Decimals of the quantity, or more if three digits of the total require it."""
+        """Number of decimals of the quantity, or more if the total would have fewer than three
+        digits.
+        """
         usual = QUANTITIES[self.quantity].decimals if self.scale == 1.0 else 1
         if whole == 0.0:
             return usual
@@ -91,7 +94,7 @@ class _Shown(NamedTuple):
         return f"{value * self.scale:z.{self.decimals(value)}f}"
 
     def growth(self, now: Figures, then: Figures | None) -> str:
-        """Format the increase of the value."""
+        """Format the increase of the value relative to another value."""
         before, after = getattr(now, self.name), then and getattr(then, self.name)
         if after is None:
             return "-"
@@ -115,7 +118,7 @@ _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
 
 
 def explanation_part(explanation: Explanation) -> ReportPart:
-    """Report the shares of the drag forces, and the effect of changes.
+    """Report the contributions of the drag forces, and the effects of changed inputs.
 
     Drag forces with very small shares are combined in one row; the JSON document lists each. Fits
     80 columns.
@@ -199,11 +202,11 @@ _ROWS = (
     ("horizontal", "horizontal", "  horizontal"),
     ("required_weight", "required_weight", "anchor weight required"),
 )
-"""Rows: name in `Figures`, quantity, words."""
+"""Rows of the table: name in `Figures`, quantity, printed name."""
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """Report the change that meets a target, and its other effects."""
+    """Report the change that meets a target, and the other effects of this change."""
     assert sizing.after is not None
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
@@ -220,7 +223,7 @@ def sizing_part(sizing: Sizing) -> ReportPart:
 
 
 def refusal(sizing: Sizing) -> str:
-    """Return why a target is not met, and what to do, in a line."""
+    """Return one line with the reason why a target is not met, and advice."""
     return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
 
 
@@ -262,14 +265,14 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
 
 
 def _place_told(trial: Trial) -> str:
-    """Label of the part of a net whose depth and excursion are shown."""
+    """Return the label of the part in a net whose depth and excursion are shown."""
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)
     return next((part.label for part in parts if part.place == trial.place), parts[0].label)
 
 
 def comparison_part(comparison: Comparison) -> ReportPart:
-    """The differences, then the figures side by side."""
+    """Report the differences between two designs, followed by their values side by side."""
     return ReportPart(" → ".join(comparison.names), tuple(_blocks(comparison)))
 
 
@@ -298,7 +301,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
 def _figures(
     title: str, names: tuple[str, str], figures: Sequence[Compared], *, all_rows: bool = False
 ) -> Table:
-    """Tabulate values side by side, and count the unchanged ones."""
+    """Tabulate the values of two designs side by side, and give the number of unchanged values."""
     rows = [_figure(one) for one in figures]
     shown = [row for row in rows if all_rows or row[2].text != row[3].text]
     same = len(rows) - len(shown)
@@ -333,7 +336,7 @@ def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
 
 
 def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
-    """Format a value; an unknown margin shows the state of its rule."""
+    """Format a value; for an unknown margin, the state of its rule."""
     if isinstance(value, str):
         return value
     if value is None or quantity is None:

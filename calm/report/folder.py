@@ -1,4 +1,4 @@
-"""Files and folders of reports: looked at before anything is solved, and whole or not there.
+"""Report files and folders: checked before any computation, and written completely or not at all.
 
 A report as PDF is set by typst.
 """
@@ -20,11 +20,11 @@ from calm.report.provenance import moment
 from calm.whole_file import put
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
-"""Files that a design check writes into the folder."""
+"""Names of the files that a design check writes into the folder."""
 
 
 def check_folder(folder: Path) -> None:
-    """Reject a folder that cannot be written, before computing anything.
+    """Raise an exception if a folder cannot be written, before any computation.
 
     Raises UsageError if the path, or the nearest existing parent, is not a folder or is not
     writable.
@@ -83,13 +83,13 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def write_pages(folder: Path, name: str, report: Report) -> None:
-    """Write a report as a page and as a PDF of a name, as a set like `write_report`."""
+    """Write a report as HTML page and PDF with a given base name, as a set like `write_report`."""
     files = {f"{name}.html": page(report).encode(), f"{name}.pdf": printed(report)}
     write_report(folder, files)
 
 
 def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) -> None:
-    """Take away the new files that have taken their place, and put the old ones back."""
+    """Remove the new files that are already in place, and restore the old ones."""
     for name, part in parts.items():
         if not part.exists():
             (folder / name).unlink(missing_ok=True)
@@ -98,7 +98,7 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 
 
 def check_destination(path: Path) -> None:
-    """Reject a file that cannot be written, before computing anything.
+    """Raise an exception if a file cannot be written, before any computation.
 
     Raises UsageError if the folder does not exist, or if the file or its folder is not writable.
     """
@@ -112,7 +112,7 @@ def check_destination(path: Path) -> None:
 
 
 def write_file(path: Path, content: bytes) -> None:
-    """Write a file atomically: a reader sees either the old content or the new.
+    """Write a file atomically: readers see either the old content or the new.
 
     Devices and pipes are written directly, and symbolic links are preserved. Raises UsageError if
     the system rejects the file, e.g. because the disk is full; the old file is then unchanged.
@@ -152,13 +152,13 @@ def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = No
 
 
 def pdf_leaf(part: Report | Section) -> str:
-    """Convert a report or a section to the JSON text that the template reads."""
+    """Convert a report or a section to the JSON text for the PDF template."""
     text = legible(json.dumps(part, default=_members, ensure_ascii=False))
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _members(part: Any) -> dict[str, Any] | str:
-    """Convert a part of the report to a dictionary with its kind, for the template.
+    """Convert a part of the report to a dictionary with its kind, for the PDF template.
 
     A section is reduced to its printed members, and a cell with text only becomes that text.
     """

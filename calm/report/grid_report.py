@@ -48,7 +48,7 @@ def grid_report(output: Path, record: GriddedRecord) -> Report:
 
 
 def grid_document(record: GriddedRecord) -> dict[str, Any]:
-    """Return the JSON object: scales of each quantity [m, s], and the cards of the files."""
+    """Return the JSON object: scales of each quantity [m, s], and the data cards of the files."""
     return {
         "quantities": {
             name: {
@@ -64,7 +64,7 @@ def grid_document(record: GriddedRecord) -> dict[str, Any]:
 
 
 def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
-    """Report for a terminal."""
+    """Build the report for a terminal."""
     return ReportPart("", (scales_table(fields),))
 
 
@@ -92,7 +92,7 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
 
 
 def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple[str, ...]:
-    """Return sentences to paste into the methods of a cruise report."""
+    """Return sentences for the methods section of a cruise report."""
     return (
         f"{', '.join(fields)} at the estimated depths of the instruments were mapped to "
         f"{len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m by a Gaussian process "
@@ -120,7 +120,7 @@ def _hours(field: GriddedQuantity) -> str:
 def _section(
     name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
-    """A section over time, the deviation below it."""
+    """Draw a section of depth over time, with the deviation below it."""
     drawing = empty_figure(_WIDTH, 2 * _HEIGHT)
     drawing.subplots_adjust(0.08, 0.07, 0.98, 0.96, hspace=0.25)
     upper, lower = drawing.subplots(2, 1, sharex=True)

@@ -1,4 +1,4 @@
-"""Tables of the probability with which designs exceed a limit."""
+"""Tables of the probability that a limit is exceeded, by design."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import inf
@@ -16,7 +16,9 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """Tabulate the designs by decreasing maximum probability, if probabilities were computed."""
+    """Tabulate the designs in order of decreasing maximum probability, if probabilities were
+    computed.
+    """
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):
@@ -55,7 +57,7 @@ def _place(finding: Finding) -> str:
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
-    """Select the finding of each rule with the largest probability, largest first."""
+    """Select the most probable finding of each rule, in order of decreasing probability."""
     counted = by_rule(one for one in findings if one.probability is not None)
     groups = (counted[name] for name in RULES if name in counted)
     found = (max(group, key=lambda one: one.probability or 0.0) for group in groups)

@@ -60,7 +60,7 @@ def _known(value: float | None) -> float | None:
 
 
 def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """Tabulate each cable, instrument, float, release and anchor; equal floats share a row."""
+    """Tabulate cables, instruments, floats, releases and the anchor; equal floats share a row."""
     groups: list[list[PieceEnvelope]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
@@ -125,8 +125,8 @@ _Show = Callable[[PieceEnvelope], object]
 def _most_used(
     group: Sequence[PieceEnvelope], when: Literal["standing", "launch"] = "standing"
 ) -> PieceEnvelope:
-    """Select the piece with the largest utilisation in equilibrium or during launch; without one,
-    that of the largest tension.
+    """Select the piece with the largest utilisation in equilibrium or during launch or, without
+    utilisations, with the largest tension.
     """
 
     def used(one: PieceEnvelope) -> tuple[float, float]:
@@ -148,7 +148,9 @@ def _bar(finding: Finding | None) -> Cell | None:
 
 
 def _use(finding: Finding | None) -> Cell | None:
-    """Format the utilisation of a load, with a sign for accepted, warning, unknown or failed."""
+    """Format the utilisation of a load, with a sign for the states accepted, warning, unknown and
+    failed.
+    """
     if finding is None:
         return None
     signs = {State.ACCEPTED: "○", State.UNKNOWN: "?", State.FAIL: "✗", State.WARN: "▲"}
@@ -158,7 +160,9 @@ def _use(finding: Finding | None) -> Cell | None:
 
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """A row of each type, with the pieces that are used most in equilibrium and in the launch."""
+    """Tabulate the hardware by type, with the most utilised pieces in equilibrium and during
+    launch.
+    """
     groups = grouped_by(loads, lambda one: one.row.use).values()
     rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
@@ -189,7 +193,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
-    """Tabulate the anchor load of each case, or the most severe case of each anchor of a net."""
+    """Tabulate the anchor load of each case; for a net, the most severe case of each anchor."""
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored
     ]

@@ -23,7 +23,7 @@ from calm.files.pieces import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 LOAD = QUANTITIES["load"]
-"""Force in tables: kN to 0.01, or the unit chosen by the user."""
+"""Quantity for forces in tables: in kN with two decimals, or in the unit that the user chose."""
 
 
 def load_text(value: float | None) -> str:
@@ -58,12 +58,12 @@ class LoadCase:
 
     @property
     def as_given(self) -> bool:
-        """Whether the environment is unchanged."""
+        """Whether the load case has the environment of the file, without changes."""
         return self.situation == AS_GIVEN
 
     @property
     def words(self) -> str:
-        """The case in words."""
+        """Description of the load case."""
         name = "Design current" if self.environment == OWN else self.environment
         if self.situation in (STILL, STILL_LOW):
             return self.situation.capitalize()
@@ -76,7 +76,7 @@ class LoadCase:
 
     @cached_property
     def rows(self) -> Mapping[str, ComponentRow | ClampRow]:
-        """Every piece and clamp by its label."""
+        """All pieces and clamps by label."""
         every: list[ComponentRow | ClampRow] = []
         for result in self.results:
             for piece, clamps in rows_down(result):
@@ -85,18 +85,18 @@ class LoadCase:
 
     @property
     def depth(self) -> float:
-        """The least of all tops [m]."""
+        """Minimum depth of all line tops [m]."""
         return min(one.top.depth for one in self.results)
 
     @property
     def knockdown(self) -> float:
-        """Maximum knockdown of all tops [m]; 0 if none is known."""
+        """Maximum knockdown of all line tops [m]; 0 if no knockdown is known."""
         known = [one.top.knockdown for one in self.results]
         return max((one for one in known if one is not None and not isnan(one)), default=0.0)
 
     @property
     def offset(self) -> float:
-        """Maximum horizontal distance of all tops from the anchor [m]."""
+        """Maximum horizontal distance of all line tops from the anchor [m]."""
         return max(hypot(one.top.x, one.top.y) for one in self.results)
 
     @cached_property
@@ -106,13 +106,13 @@ class LoadCase:
 
     @cached_property
     def factor(self) -> tuple[float, str] | None:
-        """Minimum safety factor, and its piece; None if none is known."""
+        """Minimum safety factor, and the piece concerned; None if no safety factor is known."""
         known = ((row.safety_factor, row.label) for row in self._pieces())
         return min((one for one in known if not isnan(one[0])), default=None)
 
     @cached_property
     def strength(self) -> tuple[float, str] | None:
-        """Maximum ratio of tension to allowable load, and its piece."""
+        """Maximum ratio of tension to allowable load, and the piece concerned."""
         shares = []
         for result in self.results:
             leg = estimated(result.leg)
@@ -125,7 +125,9 @@ class LoadCase:
 
     @cached_property
     def anchor(self) -> tuple[float, str] | None:
-        """The weight required over the weight of an anchor, and the anchor."""
+        """Maximum ratio of the required weight to the weight of an anchor, and the anchor
+        concerned.
+        """
         loads = [
             (one.anchor_load.required_weight / one.anchor_load.weight, one.file.pieces[-1].label)
             for one in self.results
@@ -135,7 +137,7 @@ class LoadCase:
 
     @cached_property
     def tilt(self) -> tuple[float, str] | None:
-        """Maximum tilt of an instrument, and the instrument."""
+        """Maximum tilt of an instrument, and the instrument concerned."""
         tilts = (
             (row.tilt, label)
             for label, row in self.rows.items()
@@ -148,7 +150,9 @@ class LoadCase:
 
 
 def load_cases(assessment: Assessment) -> list[LoadCase]:
-    """The cases of a mooring: each environment as given and changed, still water last, once."""
+    """List the load cases of a mooring: each environment as given and with its changes, and still
+    water once at the end.
+    """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}
     for stand in assessment.stands:
@@ -166,7 +170,7 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
 
 
 def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
-    """Select the case with the deepest top of each environment; still water is kept."""
+    """Select for each environment the case with the deepest top; still water is always kept."""
     kept: dict[str, LoadCase] = {}
     for one in cases:
         key = one.code if one.code.startswith("0") else one.environment
@@ -202,7 +206,7 @@ class PieceEnvelope:
 
 
 def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[PieceEnvelope]:
-    """The envelope of every piece, from the top to the anchor, leg by leg."""
+    """Compute the load envelope of every piece, from the top to the anchor, leg by leg."""
     strong, falling = (found_on(assessment, name) for name in ("strength", "launch-strength"))
     launch, recovery = assessment.launch, assessment.recovery
     standing = [one for one in cases if one.results]
@@ -227,20 +231,20 @@ def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[Piece
 
 
 def _at(figures: np.ndarray, index: int) -> float | None:
-    """A figure of a piece; None of a piece that has none."""
+    """Return the value of a piece; None if there is none."""
     value = float(figures[index]) if index < len(figures) else float("nan")
     return None if isnan(value) else value
 
 
 def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
-    """Map component labels to the governing finding of a rule."""
+    """Map component labels to the governing finding of a given rule."""
     found = (one for one in assessment.every_finding() if one.rule == rule)
     groups = grouped_by(found, lambda one: one.component)
     return {label: governing(group) for label, group in groups.items() if label is not None}
 
 
 def capacity_text(finding: Finding | None) -> str:
-    """Format the allowable load of a piece, with the sign of an estimate; ? if no load is known."""
+    """Format the allowable load of a piece, with a sign for estimates; ? if no load is known."""
     if finding is None:
         return "–"
     sign = "≈\u00a0" if finding.state is State.ESTIMATED else ""

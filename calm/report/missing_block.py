@@ -1,4 +1,4 @@
-"""Missing values that rules need, as a block of YAML to complete."""
+"""YAML block of the missing values that rules need, to be completed by the user."""
 
 import json
 import re
@@ -20,8 +20,8 @@ _HEAD = """\
 _WIDTH = 100
 
 Places = Mapping[str, Sequence[str]]
-"""Places in mooring files by component id, such as ``line 12 of m.yaml``; the places of
-`components:` itself have the key "".
+"""Places in mooring files by component id, such as ``line 12 of m.yaml``. The key "" refers to
+`components:` itself.
 """
 
 
@@ -44,8 +44,7 @@ def definition_places(paths: Iterable[Path]) -> Places:
 
 
 def missing_block(findings: Iterable[Finding], places: Places) -> str:
-    """Create the `components:` section of a mooring file with the missing keys of each component
-    id.
+    """Create the `components:` section of a mooring file, with the missing keys of each component.
 
     Comments name the pieces, give the place of a definition in the file, and for each key an
     example, its meaning, the checks that need it, and its class estimate if there is one. If a file
@@ -73,7 +72,9 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
 
 
 def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
-    """Instructions for definitions of the file, and for components of a catalogue."""
+    """Return instructions for completing the block: for components defined in the file, and for
+    components of a catalogue.
+    """
     defined = {id in places for id in ids}
     below = " and ".join(places.get("", ()))
     told = ["Copy the keys of a component that the file defines into that definition."] * (
@@ -89,7 +90,7 @@ def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
 
 
 def _key(same: Sequence[MissingFigure]) -> list[str]:
-    """Lines of a key that one or several moorings lack."""
+    """Yield the lines for a key that one or several moorings lack."""
     first = same[0]
     field = KINDS[first.kind].model_fields[first.quantity]
     assert field.examples is not None  # every quantity describes itself by an example

@@ -47,7 +47,7 @@ def motion_report(
     notes: Sequence[str],
     cards: Sequence[ReadCard] = (),
 ) -> blocks.Report:
-    """Build the report, with one page on the whole deployment before the details.
+    """Build the report; one page on the whole deployment precedes the details.
 
     Parameters
     ----------
@@ -88,11 +88,11 @@ def motion_report(
 
 
 MOST_PANELS = 12
-"""Maximum number of sensors drawn; withheld sensors have priority."""
+"""Maximum number of sensors drawn; withheld sensors take precedence."""
 
 
 def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple[str, ...]:
-    """Return sentences to paste into the methods of a cruise report."""
+    """Return sentences for the methods section of a cruise report."""
     used, common, time = study.task.measured, study.task.common, series[0].time
     levels = used.u.shape[1]
     by = f"the currents at {levels} levels" if study.plain else "no measured current"
@@ -141,7 +141,7 @@ UNKNOWN = f"Without a current record, the currents are inferred from the pressur
 
 
 def motion_part(study: MotionEstimate, name: str) -> ReportPart:
-    """Factors, sensors, sensors that were hidden, and what to doubt."""
+    """Build the terminal report: common factors, sensors, withheld sensors, and doubts."""
     shown: tuple[blocks.Block, ...] = (
         blocks.Heading(name),
         factors_table(study.factors, study.task.common.datum),
@@ -184,7 +184,9 @@ def health_table(study: MotionEstimate) -> Table:
 
 
 def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
-    """Return the JSON of sensor faults: clocks in [s], gains as factors, all others in [m]."""
+    """Return the JSON of sensor faults: clock errors in [s], gains as factors, all other values in
+    [m].
+    """
     said = []
     for one in diagnosis:
         unit = 3600.0 if one.kind == "clock" else 1.0
@@ -201,7 +203,7 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
 
 
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
-    """The common factors with their intervals."""
+    """Tabulate the common factors with their intervals."""
     rows = [
         (TITLES[name] + (": not drag, see below" if no_drag(name, value) else ""),
          f"{value:.3f}", f"{low:.3f}–{high:.3f}")
@@ -213,7 +215,9 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: MotionEstimate) -> Table:
-    """Tabulate the agreement of sensors with the currents alone, and with the estimate."""
+    """Tabulate the agreement of the sensors with the line computed from currents alone, and with
+    the estimate.
+    """
     rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
         _figure("alone: bias", "bias"), _figure("rms", "rms"),
@@ -230,7 +234,7 @@ def sensors_table(study: MotionEstimate) -> Table:
 
 
 def held_out_table(held_out: Iterable[HeldOut]) -> Table:
-    """Return how well the depths of hidden sensors were estimated."""
+    """Tabulate the errors of the estimated depths at withheld sensors."""
     return table_of(
         "",
         held_out,
@@ -283,13 +287,13 @@ def motion_document(
 
 
 def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[str, Any]:
-    """Each factor with its value and the ends of its interval."""
+    """Return each factor with its value and the ends of its interval."""
     keys = ("value", "low", "high")
     return {name: dict(zip(keys, three, strict=True)) for name, three in factors.items()}
 
 
 def held_out_document(held_out: Iterable[HeldOut]) -> list[dict[str, Any]]:
-    """The hidden sensors."""
+    """Return the results for the withheld sensors."""
     names = ("bias", "rms", "linear_rms", "pchip_rms")
     return [
         {"label": one.label, "n": one.count, **members(one, *names), "coverage_95": one.coverage}
@@ -322,7 +326,9 @@ def _line_of(one: SensorSeries) -> Stroke:
 
 
 def depth_figure(series: Sequence[SensorSeries]) -> str:
-    """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
+    """Draw the depths of each sensor over time: measured, estimated with uncertainty band, and
+    computed from currents alone.
+    """
     apart = 14.0
     tall = max(min(76.0, _PAGE_HEIGHT / len(series) - apart), 36.0)
     page = Graph(_WIDTH, len(series) * (tall + apart) + _BELOW, "Depths of each sensor", _SIZE)
@@ -347,7 +353,7 @@ def _draw_depths(
     *,
     numbered: bool,
 ) -> Axes:
-    """Depths over time, each sensor with its 95 % band behind its curves."""
+    """Draw depths over time, with the 95 % band of each sensor behind its curves."""
     times = [seconds(one.time) for one in series]
     bands = [(one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread)
              for one in series]  # fmt: skip
@@ -369,7 +375,9 @@ def _draw_depths(
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """A row of marks for each level whose current looks false at some of the times (n,)."""
+    """Draw one row of marks per current level, at the times (n,) when the current at this level
+    appears false.
+    """
     names = list(false)
     left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)
     page = Graph(_WIDTH, 14.4 * len(false) + 12.0 + _BELOW, _FALSE, _SIZE)

@@ -26,25 +26,23 @@ from calm.report.blocks import Cell, OpenItem, Span, number, words
 from calm.report.check_tables import joined, named_components
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
-"""States that count as open, in the order of the list."""
+"""States of open items, in the order of the list."""
 
 _EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
-"""Rules whose messages explain their values: differences and shares."""
+"""Rules whose messages explain their values, which are differences or fractions."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
 
 def plain(text: str) -> str:
-    """Format a sentence for print: keys of the file become words, and values do not break from
-    their units.
-    """
+    """Format a message for print: keys become words, and values do not break from their units."""
     text = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
     text = re.sub(r"(?<![\w-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
 
 
 def without_asides(text: str) -> str:
-    """Remove sources and other long passages in brackets."""
+    """Remove sources and other long passages in brackets from a text."""
     return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
 
 
@@ -54,7 +52,9 @@ def short(text: str, most: int) -> str:
 
 
 def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
-    """Format the value or limit of a finding in the unit that both share; "" if it has none."""
+    """Format the value or the limit of a finding, in a unit that suits both; "" if it is
+    missing.
+    """
     value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
     if value is None or quantity is None:
         return ""
@@ -81,11 +81,11 @@ FIGURE_FIELDS = (
     number("Found", figure_text),
     words("Limit", lambda one: limit_text(one) or "–", 0.0),
 )
-"""Columns of findings: utilisation, value and limit."""
+"""Table columns of findings: utilisation, value and limit."""
 
 
 def where_text(finding: Finding) -> str:
-    """The component of a finding, and the code of its case."""
+    """Format the component of a finding, and the code of its load case."""
     component = finding.component or "whole line"
     return f"{component}, {finding.case}" if finding.case else component
 
@@ -124,12 +124,12 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
 
 
 def open_counts(assessment: Assessment) -> Counter[State]:
-    """How many items are open in each state."""
+    """Count the open items by state."""
     return Counter(worst_of(group).state for group in open_groups(assessment))
 
 
 def counts_text(groups: Iterable[Sequence[Finding]]) -> str:
-    """How many items are open in each state, such as ``1 warning, 3 accepted``."""
+    """Format the number of open items by state, such as ``1 warning, 3 accepted``."""
     counts = Counter(worst_of(group).state for group in groups)
     return ", ".join(_counted(counts[state], state) for state in OPEN if counts[state])
 
@@ -145,11 +145,12 @@ STATES = {
     Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
     Conclusion.PASSES: State.PASS,
 }  # fmt: skip
-"""The state as which a conclusion is shown."""
+"""State whose colour and sign a conclusion has."""
 
 
 def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
-    """The verdict in a line, such as ``passes with open items: 1 warning, 3 accepted``.
+    """Format a conclusion and the open items in one line, such as ``passes with open items: 1
+    warning, 3 accepted``.
 
     Parameters
     ----------
@@ -162,7 +163,7 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
 
 
 def assessment_verdict(assessment: Assessment) -> Span:
-    """The verdict of a mooring in a line, with its sign."""
+    """Format the verdict on a mooring in one line, with its sign."""
     use = {one.label: one.use for one in assessment.inventory}
     said = verdict_of(assessment.every_finding(), use)
     sign = "" if said.state is None else f"{said.state.sign} "
@@ -170,7 +171,7 @@ def assessment_verdict(assessment: Assessment) -> Span:
 
 
 def open_items(assessment: Assessment) -> list[OpenItem]:
-    """The items of page one, with a number each."""
+    """Create the numbered open items of page one."""
     groups = open_groups(assessment)
     return [_item(group, number) for number, group in enumerate(groups, 1)]
 
@@ -185,7 +186,7 @@ def _item(group: Sequence[Finding], number: int) -> OpenItem:
 
 
 def _head(group: Sequence[Finding], worst: Finding) -> str:
-    """Heading of an open item: rule, components, and utilisation if known."""
+    """Format the heading of an open item: rule, components, and utilisation if known."""
     labels = list(dict.fromkeys(one.component or "" for one in group))
     of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
@@ -239,7 +240,7 @@ def advice(finding: Finding) -> str:
 
 
 def _once(group: Iterable[Finding]) -> list[Finding]:
-    """A finding of each component."""
+    """Return one finding for each component."""
     return list({one.component: one for one in group}.values())
 
 
@@ -248,8 +249,8 @@ def _capital(text: str) -> str:
 
 
 def draft(assessment: Assessment) -> bool:
-    """Whether a report must not be signed, because it lacks its number, revision or date, or relies
-    on an acceptance of an example.
+    """Return whether a report must not be signed, because its number, revision or date is missing,
+    or it relies on an acceptance of an example.
     """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))
@@ -257,8 +258,8 @@ def draft(assessment: Assessment) -> bool:
 
 
 def verdict_sentence(assessment: Assessment) -> str:
-    """The verdict in a sentence: causes, not findings, and every use over 100 % that does not
-    fail.
+    """Describe the verdict in a sentence, with the causes of open items, and every utilisation over
+    100 % that is not a failure.
     """
     groups = open_groups(assessment)
     counts = Counter(governing(group).state for group in groups)
@@ -297,5 +298,5 @@ def _many(count: int, word: str) -> str:
 
 
 def verdict_words(conclusion: Conclusion) -> str:
-    """The verdict over the sentence."""
+    """Return the short verdict that is printed above the sentence."""
     return _capital(conclusion.words)

@@ -58,7 +58,7 @@ MARKS = {
 MOST_REVISIONS = 3
 
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
-"""Height of a page between its head and its foot [pt]."""
+"""Height of a page between header and footer [pt]."""
 _FIXED, _ROW = 250.0, 12.6
 _LINE = 100  # letters of the verdict
 _PLACE = 15  # letters of a label below a column of the load cases
@@ -68,7 +68,7 @@ _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 @dataclass(frozen=True)
 class SignedMooring:
-    """Mooring with all data for its printed report.
+    """Mooring with all data of its printed report.
 
     Attributes
     ----------
@@ -84,17 +84,17 @@ class SignedMooring:
 
     @property
     def standing(self) -> list[LoadCase]:
-        """The cases in which it has an equilibrium."""
+        """Load cases for which there is an equilibrium."""
         return [one for one in self.cases if one.results]
 
     @cached_property
     def apart(self) -> frozenset[str]:
-        """Labels of connecting hardware with a row of its own."""
+        """Labels of connecting hardware with a separate row."""
         return standing_out(self.assessment.every_finding())
 
     @property
     def document(self) -> str:
-        """Document number and revision; "" if there is none."""
+        """Document number and revision; "" without a number."""
         given = self.assessment.file.document
         if given is None or not given.id:
             return ""
@@ -102,7 +102,7 @@ class SignedMooring:
 
     @property
     def verdict(self) -> str:
-        """The verdict in the head of every page."""
+        """Verdict in the header of every page."""
         said = self.assessment.verdict
         return f"DRAFT, {said.words}" if draft(self.assessment) else verdict_words(said)
 
@@ -117,7 +117,7 @@ class SignedMooring:
 
 
 def title_block(signed: SignedMooring) -> TitleBlock:
-    """The block at the head of page one; a field that nobody gives is empty."""
+    """Create the title block of page one; missing fields are empty."""
     file = signed.assessment.file
     given, position, depth = file.document, file.position, file.environment.depth
 
@@ -145,7 +145,7 @@ def title_block(signed: SignedMooring) -> TitleBlock:
 
 
 def verdict_box(signed: SignedMooring) -> Prose:
-    """The verdict, and why."""
+    """Create the box with the verdict and its reasons."""
     head = f"{verdict_words(signed.assessment.verdict)}: "
     state = signed.assessment.state
     return Prose(((Span(head, state), Span(verdict_sentence(signed.assessment))),), state)
@@ -162,7 +162,7 @@ class _Figure:
     short: str | None = None
 
     def value(self, case: LoadCase) -> tuple[float, str] | None:
-        """Value in a case, and the component concerned."""
+        """Return the value in a load case, and the component concerned."""
         found = self.of(case) if case.results else None
         return found if found is None or isinstance(found, tuple) else (found, "")
 
@@ -179,7 +179,7 @@ class _Figure:
 
 
 def _whole(name: str) -> Quantity:
-    """A quantity in metres without decimals, as page one has depths."""
+    """Return a quantity in metres without decimals, as used for depths on page one."""
     return QUANTITIES[name]
 
 
@@ -208,13 +208,13 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Columns of load cases that have a value in any case, without bold cells."""
+    """Return the columns of load cases that have at least one value; no cell is bold."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
 
 def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
-    """Select the cases that fit a table, and describe the omitted ones."""
+    """Select the load cases that fit a table, and describe the omitted ones."""
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
@@ -227,7 +227,7 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
 
 
 def cases_table(signed: SignedMooring) -> Table:
-    """Tabulate the load cases; governing values are bold, their components in the last row."""
+    """Tabulate the load cases. Governing values are bold; the last row names their components."""
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
@@ -260,8 +260,8 @@ def cases_table(signed: SignedMooring) -> Table:
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
-    """Governing finding of each rule that has a utilisation, largest first; `release-load` is
-    omitted if it repeats `strength`.
+    """List the governing finding of each rule that has a utilisation, largest first. `release-load`
+    is omitted if it repeats `strength`.
     """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
@@ -297,7 +297,7 @@ def governing_table(signed: SignedMooring) -> Table:
 
 
 def check_fields(longest: int) -> tuple[blocks.Field, ...]:
-    """Columns of findings with a bar; labels are cut to `longest` characters."""
+    """Return the table columns of findings, with a bar; labels are cut to `longest` characters."""
     return (
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Check", lambda one: RULES[one.rule].title, 1.15),
@@ -308,7 +308,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
 
 
 def sign_off(signed: SignedMooring) -> SignOff:
-    """Create the revisions, latest first, and the signature boxes."""
+    """Create the table of revisions, latest first, and the signature boxes."""
     given = signed.assessment.file.document
 
     def field(name: str) -> str:
@@ -328,7 +328,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
 
 
 def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
-    """The blocks of page one; its figure has the height that the tables leave."""
+    """Return the blocks of page one; the figure fills the height that the tables leave free."""
     cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
@@ -370,13 +370,13 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
 
 
 def _round(value: float) -> str:
-    """A scale to three digits, such as 17 000."""
+    """Round a scale to three digits, such as 17 000."""
     return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u00a0")
 
 
 def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
-    """Select the labels next to the line: floats, instruments, releases and anchors, and the lines
-    between them if there is room.
+    """Select the labels beside the line: floats, instruments, releases and anchors, and if there is
+    room the line sections between them.
     """
     tags: dict[str | None, str] = {}
     for (_, label), tag in item_tags(signed).items():
@@ -412,14 +412,14 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
 
 
 def afloat(result: LegResult) -> bool:
-    """Whether a leg's own top is at the surface."""
+    """Return whether a leg's own top is at the surface."""
     return result.type == "surface" and result.leg.top.free
 
 
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """Parts of a leg as drawn, with runs of names shortened."""
+    """Return the parts of a leg as drawn; repeated names are shortened."""
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
@@ -431,7 +431,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """The mark and number of the first item of each rule and component."""
+    """Return the mark and the number of the first open item for each rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

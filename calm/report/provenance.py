@@ -39,7 +39,8 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 
 
 def moment() -> datetime | None:
-    """Time given by SOURCE_DATE_EPOCH, in UTC; None if unset. Reports contain no other date.
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if unset. Reports contain no other
+    date.
 
     Raises UsageError if it is not a number of seconds within the range of the calendar.
     """
@@ -52,13 +53,13 @@ def moment() -> datetime | None:
 
 
 def date() -> str | None:
-    """The day of `moment`, such as 2026-11-21."""
+    """Return the day of `moment`, such as 2026-11-21."""
     when = moment()
     return None if when is None else when.date().isoformat()
 
 
 def report_of(title: str, subtitle: str, *parts: ReportPart, name: str = "") -> Report:
-    """Create a report with one section, dated by `date` and called `name` or `title`."""
+    """Create a report with one section, dated by `date` and named `name` or `title`."""
     return Report(title, subtitle, (), (blocks.Section(name or title, parts),), date())
 
 
@@ -71,7 +72,7 @@ def source_text(file: MooringFile) -> str | None:
 
 
 def file_name(file: MooringFile) -> str:
-    """The name of the mooring file without its folder."""
+    """Return the name of the mooring file without its folder."""
     return Path(file.path).name
 
 
@@ -115,10 +116,10 @@ UNSEEN = (
     "a surface mooring, and a safety factor on static tension does not replace their analysis.",
     f"Also excluded: {'; '.join(_ALSO_EXCLUDED)}.",
 )
-"""Exclusions printed in every report."""
+"""Statements on excluded effects that every report contains."""
 
 BY_WAVES = ("waves", "fatigue due to waves")
-"""Effects that are checked if environments have `waves:`."""
+"""Effects that are excluded unless environments have `waves:`."""
 
 UNJUDGED = (
     *BY_WAVES, "snap loads", "fatigue due to vortices", "creep, corrosion and wear",
@@ -127,15 +128,15 @@ UNJUDGED = (
 """Effects that no rule checks, for the JSON of a design check."""
 
 NOT_JUDGED = ReportPart("Not covered by this check", (Prose(UNSEEN, State.UNKNOWN),))
-"""The part of every report that says so."""
+"""Report part with the excluded effects."""
 
 
 _MOST_LEVELS = 40
 
 
 def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
-    """Tabulate the depth, density and maximum current of each environment, with the depth of the
-    latter.
+    """Tabulate for each environment the depth, the density, the maximum current and the depth of
+    this current.
     """
     rows = []
     for name, water in waters:
@@ -159,7 +160,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """List the computed current by level, or at most `_MOST_LEVELS` evenly chosen levels."""
+    """List the computed current by level; at most `_MOST_LEVELS` levels, evenly chosen."""
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
@@ -173,14 +174,14 @@ def current_listing(name: str, water: Water) -> Listing:
 
 
 def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """Title block and revision history; empty if the file has no `document`."""
+    """Create the title block and the revision history; empty if the file has no `document`."""
     if file.document is None:
         return ()
     return (ReportPart("Document", (blocks.Pairs(tuple(title_pairs(file))),)), *history_part(file))
 
 
 def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """Revision history; empty if the file has none."""
+    """Create the revision history; empty if the file has none."""
     if file.document is None or not file.document.history:
         return ()
     first = words("revision", share=0.0), words("date", share=0.0)
@@ -189,7 +190,9 @@ def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
-    """Identification of a mooring for the title block: document data, position and water depth."""
+    """Return the identification of a mooring for the title block: document data, position and water
+    depth.
+    """
     document = file.document
     names = ("revision", "date", "project", "ship", "cruise", "author", "checked", "approved")
     pairs = [("mooring", file.name)]
@@ -223,7 +226,7 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 
 
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
-    """Return the environments, the mooring file, the currents, the hash and the versions.
+    """Report the inputs: environments, mooring file, currents, hash and versions.
 
     The inputs are one mooring or tow, or each leg of a net, as read in each of its environments:
     the name of that, the file, and its water.

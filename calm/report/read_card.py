@@ -1,4 +1,4 @@
-"""Summary of the contents read from files, for a terminal and for reports."""
+"""Summary of the data read from files, for a terminal and for reports."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any

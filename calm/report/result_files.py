@@ -1,4 +1,6 @@
-"""Results as files: JSON; CSV, a row for each piece and clamp; NetCDF with a batch's names."""
+"""Result files: JSON, CSV with a row for each piece and clamp, and NetCDF with the names of batch
+files.
+"""
 
 import json
 import math
@@ -27,12 +29,13 @@ from calm.records.delimited import table_csv
 
 
 def header() -> tuple[str, ...]:
-    """Header of the CSV: column names, with units in brackets."""
+    """Return the CSV header: column names, with units in brackets."""
     return ("mooring", "part", *(one.header for one in Components.columns(Output.CSV)))
 
 
 def to_csv(results: Sequence[Result]) -> str:
-    """Write the components of one or several moorings or tows as CSV (UTF-8, comma, point, LF).
+    """Write the components of one or several moorings or tows as CSV (UTF-8, comma-separated,
+    decimal point, LF).
 
     `part` is ``component`` or ``clamp``. The row of a clamped instrument follows the piece that
     carries it, with equal values for both ends and no length. Unknown numbers are empty. If a net
@@ -120,7 +123,7 @@ def result_netcdf(result: Result) -> bytes:
 def _table_variables(
     dimension: str, table: Components | Clamps, beside: str
 ) -> list[netcdf.Variable]:
-    """Create the variables of a table; `beside` names their coordinates."""
+    """Create the NetCDF variables of a table; `beside` contains the names of their coordinates."""
     columns = table.columns(Output.NETCDF)
     figures = _floats({one.variable: getattr(table, one.name) for one in columns})
     return numbers((dimension,), terms(columns), beside, figures)
@@ -131,11 +134,11 @@ def _floats(columns: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
 
 
 UNITS = {"length": "m", "force": "N", "angle": "deg", "mass": "kg", "speed": "m/s", "time": "s"}
-"""The units of every JSON document."""
+"""Units in every JSON document."""
 
 
 def to_json(documents: list[dict[str, Any]]) -> str:
-    """Create JSON text, with one document as an object, several as an array in the order given.
+    """Create JSON text: an object for one document, an array in the given order for several.
 
     Results, which have a key `calm`, also get their units. Numbers that are not finite become null.
     The text is plain ASCII, so that no terminal or pipe can corrupt it.

@@ -1,4 +1,4 @@
-"""The report of a single solved mooring or tow."""
+"""Report of one solved mooring or tow."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -68,7 +68,8 @@ _ENDS = ("5 %", "50 %", "95 %")
 
 
 def uncertainty_part(uncertain: Uncertain) -> ReportPart:
-    """Report the 5th, 50th and 95th percentiles for ends and pieces, and the causes of the spread.
+    """Report the 5th, 50th and 95th percentiles of values at ends and pieces, and the causes of the
+    spread.
 
     Fits 80 columns.
     """
@@ -86,7 +87,9 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
-    """Describe the sampled inputs and their spread: ``current ±10 %, cable drag −15 to +30 %``."""
+    """Describe the uncertain inputs and their spread: ``current ±10 %, cable drag −15 to
+    +30 %``.
+    """
     said = []
     for name in type(uncertainty).model_fields:
         spread: Spread = getattr(uncertainty, name)

@@ -1,4 +1,4 @@
-"""Report of the response of a mooring to waves."""
+"""Report on the response of a mooring to waves."""
 
 from collections.abc import Callable, Sequence
 from math import isnan
@@ -36,7 +36,9 @@ _LIFE = (
 
 
 def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
-    """Return the tables with pictures of the tension: spectrum, along the line, over Hs."""
+    """Build the report: tables, and drawings of the tension as spectrum, along the line, and
+    against Hs.
+    """
     said = "Tension in the highest sea: its spectrum at the top; along the line"
     if several := len(analysis.states) > 1:
         said += ". Tension at the top over Hs"
@@ -45,7 +47,9 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
 
 
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
-    """Report the pieces in the (highest) sea state, and several sea states in a line each."""
+    """Build the tables: the pieces in the (highest) sea state, and one line for each of several sea
+    states.
+    """
     states, highest = analysis.states, _highest(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
     told, several = Prose(tuple(_told(analysis, highest))), len(states) > 1
@@ -129,7 +133,9 @@ def _percent(share: float) -> str:
 
 
 def _cut_offs(state: MooringInSea) -> Table:
-    """Return the tension at the top and the piece most changed, by the cut-off frequency."""
+    """Tabulate the tension at the top, and the piece whose tension changes most, for three cut-off
+    frequencies.
+    """
     top, tension = state.components[0], QUANTITIES["tension"]
     cases = (("half", 0.5), ("", 1.0), ("twice", 2.0))
 
@@ -220,7 +226,7 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
 
 
 def _measured(state: MooringInSea, band: MeasuredBand) -> str:
-    """Return the range of the tension at the top by the band measured at sea, as a sentence."""
+    """Describe the range of the tension at the top that follows from measurements at sea."""
     low, high = state.components[0].measured_low, state.components[0].measured_high
     assert low is not None and high is not None
     height = state.sea.significant_height
@@ -243,7 +249,9 @@ _MEAN, _STD, _MAX = (Stroke(COLOURS[0], 1.2, dashes) for dashes in ((), (1.2, 1.
 
 
 def _drawn(analysis: WaveAnalysis, several: bool) -> str:
-    """Spectrum of the tension, tension by depth and, of several seas, by their height."""
+    """Draw the spectrum of the tension, the tension against depth and, for several sea states,
+    against wave height.
+    """
     state = _highest(analysis)
     page = Graph(_WIDTH, _TOP + _TALL + 30.0, "Tension in waves", _SIZE)
     panels = 3 if several else 2

@@ -1,4 +1,4 @@
-"""Text output of a result: the table of the line, its marks, and the summary.
+"""Text report of a result: the table of the line, its marks, and the summary.
 
 For a net: the table of its legs, its nodes, and its end loads.
 """
@@ -43,7 +43,7 @@ _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 def result_part(
     result: Result, facts: Sequence[tuple[str, str]] = (), *, verbose: bool = False
 ) -> ReportPart:
-    """Report a result in brief for 80 columns, in which long labels wrap.
+    """Build the short report of a result for 80 columns; long labels wrap.
 
     Values beyond a limit carry ``!`` and values close to one ``~``, so that colour is not needed.
 
@@ -63,7 +63,7 @@ def result_part(
 
 
 def title_of(result: LegResult) -> str:
-    """Name of the mooring or tow, its kind and water depth or speed."""
+    """Format the name of the mooring or tow, its kind, and its water depth or speed."""
     if (tow := result.file.tow) is not None:
         return f"{result.name}: tow at {say('speed', tow.speed)} towards {tow.toward:.0f}°"
     depth = say("depth", result.file.environment.depth)
@@ -71,17 +71,17 @@ def title_of(result: LegResult) -> str:
 
 
 def summary_of(result: LegResult) -> tuple[Pairs | Prose, ...]:
-    """The line and its ends in words, the warnings below them."""
+    """Summarise the line and its ends, followed by the warnings."""
     return (Pairs(summary_pairs(result)), *blocks.warned(result.warnings))
 
 
 def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:
-    """The line and its ends in words, each under its name."""
+    """Describe the line and its ends, each description under a name."""
     return tuple(_tow_summary(result) if result.towed else _mooring_summary(result))
 
 
 def quality_of(result: LegResult) -> Prose:
-    """Return how good the solution is, and how it was reached."""
+    """Describe the numerical error of the solution, and the work of the solver."""
     good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
     if result.towed:
         end = "tow point"
@@ -97,7 +97,9 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def accuracy_text(results: Sequence[LegResult]) -> str:
-    """Describe the numerical error of some results, rounded up, and that of their inputs."""
+    """Describe the numerical error of several results, rounded up, compared with the error of their
+    inputs.
+    """
     depth = max(one.accuracy.depth for one in results)
     share = max(
         100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
@@ -111,7 +113,7 @@ def accuracy_text(results: Sequence[LegResult]) -> str:
 
 
 def _travel(profiler: ProfilerTravel) -> str:
-    """Describe the range of a profiler: its stops, and the maximum wire angle."""
+    """Describe the path of a profiler: its stops, and the maximum wire angle."""
     upper, lower, worst = (
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
@@ -125,7 +127,7 @@ def _travel(profiler: ProfilerTravel) -> str:
 
 
 def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
-    """The top, the line, and the loads on the anchor, which most legs of a net have not."""
+    """Describe the top, the line and, if the leg has an anchor, the anchor loads."""
     top = result.top
     off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
@@ -195,7 +197,7 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
-    """Describe the frequency of strumming, and its present or possible effect on drag."""
+    """Describe the frequency of strumming, and its actual or possible effect on drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -225,7 +227,7 @@ def _with(result: LegResult, band: StrummingBand) -> str:
 
 
 def _level(result: LegResult, depth: float) -> str:
-    """Depth of the body, or its height in air."""
+    """Format the depth of the body, or its height in air."""
     tow = result.file.tow
     if tow is not None and result.file.environment.fluid == "air":
         return f"{say('depth', depth + tow.height)} below the tow point"
@@ -233,7 +235,8 @@ def _level(result: LegResult, depth: float) -> str:
 
 
 def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -> Table:
-    """The line from its first-listed end, each clamped instrument indented below its piece.
+    """Tabulate the line from its first-listed end; clamped instruments are indented below their
+    piece.
 
     The legs of a net have heads. With `places` a clamp says where on its piece it sits, in place of
     a length.
@@ -277,7 +280,9 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
-    """State of a tilt [deg]: above `max_tilt` the data of the component are unreliable."""
+    """Return the state of a tilt [degrees]: above `max_tilt` the data of the instrument are
+    unreliable.
+    """
     if component.max_tilt is not None and tilt > component.max_tilt:
         return State.FAIL
     if component.warn_tilt is not None and tilt > component.warn_tilt:
@@ -286,7 +291,8 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 
 
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
-    """State of a safety factor: fail if it is too small, or if the working load is exceeded.
+    """Return the state of a safety factor: fail if it is too small, or if the working load is
+    exceeded.
 
     The required factor on the breaking load is `checks.safety_factor` for a surface mooring, a
     synthetic cable, or steel. Unknown factors (NaN) are not marked.
@@ -306,7 +312,7 @@ def _cells(
     row: ComponentRow | ClampRow,
     factor: State | None = None,
 ) -> Iterator[Cell]:
-    """The figures of a piece or a clamp; a safety factor is marked by its state."""
+    """Yield the table cells of a piece or a clamp; the safety factor is marked by its state."""
     states = {"tilt": tilt_state(row.part.component, row.tilt), "safety_factor": factor}
     for one in figures:
         if one.quantity:
@@ -315,7 +321,7 @@ def _cells(
 
 
 def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
-    """Report a net in brief: its pieces by leg, its nodes, anchors and held ends.
+    """Build the short report of a net: pieces by leg, nodes, anchors and held ends.
 
     Parameters
     ----------
@@ -331,18 +337,20 @@ def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
 
 
 def leg_title(leg: LegResult) -> str:
-    """Name of a leg and of its end connections."""
+    """Format the name of a leg and of its end connections."""
     top = "at the surface" if leg.type == "surface" else end_text(leg.leg.top)
     return f"{leg.name}: {top} to {end_text(leg.leg.bottom)}"
 
 
 def leg_titles(result: Result) -> dict[str, str]:
-    """The titles of the legs by their names; a single line has none."""
+    """Return the titles of the legs by name; empty for a single line."""
     return {leg.name: f"leg {leg_title(leg)}" for leg in result.legs if result.several}
 
 
 def ends_told(line: LegResult) -> tuple[str | None, str | None]:
-    """Describe the upper and lower connections of a leg; None for a free top or an anchor."""
+    """Describe the upper and the lower connection of a leg; None for a free top and for an
+    anchor.
+    """
     top, bottom = line.leg.top, line.leg.bottom
     return (
         None if top.free else f"from {end_text(top)}",
@@ -360,7 +368,7 @@ def end_text(end: EndKeys) -> str:
 
 
 def _ends(result: Result) -> Iterator[Table | Prose]:
-    """Nodes, anchors and held ends, and floats at the surface."""
+    """Yield tables of the nodes, anchors, held ends, and floats at the surface."""
     ends = {"Nodes": result.nodes, "Anchors": result.anchors, "Held ends": result.held}
     for title, rows in ends.items():
         if rows:
@@ -377,7 +385,7 @@ def _ends(result: Result) -> Iterator[Table | Prose]:
 
 
 def _fields(rows: Sequence[Any]) -> Iterator[Field]:
-    """Yield the columns of nodes or ends, omitting empty ones."""
+    """Yield the table columns of nodes or ends; empty columns are omitted."""
     columns = shown_in(columns_of(type(rows[0])), Output.NET_TABLE)
     for one in sorted(columns, key=lambda one: one.place):
         known = any(getattr(row, one.name) is not None for row in rows)
@@ -386,7 +394,7 @@ def _fields(rows: Sequence[Any]) -> Iterator[Field]:
 
 
 def _convergence(result: Result) -> str:
-    """Describe the convergence of the solution of a net, and its accuracy."""
+    """Describe the convergence and the accuracy of a net's solution."""
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (

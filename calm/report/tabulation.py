@@ -1,4 +1,4 @@
-"""Tow at many speeds, as table, JSON, CSV and plot."""
+"""Tow at many speeds, as table, JSON, CSV and drawing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from calm.case import Design, Result
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
-"""Values of a row: depth and layback of the body, tension and angle at the ship."""
+"""Values in a row: depth and layback of the body, tension and angle at the ship."""
 
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
@@ -37,19 +37,19 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """A speed of the ship over the ground [m/s], and the result or the failure at that speed."""
+    """A ship speed over the ground [m/s], and the result or the failure at this speed."""
 
     speed: float
     outcome: Result | NoEquilibrium
 
     @property
     def result(self) -> Result | None:
-        """Equilibrium, or None."""
+        """Equilibrium at this speed, or None."""
         return None if isinstance(self.outcome, NoEquilibrium) else self.outcome
 
     @property
     def figures(self) -> dict[str, float | None]:
-        """Values of `FIGURES` by name; None if unknown."""
+        """Values by their names in `FIGURES`; None if unknown."""
         result = self.result
         if result is None:
             return dict.fromkeys(FIGURES)
@@ -65,20 +65,20 @@ class TabulationRow:
 
 @dataclass(frozen=True)
 class Tabulation:
-    """The name of a tow, and a row for each speed."""
+    """Results of a tow by speed: the name of the tow, and a row for each speed."""
 
     name: str
     rows: tuple[TabulationRow, ...]
 
     @property
     def title(self) -> str:
-        """The title of the table."""
+        """Title of the table."""
         count = len(self.rows)
         return f"{self.name}: tow at {count} speed{'s' if count != 1 else ''}"
 
     @property
     def strumming(self) -> bool:
-        """Return whether any row has a frequency."""
+        """Whether any row has a strumming frequency."""
         return any(row.figures["frequency"] is not None for row in self.rows)
 
     @property
@@ -92,13 +92,13 @@ class Tabulation:
 def by_speed(
     tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
-    """Tabulate the outcomes at speeds over the ground [m/s]."""
+    """Tabulate solver outcomes at ship speeds over the ground [m/s]."""
     rows = map(TabulationRow, speeds, outcomes)
     return Tabulation(tow.file.name, tuple(rows))
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
-    """The JSON object: `calm`, `name`, `type` and `speeds`, an object for each row.
+    """Return the JSON object: `calm`, `name`, `type` and `speeds`, with one object per speed.
 
     A row has `speed`, `status` and `FIGURES` (SI and degrees; `frequency` only where the
     cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
@@ -112,7 +112,9 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
 
 
 def to_csv(tabulations: Sequence[Tabulation]) -> str:
-    """The rows of one tow or several as CSV text (UTF-8, comma, point, LF)."""
+    """Write the rows of one or several tows as CSV text (UTF-8, comma-separated, decimal point,
+    LF).
+    """
     figures = (QUANTITIES[name].header for name in FIGURES)
     rows = (
         [tabulation.name, row.speed, row.outcome.status, *row.figures.values()]
@@ -133,7 +135,7 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 
 
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
-    """Report one line per row, within 80 columns.
+    """Build the table with one line per speed, within 80 columns.
 
     A row without equilibrium shows its status, a row with its own warnings a mark; warnings common
     to all rows follow the table.
@@ -164,7 +166,9 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
 
 
 def _fine(name: str, tabulation: Tabulation) -> Quantity:
-    """The quantity with `_DIGITS` digits at least: rows differ little, and a tow may be small."""
+    """Return a quantity with enough decimals for `_DIGITS` digits, since rows differ little and a
+    tow may be small.
+    """
     quantity = QUANTITIES[name]
     greatest = max((abs(row.figures[name] or 0.0) for row in tabulation.rows), default=0.0)
     if greatest == 0.0:
@@ -187,7 +191,8 @@ _CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0)
 
 
 def sweep_drawing(tabulation: Tabulation) -> str:
-    """Three panels against the speed, as SVG: depth of the body, its layback, and tensions.
+    """Draw three panels against the ship speed, as SVG: depth of the body, its layback, and
+    tensions.
 
     Tension is drawn at the tow point and at the body. A speed without equilibrium is a gap.
     """
@@ -222,7 +227,7 @@ def _panel(
     name: str,
     level: str = "",
 ) -> Axes:
-    """A panel with the curve of a column, and a line at zero of a colour."""
+    """Draw a panel with the curve of a column, and a line at zero in a given colour."""
     place = _LEFTS[number], _TOP, _PANEL, _HEIGHT - _TOP - _LOW
     axes = page.axes(*place, across, up)
     if level:

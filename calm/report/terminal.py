@@ -1,4 +1,4 @@
-"""Report blocks on a terminal: tables without rules; colour is never essential."""
+"""Rendering of report blocks on a terminal: tables without rules; colour is never essential."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,7 +22,7 @@ _STYLES = {
     State.PASS: "green", State.NOT_JUDGED: "", State.ACCEPTED: "", State.ESTIMATED: "green",
     State.WARN: "yellow", State.UNKNOWN: "bold", State.FAIL: "bold red",
 }  # fmt: skip
-"""Style of each state; a word or a mark shows it without colour."""
+"""Terminal style of each state; a word or a mark identifies the state without colour."""
 _QUIET = "dim"
 _WARNED = _STYLES[State.FAIL]
 
@@ -42,7 +42,7 @@ class _Printer:
         self._sign = in_ascii if plain else str
 
     def part(self, part: ReportPart) -> Iterator[RenderableType]:
-        """Title and blocks, a blank line between two that do not belong together."""
+        """Yield title and blocks; blank lines separate blocks that do not belong together."""
         if part.title:
             yield self._text(part.title, "bold")
             yield Text()
@@ -126,7 +126,7 @@ class _Printer:
         return rows
 
     def _items(self, block: blocks.OpenItems) -> Iterator[RenderableType]:
-        """Each with its sign, the gravest in the colour of its state."""
+        """Render open items with their signs; the most severe has the colour of its state."""
         yield self._text(block.title, "bold")
         rows = table.Table.grid(padding=(0, 1, 0, 0))
         rows.add_column(no_wrap=True)
@@ -159,7 +159,8 @@ _BAR, _BEYOND = 10, 3  # cells of a bar up to its mark, and beyond it
 
 
 def bar_text(share: float, state: State | None) -> str:
-    """A share of a limit as a bar with a mark at the limit; hatched beyond it unless that fails.
+    """Draw a fraction of a limit as a bar with a mark at the limit; the part beyond the limit is
+    hatched unless the finding fails.
 
     A cell stands for a tenth, rounded up.
     """
@@ -169,10 +170,10 @@ def bar_text(share: float, state: State | None) -> str:
 
 
 class _Words(Text):
-    """A text whose long words break after a hyphen, an underscore, a point or a slash."""
+    """Text whose long words may break after a hyphen, an underscore, a full stop or a slash."""
 
     def wrap(self, console: Console, width: int, **options: Any) -> Lines:
-        """Return its lines, none wider than `width` cells."""
+        """Return the lines of the text, none wider than `width` cells."""
         places: list[int] = []
         for word in re.finditer(r"(?m)^ *\S+|\S+", self.plain):
             start = word.start()
@@ -190,14 +191,14 @@ _BREAKS = re.compile("[-_./]")
 
 
 MANY = 100
-"""Rows from which on a table is written line by line."""
+"""Number of rows above which a table is printed line by line."""
 
 Row = tuple[Sequence[Text], str]
-"""Cells of a row from the first column on, and its style."""
+"""Cells of a table row from the first column on, and the style of the row."""
 
 
 class LongTable:
-    """A table without rules.
+    """Table without rules, for many rows.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ class LongTable:
         self._table, self._rows, self._gap = table, rows, gap
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render plain lines, or a rich table if cells need several lines."""
+        """Render the table as plain lines, or as a rich table if cells need several lines."""
         headings: list[list[Text]] = [
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns

@@ -17,11 +17,12 @@ Findings = Sequence[tuple[Source, Sequence[CaseOutcome]]]
 
 COLUMNS = ("case", "expected", "got", "difference", "tolerance", "unit")
 _SMALL = 1e-3
-"""Figures below it are given with a power of ten."""
+"""Value below which numbers are printed with a power of ten."""
 
 
 def verification_document(findings: Findings) -> dict[str, Any]:
-    """Return the JSON object: `calm`, number of values `checked`, and number that is `out`.
+    """Return the JSON object: `calm`, the number of `checked` values, and the number `out` of
+    tolerance.
 
     `kinds` counts the values of each kind; values that agree by construction are not counted in
     `checked`. `cases` has one object per value: `source`, `name`, `kind`, `expected`, `got`,
@@ -40,13 +41,13 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
 
 def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
-    """Return how many cases there are of each kind that has any, in the order of `Kind`."""
+    """Return the number of cases of each kind, in the order of `Kind`; empty kinds are omitted."""
     number = Counter(case.kind for case in cases)
     return {kind: number[kind] for kind in Kind if number[kind]}
 
 
 def verification_part(findings: Findings) -> ReportPart:
-    """Build a table for each source and kind; values out of tolerance are marked with ``!``."""
+    """Build a table for each source and kind; values out of tolerance have the mark ``!``."""
     of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
     return ReportPart("", (*of_sources, _sum(findings)))
 

@@ -1,4 +1,4 @@
-"""Accessor `dataset.calm` of batch results in xarray, registered when this module is imported."""
+"""Accessor `dataset.calm` for batch results in xarray, registered when this module is imported."""
 
 from __future__ import annotations
 
@@ -52,7 +52,8 @@ class BatchAccessor:
         return greater
 
     def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
-        """Draw the side view of the line in the profile nearest to a time, on matplotlib axes.
+        """Draw the side view of the line in the profile nearest to a given time, on matplotlib
+        axes.
 
         Without `ax`, a new figure is created. Raises UsageError if the profile has no equilibrium,
         or if matplotlib is not installed.
@@ -65,7 +66,7 @@ class BatchAccessor:
         return axes
 
     def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
-        """Variable of a component, or the same quantity of a clamp."""
+        """Return the variable of a component, or the same quantity of a clamp."""
         prefix, index = place_of(self._dataset, label)
         variable = f"{prefix}{quantity}" if prefix else of_component
         dimension = "clamp" if prefix else "component"
@@ -78,7 +79,7 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 
 
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
-    """The line from the side in the profile nearest to a time.
+    """Draw the side view of the line in the profile nearest to a given time.
 
     The line goes straight from the upper end of one component to that of the next. The picture is
     in the vertical plane of the anchor and the top. UsageError: the profile has no equilibrium.

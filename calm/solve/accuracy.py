@@ -1,4 +1,4 @@
-"""Error estimate from shapes on coarse and on halved segments, and Richardson extrapolation.
+"""Error estimates from shapes on coarse and on halved segments, and Richardson extrapolation.
 
 The march is of second order: one third of the change from the coarse to the fine shape is the error
 of the fine shape, and is added to the fine shape (Richardson's extrapolation). Nodes inside the
@@ -31,8 +31,8 @@ class Errors(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Size of a recorded shape: number of nodes, number of hanging elements, and whether it has a
-    touchdown.
+    """Size of a recorded shape: number of nodes, number of elements off the seabed, and whether the
+    line has a touchdown.
     """
 
     nodes: int
@@ -51,8 +51,8 @@ def tension_at(record: Record, node: int) -> float:
 
 
 def next_node(record: Record, node: int, last: int) -> int:
-    """Return the next node at the end of a segment, or at an element without segments, up to
-    `last`.
+    """Return the node at the lower end of a segment, but at most `last`; an element without
+    segments counts as one.
     """
     node += 1
     while node < last and record[SEGMENT][node] >= HALVES:
@@ -61,8 +61,7 @@ def next_node(record: Record, node: int, last: int) -> int:
 
 
 def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, near: float) -> Errors:
-    """Extrapolate a shape into the columns from `BETTER` on of the fine record, and return its
-    errors.
+    """Extrapolate a shape to vanishing segment length, and return the estimated errors.
 
     Only nodes that both shapes have are compared: the ends of hanging segments, the touchdowns, and
     the nodes below the touchdowns.
@@ -142,7 +141,7 @@ def within_piece(record: Record, node: int) -> bool:
 def thirds_at(
     before: Record, last: int, n: int, after: Record, end: int, m: int
 ) -> tuple[float, float, float]:
-    """Return one third of a node's change from the coarse to the fine shape.
+    """Return one third of the change of a node from the coarse to the fine shape.
 
     The values are the change of position relative to the line's end [m], the change of tension [N],
     and the tension in the fine shape [N].
@@ -155,7 +154,7 @@ def thirds_at(
 
 
 def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int) -> None:
-    """Extrapolate a node that both shapes have, with positions relative to the line's end."""
+    """Extrapolate a node of both shapes, with positions relative to the end of the line."""
     for column in range(6):
         third = (after[column][m] - before[column][n]) / 3.0
         if column < 2:
@@ -164,7 +163,7 @@ def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int
 
 
 def fill_between(record: Record, first: int, last: int) -> None:
-    """Correct the nodes between two extrapolated ones by interpolation over the length of line."""
+    """Correct the nodes between two extrapolated nodes by interpolation over the length of line."""
     length = way = 0.0
     for m in range(first + 1, last + 1):
         length += record[8][m]

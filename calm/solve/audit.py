@@ -1,4 +1,5 @@
-"""Audit that every solution must pass, recomputed from its coordinates without the march.
+"""Audit of every solution: force and moment balance recomputed from the coordinates, without the
+march.
 
 Closure: buoyancy and drag of every element, computed from the final positions and axes, sum to the
 force at the line's end. Moments: every axis lies along the mean of the forces at its two ends, and
@@ -21,7 +22,9 @@ from calm.solve.solution import Solution, sizes
 
 
 def loads_of(solution: Solution) -> Floats:
-    """Return buoyancy and drag (k, 3) of every element [N], for a rigid piece at its midpoint."""
+    """Return buoyancy and drag (k, 3) of every element [N]; the drag of a rigid piece is that at
+    its midpoint.
+    """
     moored = moored_of(solution.carried, solution.water, solution.frequency, False)
     written: list[list[float]] = [[0.0] * len(solution.cut) for _ in range(3)]
     element_loads(moored, shape_of(solution), written)
@@ -57,7 +60,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 
 
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
-    """Prepare the audit of a line in its water, with work arrays."""
+    """Prepare the audit of a line in its water, and allocate the work arrays."""
     moored = moored_of(line, water, frequency, compiled)
     nodes: Any = np.zeros((2, len(line.length)), np.intp)
     first, last = nodes if compiled else nodes.tolist()
@@ -66,7 +69,7 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
 
 @once_per_input
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
-    """The pieces of a line and, after them, its clamps, and the knots of its elongation curves.
+    """Return the pieces of a line followed by its clamps, and the knots of the elongation curves.
 
     The bodies are an array of records, one each `RefereeBody`.
     """
@@ -132,7 +135,7 @@ def amplification(solution: Solution) -> Floats:
 
 
 def flow_across(solution: Solution) -> Floats:
-    """Return (k,) speed of the current normal to the axis of every element [m/s], 0 for no
+    """Return (k,) speed of the current normal to each element [m/s], 0 for an element without
     length.
     """
     chord = np.diff(solution.position, axis=0)

@@ -1,4 +1,4 @@
-"""Linear systems of blocks that couple only with their neighbours, in NumPy alone.
+"""Solver for block-tridiagonal linear systems, in NumPy alone.
 
 The interiors of equal chunks are eliminated all at once, each as a small dense matrix with
 partial pivoting. The blocks between the chunks form a smaller system of the same kind, solved in
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 Numbers = NDArray[Any]
 
 CHUNK = 6
-"""Blocks eliminated together; the next one stays for the smaller system."""
+"""Number of blocks eliminated together; the block after them stays in the reduced system."""
 DENSE = 10
-"""Blocks of a system that is solved as one dense matrix."""
+"""Largest number of blocks of a system that is solved as one dense matrix."""
 
 
 def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
-    """Solve a block-tridiagonal system, or several of the same size.
+    """Solve a block-tridiagonal system, or several systems of equal size.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def _densely(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) 
 
 
 def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
-    """The whole matrices (..., n b, n b)."""
+    """Return the whole matrices (..., n b, n b)."""
     *many, count, size, _ = diagonal.shape
     matrix = np.zeros((*many, count, size, count, size), diagonal.dtype)
     for blocks, at in (
@@ -108,7 +108,9 @@ def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
 
 
 def _padded(blocks: Numbers, count: int, is_diagonal: bool) -> Numbers:
-    """Blocks up to a number of them: of unit matrices on the diagonal, else of zeros."""
+    """Pad a system to a given number of blocks: with unit matrices on the diagonal, else with
+    zeros.
+    """
     padded = np.zeros((*blocks.shape[:-3], count, *blocks.shape[-2:]), blocks.dtype)
     there = blocks.shape[-3]
     padded[..., :there, :, :] = blocks

@@ -1,4 +1,4 @@
-"""The root of a function of one variable between two places where its sign differs."""
+"""Root of a function of one variable between two points at which its signs differ."""
 
 from collections.abc import Callable
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 def bracketed_root(
     function: Callable[[float], float], low: float, high: float, rtol: float = 1e-12
 ) -> float:
-    """Root of a continuous function by Chandrupatla's method.
+    """Find the root of a continuous function by Chandrupatla's method.
 
     Inverse quadratic interpolation where it is sure to be better than halving (T. R. Chandrupatla
     1997, Advances in Engineering Software 28, 145).

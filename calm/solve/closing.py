@@ -1,4 +1,5 @@
-"""Closing a line: the miss that follows from its unknown, and its root on fixed segments.
+"""Closing of a line: the distance by which a march misses the anchor, and the root of this miss on
+fixed segments.
 
 The *miss* is the height [m] of the line's last end above its target: the top of its anchor, or the
 ship that tows it. The miss decreases as the free end goes deeper and as more buoyancy is used.
@@ -32,23 +33,28 @@ from calm.solve.problem import (
 from calm.solve.solution import FOUND, MARCH_STOPPED, MISSES, NO_SHAPE_NEAR, SLACK_ON_DIGITS
 
 OF_A_PART = 0.01
-"""Allowed miss of a light, slack part of a line, as a share of the allowed miss of the line."""
+"""Allowed miss of a light, slack part of a line, as a fraction of the allowed miss of the whole
+line.
+"""
 NEARLY_LINEAR = 5e-3
-"""Miss, as a share of the span, below which a secant through a far larger one finds the root."""
+"""Miss, as a fraction of the span, below which the miss is nearly linear, so that a secant finds
+the root.
+"""
 ABOUT, WELL_KNOWN = 2e-3, 1e-6
-"""Miss, as a share of the span, at which segments are kept: in a batch, and for a single line.
+"""Miss, as a fraction of the span, below which the segments are no longer changed: in a batch, and
+for a single line.
 
 A slack line chooses other segments if its miss is a thousandth of the span.
 """
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
-"""Width of the last bracket, as a share of the whole range: for a march that chooses its segments,
-and for fixed segments.
+"""Relative width of the last bracket: for a march that chooses its segments, and for a march on
+fixed segments.
 """
 
 
 class Root(NamedTuple):
-    """Root of the miss: the unknown, its value, and the miss and its slope at this value.
+    """Root of the miss: the unknown and its value, and the miss and its slope at this value.
 
     `found` is false if the miss does not change sign; a miss of NaN marks a march that stopped.
     """
@@ -86,7 +92,8 @@ class Closed(NamedTuple):
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
-    """The unknown of the whole line with its free end below the surface; `lands` as in `Unknown`.
+    """Return the unknown of a whole line with its free end below the surface; `lands` as in
+    `Unknown`.
 
     A line that may lie on the seabed ends there instead of at the top of its anchor.
     """
@@ -96,18 +103,20 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """The unknown of the part of a line above a float: its top must reach the surface."""
+    """Return the unknown of the part of a line above a float: the top of this part must reach the
+    surface.
+    """
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
 
 def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
-    """Return a copy of an unknown for another float."""
+    """Return a copy of an unknown that refers to another float."""
     return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
 
 def miss_at(about: About, x: float) -> float:
-    """Return the miss at a value of the unknown [m], NaN if the march stops.
+    """Return the miss [m] at a value of the unknown, NaN if the march stops.
 
     The other results of the march are left in the work arrays of the problem.
     """
@@ -136,7 +145,7 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces at the surface for a value of the unknown.
+    """Set the loads of the pieces at the surface that belong to a value of the unknown.
 
     Returns
     -------
@@ -171,7 +180,7 @@ def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, floa
 
 
 def with_share(load: Load, share: float) -> Load:
-    """Return the load of a float with a share of its buoyancy."""
+    """Return the load of a float that uses a given fraction of its buoyancy."""
     return changed(
         load, share * load.buoyancy, share * load.volume, 1.0, load.lift, load.push_east,
         load.push_north,
@@ -179,7 +188,7 @@ def with_share(load: Load, share: float) -> Load:
 
 
 def as_riding(load: Load, riding: Riding) -> Load:
-    """Return the load of a float with the wind on it and its drag at the surface."""
+    """Return the load of a float at the surface, with its wind force and its drag there."""
     return changed(
         load, load.buoyancy, load.volume, riding.drag, load.lift, riding.push_east,
         riding.push_north,
@@ -187,7 +196,9 @@ def as_riding(load: Load, riding: Riding) -> Load:
 
 
 def lifted_out(load: Load, share: float, gravity: float) -> Load:
-    """Return a load with a share of it out of the water, without drag and displacement there."""
+    """Return the load of a piece of which a given fraction is out of the water, without drag and
+    displacement.
+    """
     wet = 1.0 - share
     buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
     return changed(
@@ -204,7 +215,9 @@ def changed(
     push_east: float,
     push_north: float,
 ) -> Load:
-    """Return a load with other forces and its drag coefficients multiplied by `drag`."""
+    """Return a copy of a load with other forces, and with its drag coefficients multiplied by
+    `drag`.
+    """
     return Load(
         load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume,
         drag * load.normal_drag, drag * load.tangential_drag, load.directional, lift, push_east,
@@ -213,7 +226,7 @@ def changed(
 
 
 def coarse_about(search: Search, unknown: Unknown) -> About:
-    """Settings of the marches that search for the neighbourhood of a root."""
+    """Return the settings of the coarse marches that search for the neighbourhood of a root."""
     step = search.problem.limits.coarse_step
     return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
@@ -226,7 +239,7 @@ def coarse_miss(search: Search, unknown: Unknown, x: float) -> float:
 def coarse_root(
     search: Search, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
 ) -> Root:
-    """Root of the coarse miss between a and b, to about 1e-4 of the span."""
+    """Find the root of the coarse miss between a and b, to about 1e-4 of the span."""
     span = search.problem.limits.span
     small, linear = 1e-4 * span, unknown.sought == BELOW
     if linear:  # below the surface the miss is almost linear, so the last step needs no march
@@ -241,8 +254,7 @@ def coarse_root(
 
 
 def planned(search: Search, root: Root, step: float) -> Root:
-    """Find the root of the miss for marches of a given step, near a coarser root, and choose the
-    segments.
+    """Choose the segments at a given angle step, and find the root of the miss near a coarser root.
 
     A march that chooses its segments freely is not quite continuous, so this root is not final. On
     the segments that it chose last it is continuous: that root is one step away, which the caller
@@ -261,7 +273,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
 
 
 def segments_of(problem: LineProblem, cuts: int) -> int:
-    """Number of chosen segments, or twice this number if each is halved."""
+    """Return the number of chosen segments, or twice this number for halved segments."""
     chosen = 0
     for k in range(len(problem.course.cables)):
         chosen += problem.work.counts[k]
@@ -327,7 +339,7 @@ def near_root(
     small: float,
     narrow: float,
 ) -> Root:
-    """Find the root near a known one, on the other side of the surface if necessary.
+    """Find the root near a known root, on the other side of the surface if necessary.
 
     The last march is the march at this root.
 

@@ -19,7 +19,7 @@ COMPILED = Settings(compiled=True)
 
 
 def small_line(buoyancy: float) -> Line:
-    """A float or a weight of some net buoyancy [N] above 50 m of cable."""
+    """Return a test line: a float or a weight of given net buoyancy [N] above 50 m of cable."""
     zero, none = np.zeros(2), np.zeros(0)
     return Line(
         length=np.array([0.0, 50.0]),

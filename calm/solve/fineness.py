@@ -1,4 +1,4 @@
-"""Number of segments of a line or a net, from the difference between its coarse and fine shapes.
+"""Choice of the number of segments, from the difference between the coarse and the fine shape.
 
 Segments are chosen at twice the angle step. The line or net is closed on these, and again with
 every segment halved. The march is of second order, so a third of the change is the error of the
@@ -12,16 +12,16 @@ from calm.solve.accuracy import Errors
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
-"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. Errors
-grow with the square of the angle step; above these limits a smaller angle step is used.
+"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. Larger
+errors, which grow with the square of the angle step, reduce the step.
 """
 MOST_ROUNDS = 6
-"""Most rounds of a coarse and a fine shape."""
+"""Largest number of rounds, each with a coarse and a fine shape."""
 MOST_SEGMENTS = 20_000
 
 
 def finer(errors: Errors, span: float, requested: float, step: float, segments: int) -> float:
-    """Angle step of the next round [rad]; 0 if the shape is fine enough.
+    """Return the angle step of the next round [rad], or 0 if the shape is fine enough.
 
     Parameters
     ----------

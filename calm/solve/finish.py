@@ -1,4 +1,4 @@
-"""Turn a closed line into a solution, or into the reason why there is no equilibrium."""
+"""Conversion of a closed line to a solution, or to the reason why there is no equilibrium."""
 
 from dataclasses import replace
 
@@ -52,7 +52,8 @@ _OF_PIECE = {
         "push_north",
     )
 }
-"""Columns of a line, and the field of a march's load that each corresponds to."""
+"""Names of the arrays of a line, with the field of a march's load that each array corresponds to.
+"""
 
 
 def solution_of(
@@ -63,7 +64,7 @@ def solution_of(
     found: FoundShape,
     frequency: float = 0.0,
 ) -> Solution:
-    """Build the solution from the record `FINE`.
+    """Build the solution from the shape on halved segments (record `FINE`).
 
     Parameters
     ----------
@@ -115,7 +116,9 @@ def solution_of(
 
 
 def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, float]:
-    """Share in use of the buoyancy of the floats at the surface, and the unused buoyancy [N]."""
+    """Return the used fraction of the buoyancy of the floats at the surface, and the unused
+    buoyancy [N].
+    """
     sought = found.closed.root.unknown.sought
     if sought == BELOW:
         return 1.0, 0.0
@@ -126,8 +129,8 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 
 
 def carried_by(line: Line, problem: LineProblem) -> Line:
-    """Return the line with its loads in use: pieces at the surface with their submerged part
-    only.
+    """Return the line with the loads of the solution: pieces at the surface count with their
+    submerged part only.
     """
     if not problem.work.left[CHANGED]:
         return line
@@ -156,7 +159,7 @@ def solution_found(
 
 
 def refuse_unbalanced(closure: float, moment: float) -> None:
-    """Raise an exception if the force closure or the balance of moments is too poor.
+    """Raise an exception if the forces or the moments of a solution do not balance.
 
     Raises
     ------
@@ -197,7 +200,7 @@ def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
 
 
 def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
-    """Return the exception for a moored line without a shape."""
+    """Return the exception for a moored line for which no shape was found."""
     ending, value, piece = found.closed.ending, found.closed.value, found.closed.piece
     if ending in (
         solution.MARCH_STOPPED,
@@ -246,7 +249,7 @@ def _longer_than_deep(line: Line, water: Water) -> str:
 
 
 def watch_circle_radius(length: float, height: float) -> float:
-    """Largest distance of a surface float from its anchor, √(length² − height²) [m].
+    """Return the largest distance of a surface float from its anchor, √(length² − height²) [m].
 
     Parameters
     ----------
@@ -257,7 +260,9 @@ def watch_circle_radius(length: float, height: float) -> float:
 
 
 def doubted_depth(depth: float) -> str:
-    """Return the advice to check the depth, for a line far too long for its water."""
+    """Return the advice to check the water depth, for a line that is far too long for this
+    depth.
+    """
     return f" The water is {depth:.1f} m deep: check `depth` and its unit (m, ft)."
 
 

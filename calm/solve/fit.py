@@ -1,5 +1,5 @@
-"""Fit the length of a piece: to the depth of a mooring's top in still water, or of a tow at
-speed.
+"""Fit of a piece's length to the top depth of a mooring in still water, or to the depth of a towed
+body.
 """
 
 from dataclasses import replace
@@ -26,7 +26,8 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
-    """Unstretched length of a piece that puts the free end at a depth in still water [m].
+    """Find the unstretched length of a piece that puts the free end at a given depth in still water
+    [m].
 
     Parameters
     ----------
@@ -47,7 +48,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
     def excess(_: None, length: float) -> float:
-        """Depth of the free end of the solved line, minus the wanted depth [m]."""
+        """Return the depth of the free end of the solved line, minus the wanted depth [m]."""
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
         except NoEquilibrium as refusal:
@@ -83,8 +84,8 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
 def _upright_length(
     line: Line, water: Water, piece: int, top_depth: float, settings: Settings
 ) -> float | None:
-    """Length of a piece that makes the line upright between its anchor and the wanted top depth
-    [m], or None.
+    """Return the piece length that makes an upright line reach from its anchor to the wanted top
+    depth [m], or None.
 
     `water` is still.
     """
@@ -123,7 +124,7 @@ def _upright_length(
 def fit_tow_length(
     line: Line, water: Water, towing: Towing, piece: int, depth: float, settings: Settings
 ) -> float:
-    """Unstretched length of a towed cable that brings its lower end to a depth [m].
+    """Find the unstretched length of a towed cable that brings its lower end to a given depth [m].
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Terminal motion of a line that rises without its anchor.
+"""Terminal motion of a line that rises after release from its anchor.
 
 The line moves as a whole, at the velocity at which weight, buoyancy and drag balance. It is assumed
 to move at the terminal velocity of the water where the rise begins.
@@ -50,7 +50,7 @@ class FreeMotion:
 def solve_rise(
     line: Line, water: Water, depth: float, settings: Settings | None = None
 ) -> FreeMotion:
-    """Find the steady motion of a free line, which rises, or sinks if it is too heavy.
+    """Find the steady motion of a free line, which rises, or sinks if its net buoyancy is negative.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
 
 
 def _tangles(solution: Solution) -> tuple[int, ...]:
-    """Pieces with a part that is upside down, and pieces without length that are under
+    """Find the pieces that are partly upside down, and the pieces without length under
     compression.
     """
     line, piece = solution.line, solution.element_piece
@@ -130,8 +130,9 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
 
 
 SHORTEST_LOOP = 2.0
-"""Shortest loop of a line that may tangle [m], a default of CALM; a shorter one is a shackle that
-leans on the float below it."""
+"""Shortest loop of a line that may tangle [m], a default of CALM. A shorter loop is a shackle that
+leans on the float below.
+"""
 
 
 def looped(
@@ -153,7 +154,7 @@ def looped(
 
 
 def part_of(line: Line, first: int, stop: int) -> Line:
-    """Return the line from piece `first` up to, but without, piece `stop`, with their clamps."""
+    """Return the pieces `first` to `stop` − 1 of a line, with their clamps."""
     index = np.arange(len(line.length))
     pieces = (first <= index) & (index < stop)
     clamps = pieces[line.clamp_piece]

@@ -1,4 +1,4 @@
-"""Marches of a freely rising line, in the flow relative to the line.
+"""Marches of a freely rising line, in the flow relative to the moving line.
 
 The line is marched from both ends to the node where its tension should be largest. A march that
 arrives at a free end with little tension left is unstable there; a march that starts at the free
@@ -54,7 +54,7 @@ class Rising:
 
     @property
     def lifts(self) -> Floats:
-        """Net buoyancy of each part in reference water, positive up [N]."""
+        """Net buoyancy of each part in water of the reference density, positive up [N]."""
         return self.line.total_buoyancy
 
     @cached_property
@@ -67,13 +67,11 @@ class Rising:
 
     @property
     def plumb(self) -> bool:
-        """Whether the horizontal current is the same at all depths, so that the line stays
-        plumb.
-        """
+        """Whether the horizontal current is uniform, so that the line hangs vertically."""
         return not (np.ptp(self.water.u) or np.ptp(self.water.v))
 
     def flow(self, velocity: Floats) -> Water:
-        """Return the water relative to a line that moves at a velocity (3,) over the ground
+        """Return the flow relative to a line that moves at a velocity (3,) over the ground
         [m/s].
         """
         east, north, up = velocity
@@ -108,7 +106,8 @@ class Rising:
 
     @cached_property
     def _split(self) -> int:
-        """First piece marched from below; the tension above it should be the largest in the line.
+        """Index of the first piece that is marched from below; the tension just above should be the
+        largest in the line.
 
         The tension is estimated for the line at rest, minus the share of each piece in the drag.
         """
@@ -120,7 +119,9 @@ class Rising:
 
     @cached_property
     def _tracks(self) -> tuple[Track, Track]:
-        """Tracks from the upper and from the lower end."""
+        """Return the march inputs of the part from the upper end and of the part from the lower
+        end.
+        """
         below = replace(self.line.reversed(), towed=True)
         return (
             Track.of(self.line).first_pieces(self._split),
@@ -135,7 +136,8 @@ class Rising:
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
-        """March both parts in the flow relative to the line, with the lower end at a depth [m].
+        """March both parts in the flow relative to the line, with the lower end at a given depth
+        [m].
 
         `angle_step` [rad], `cuts` and `record` are as in `calm.physics.march`.
         """

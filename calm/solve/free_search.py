@@ -1,4 +1,4 @@
-"""Search for the velocity of a freely rising line, by Newton's method with Broyden's updates."""
+"""Search for the velocity of a freely rising line, by Newton's method with Broyden updates."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -21,11 +21,13 @@ SLOWEST = 0.01
 COARSE = 4.0
 """Segment length of the first marches, in units of the final segment length."""
 NEAR, CLOSE = 1e-3, 1e-9
-"""Allowed imbalance of forces, as a share of the net weight: before and after the last choice of
+"""Allowed imbalance of forces, as a fraction of the net weight: before and after the last choice of
 segments.
 """
 SHEARS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
-"""Shares of the shear through which the motion is found: at once, or if this fails in steps."""
+"""Fractions of the current shear for which the motion is found in turn: the full shear at once or,
+if this fails, in steps.
+"""
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class FreePlace:
 
 
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
-    """Find the terminal velocity and position of a free line, and the segments used.
+    """Find the terminal velocity and position of a free line, and the segments of its last march.
 
     Parameters
     ----------
@@ -61,8 +63,8 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
 
 
 def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
-    """Return the line in a current that differs from `velocity` (3,) [m/s] by a share of the
-    shear.
+    """Return the line in a current whose difference from `velocity` (3,) [m/s] is reduced to a
+    fraction.
     """
     (east, north, _), water = velocity, rising.water
     u, v = east + share * (water.u - east), north + share * (water.v - north)
@@ -70,7 +72,7 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 
 
 def plumb_speed(line: Line, water: Water, top: float) -> float:
-    """Terminal speed of a line that hangs plumb in still water [m/s], + up.
+    """Return the terminal speed of a vertical line in still water [m/s], positive up.
 
     The sum of weight, buoyancy and drag is zero, whether or not the parts pull at one another. Drag
     is almost proportional to the square of the speed, so secants in the squared speed converge at
@@ -104,7 +106,9 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
     ]
 
     def lifted(_: None, squared: float) -> float:
-        """Vertical imbalance at a signed squared speed [N]."""
+        """Return the vertical imbalance of forces [N] at a squared speed with the sign of the
+        motion.
+        """
         drag = across.copy()
         for place, curve, reynolds in smooth:
             drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
@@ -124,7 +128,9 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
 
 
 def _plumb(rising: Rising, angle_step: float) -> FreePlace:
-    """Find the motion of the line as if it were plumb and drifted with the mean current."""
+    """Find the motion of a line that is assumed to hang vertically and to drift with the mean
+    current.
+    """
     still, depth = rising.water.still(), rising.guessed_depth
     velocity = np.array([0.0, 0.0, plumb_speed(rising.line, still, rising.top)])
     upright = replace(rising, water=still)
@@ -151,11 +157,11 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
 
 
 _FOLLOWED = 8
-"""Largest number of updates of the depth of a plumb line's lower end; two or three suffice."""
+"""Largest number of updates of the lower end's depth for a vertical line; two or three suffice."""
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
-    """Find the motion near a known one, on the segments that the march chooses there, or None.
+    """Find the motion near a known motion, on the segments that the march chooses there, or None.
 
     A march that chooses its segments freely is not quite continuous, so the line is closed on given
     segments: first on coarse ones, then on those that the march chooses at that solution.
@@ -211,7 +217,8 @@ System = Callable[[Floats], Floats]
 def system_root(
     system: System, start: Floats, small: float, slopes: Floats | None = None
 ) -> tuple[Floats, Floats | None] | None:
-    """Find the root of a system near a start, and the derivatives there; None if no root is found.
+    """Find the root of a system of equations near a start, and its derivatives; None if no root is
+    found.
 
     Parameters
     ----------
@@ -251,8 +258,8 @@ def system_root(
 
 
 def _step(system: System, x: Floats, value: Floats, slopes: Floats) -> tuple[Floats, Floats] | None:
-    """Return the next unknowns with a smaller residual, and their values; None if there are
-    none.
+    """Return the next unknowns, with a smaller residual, and the residual; None if no step reduces
+    the residual.
     """
     try:
         step = -np.linalg.solve(slopes, value)

@@ -1,4 +1,4 @@
-"""Roots in a bracket, and the smallest change of a number that meets a condition."""
+"""Roots in a bracket, and the smallest change of a value that meets a condition."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -7,10 +7,10 @@ from math import ceil, floor, inf, isfinite, isnan, log10
 from typing import Any
 
 DOUBLINGS = 10
-"""Number of doubling steps of the search, which starts with 1/2¹⁰ of the range."""
+"""Number of doubling steps of the search; the first step is 1/2¹⁰ of the range."""
 SIGNIFICANT = 6
-"""Significant digits to which an answer is rounded, away from the start, unless it must be
-exact.
+"""Significant digits to which an answer is rounded, except close to the start or if an exact answer
+is required.
 """
 
 _NARROW = 1e-10
@@ -19,7 +19,7 @@ _DEEPENINGS = 60
 
 @dataclass
 class LeastChange:
-    """Search for the smallest change of a number that reduces an excess to zero.
+    """Search for the smallest change of a value that reduces an excess to zero.
 
     The search goes outward from the start in both directions, in doubling steps, until the excess
     is gone. If the excess stays positive, the search continues around its minimum. Brent's method
@@ -48,14 +48,14 @@ class LeastChange:
     tried: dict[float, float] = field(default_factory=dict)
 
     def at(self, x: float) -> float:
-        """Return the excess at a number, computed only once."""
+        """Return the excess at a value; each value is computed only once."""
         if x not in self.tried:
             excess = self.excess(x)
             self.tried[x] = inf if excess is None else excess
         return self.tried[x]
 
     def find(self, start: float) -> float | None:
-        """Return the number nearest to the start that meets the condition, or None."""
+        """Return the value nearest to the start that meets the condition, or None."""
         start = min(max(start, self.low), self.high)
         first = self.at(start)
         if first <= 0.0 or (self.exact and abs(first) <= self.small):
@@ -74,26 +74,28 @@ class LeastChange:
 
     @property
     def least(self) -> float | None:
-        """The number with the smallest excess tried, or None if no excess could be computed."""
+        """The tried value with the smallest excess, or None if no excess could be computed."""
         best = min(self.tried, key=self.at)
         return best if isfinite(self.at(best)) else None
 
     @property
     def steady(self) -> bool:
-        """Whether the excess is monotonic over the numbers tried."""
+        """Whether the excess is monotonic over the tried values."""
         excesses = [self.tried[x] for x in sorted(self.tried) if isfinite(self.tried[x])]
         noise = 1e-6 * max(map(abs, excesses), default=0.0)
         steps = [b - a for a, b in pairwise(excesses)]
         return not (any(step > noise for step in steps) and any(step < -noise for step in steps))
 
     def neighbours(self, x: float) -> tuple[float, float]:
-        """Return the numbers tried next below and above x; x itself if it is the first or last."""
+        """Return the tried values next below and next above x; at an end of the list, x itself."""
         below = max((t for t in self.tried if t < x), default=x)
         above = min((t for t in self.tried if t > x), default=x)
         return below, above
 
     def _outward(self, start: float) -> float | None:
-        """Return the first number that meets the condition, in ever larger steps to both sides."""
+        """Return the first value that meets the condition, in growing steps on both sides of the
+        start.
+        """
         upward = [start + step for step in self._steps(self.high - start)]
         downward = [start - step for step in self._steps(start - self.low)]
         for x in sorted(upward + downward, key=lambda x: abs(x - start)):
@@ -110,7 +112,7 @@ class LeastChange:
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
     def _around_the_least(self) -> float | None:
-        """Search next to the smallest excess, by repeatedly halving the wider of the two adjacent
+        """Search around the smallest excess, by repeatedly halving the wider of the two adjacent
         gaps.
 
         This finds a dip between two steps, and numbers close to those without an answer.
@@ -130,7 +132,7 @@ class LeastChange:
         return None
 
     def _nearest(self, start: float, good: float) -> float:
-        """Return the number nearest to the start that meets the condition, given a `good` one."""
+        """Return the value nearest to the start that meets the condition, given a `good` value."""
         between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
         bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))
         return self._whole(bad, good) if self.whole else self._root(bad, good)
@@ -162,7 +164,7 @@ class LeastChange:
         return root if self.exact else self._rounded(root, good)
 
     def _rounded(self, root: float, good: float) -> float:
-        """Round the root to few digits, such that the condition holds."""
+        """Round the root to few digits, on the side that meets the condition."""
         towards = ceil if good > root else floor
         for digits in range(SIGNIFICANT, 1, -1):
             unit = 10.0 ** (floor(log10(abs(root))) + 1 - digits) if root else 1e-6
@@ -182,7 +184,7 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function between a and b, which have opposite signs.
+    """Find the root of a continuous function between a and b, at which its signs differ.
 
     Chandrupatla's method: inverse quadratic steps if three values lie on a suitable curve, else
     bisection; the first step is a secant.
@@ -237,7 +239,7 @@ def root_near(
     small: float,
     narrow: float,
 ) -> tuple[bool, float, float, float]:
-    """Find the root near x of a falling function, between two limits.
+    """Find the root of a decreasing function near x, between two limits.
 
     Secants from x and its slope are used while they halve the value, then ever longer steps until
     the sign changes, then `bracketed_root`.

@@ -1,4 +1,4 @@
-"""Newton's method for a net of legs on given segments, as compiled laws.
+"""Newton's method for a net of legs on fixed segments, as compiled laws.
 
 The Jacobian (`slopes`) is updated by Broyden's rule as long as each step reduces the residual
 (`found`) enough. A net with a single unknown is closed by secants, or by bisection of a bracket if
@@ -35,28 +35,34 @@ from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
-"""Most Newton steps towards a shape; most halvings of a step that does not reduce the residual."""
+"""Largest number of Newton steps for a shape, and of halvings of a step that does not reduce the
+residual.
+"""
 NEAR, CLOSED = 1e-4, 1e-10
-"""Residual of lengths and forces, as shares of the longest leg and of a typical force: before the
-segments are kept, and of a finished shape."""
+"""Allowed residual of lengths and forces, as a fraction of the longest leg and of a typical force:
+before the segments are fixed, and of a finished shape.
+"""
 CLOSED_FOR_SEGMENTS = 1e-7
-"""As `CLOSED`, for the shape in which segments are chosen. It is small enough for the segments to
-depend on the net alone, not on the course of the search.
+"""Stricter limit than `CLOSED`, for the shape in which the segments are chosen. The segments then
+depend on the net alone, not on the path of the search.
 """
 MOST_LEFT = 10.0
-"""Residual, as a multiple of `enough`, that is accepted if no step reduces it further."""
+"""Largest accepted residual, as a multiple of `enough`, if no step reduces the residual further."""
 KEPT_SLOPES_REDUCTION = 0.25
-"""Factor by which a step must reduce the sum of squares for the slopes to be kept."""
+"""Factor by which a step must reduce the sum of squares, so that the next step uses the same
+Jacobian.
+"""
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Slope limit (per share) and largest number of steps for the secants of a single unknown."""
+"""Smallest slope (per share) and largest number of steps of the secant method for a single unknown.
+"""
 SINGULAR = 1e-14
-"""Pivot, in shares, below which an unknown keeps its value."""
+"""Pivot, in shares, below which the Newton step leaves an unknown unchanged."""
 NEGLIGIBLE_PULL = 1e-5
-"""Largest horizontal pull at a touchdown, as a share of the weight of a leg, that cannot hold the
-net in place. It exceeds the drag of the weak current that is added to still water.
+"""Largest horizontal pull at a touchdown, as a fraction of the weight of a leg, that cannot hold
+the net in place. This pull exceeds the drag of the weak current that is added to still water.
 """
 NEEDS_ROOM = -1
-"""Outcome of a search that needs more segments than there is room for (instead of `FOUND` or
+"""Outcome of a search for which the work arrays hold too few segments (instead of `FOUND` or
 `NO_SHAPE_NEAR`).
 """
 
@@ -106,7 +112,7 @@ def squares(values: Sequence[float]) -> float:
 
 
 def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
-    """Copy the values to `kept`."""
+    """Copy the values to the array `kept`."""
     for k in range(len(values)):
         kept[k] = values[k]
 
@@ -144,7 +150,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net by Newton's method. The last march is the march with the unknowns found.
+    """Close a net by Newton's method; the last march uses the unknowns found.
 
     Parameters
     ----------
@@ -163,9 +169,7 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net from the unknowns that were marched last, on the same segments (see
-    `close_net`).
-    """
+    """Close a net on the segments and from the unknowns of its last march (see `close_net`)."""
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
@@ -215,7 +219,9 @@ def close_on(
 
 
 def drifts(net: NetProblem) -> bool:
-    """Whether a net is not held: no end is held, and all anchored legs lie slack on the seabed."""
+    """Return whether a net is free to drift: no end is held, and all anchored legs lie slack on the
+    seabed.
+    """
     anchored = False
     for i in range(len(net.legs)):
         leg, state = net.legs[i], net.state[i]
@@ -243,8 +249,8 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments of twice an angle step [rad] near approximate unknowns, and close the net on
-    them.
+    """Choose segments at twice an angle step [rad] near approximate unknowns, and close the net on
+    these segments.
     """
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = write_residual(net, x, choosing, False)
@@ -276,7 +282,9 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net near its unknowns on segments of twice an angle step, and on halved segments."""
+    """Close a net near its unknowns, first on segments of twice an angle step, then on halved
+    segments.
+    """
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
@@ -294,7 +302,7 @@ def close_both(
 
 
 def segments_of(net: NetProblem) -> int:
-    """Number of segments in the fine shape, twice the number of chosen segments."""
+    """Return the number of segments of the fine shape, twice the number of chosen segments."""
     segments = 0
     for i in range(len(net.legs)):
         for k in range(net.legs[i].cables):
@@ -303,7 +311,9 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate the shapes of all legs and the positions of the nodes, and return the errors."""
+    """Extrapolate the shapes of all legs and the positions of the nodes, and return the estimated
+    errors.
+    """
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = relative = 0.0
     for k in range(len(x)):
@@ -330,7 +340,7 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
 
 
 class NetTask(NamedTuple):
-    """One task for `do_task`, the single entry to the compiled laws of a net.
+    """One task for `do_task`, the single entry point to the compiled laws of a net.
 
     Attributes
     ----------
@@ -352,7 +362,7 @@ MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def do_task(job: NetTask, _: float) -> float:
-    """Perform a task and return its outcome; for DRIFTS, 1 if the net drifts, else 0."""
+    """Perform a task and return its outcome; for the task DRIFTS, 1 if the net drifts, else 0."""
     net, x, how = job.net, job.x, job.how
     if job.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0
@@ -367,5 +377,5 @@ def do_task(job: NetTask, _: float) -> float:
 
 
 def do_by_address(ask: Callable[[NetTask, float], float], job: NetTask) -> float:
-    """Call `do_task` by the address of its compiled form."""
+    """Call the compiled form of `do_task` by its address."""
     return ask(job, 0.0)

@@ -1,4 +1,4 @@
-"""An anchored leg of a net, marched up from its touchdown.
+"""March of an anchored leg of a net, upwards from its touchdown.
 
 The unknowns are the components of the force on its lower end. The horizontal ones are the pull at
 the touchdown. The vertical one is the weight carried by the seabed, or minus the pull on the anchor
@@ -54,11 +54,12 @@ from calm.solve.leg_numbers import (
 from calm.solve.problem import HALVED, SearchArrays
 
 NO_PULL = 1e-9
-"""Largest pull at a touchdown, as a share of the scale of the leg's forces, that counts as none."""
+"""Largest pull at a touchdown, as a fraction of the leg's force scale, that is treated as zero."""
 
 
 def course_from_below(course: Course) -> Course:
-    """Turn the course of a leg upside down: a point load at its lower end, then its stages upwards.
+    """Reverse the order of a leg for the march upwards: a point load at its lower end, then its
+    stages.
 
     The point load at its upper end is omitted. Pieces keep their numbers.
     """
@@ -78,7 +79,7 @@ def course_from_below(course: Course) -> Course:
 
 
 def weight_of(course: Course, stage: Stage, excess: float) -> float:
-    """Weight of a stage, submerged in the water near the seabed [N]."""
+    """Return the submerged weight of a stage in the water near the seabed [N]."""
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
         return -(cable.buoyancy + excess * cable.volume) * cable.length
@@ -90,12 +91,12 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
 
 @within
 def pull_of(up: float, east: float, north: float) -> Load:
-    """Return a load that is a force alone [N]."""
+    """Return the load of a single force [N], without drag."""
     return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
 
 
 def of_length(cable: CableStretch, length: float) -> CableStretch:
-    """Return a copy of a cable with another length [m]."""
+    """Return a copy of a cable with another unstretched length [m]."""
     return CableStretch(
         cable.piece, length, cable.buoyancy, cable.volume, cable.normal_drag,
         cable.tangential_drag, cable.compliance, cable.thinning, cable.friction,
@@ -190,8 +191,8 @@ def lay(
 
 
 def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
-    """Reverse the record of an anchored leg so that it matches other legs: first the pull at its
-    upper end, then the hanging part, then the part on the seabed.
+    """Reverse the record of an anchored leg to the order of other legs: the pull at its upper end,
+    the suspended part, the part on the seabed.
     """
     state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
     nodes, height = int(state[HUNG]), net.lines.work.records[i][how.record][2][0]
@@ -211,7 +212,7 @@ def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> N
 def pass_hung(
     net: NetProblem, i: int, course: Course, how: Marching, work: SearchArrays, depth: float
 ) -> int:
-    """March the hanging part of an anchored leg, and return the outcome.
+    """March the suspended part of an anchored leg, and return the outcome.
 
     Cuts refer to whole cables, counted from below. Given cuts are scaled to the hanging length of
     their cable, which makes the march a smooth function of this length.
@@ -270,8 +271,8 @@ def pass_hung(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Reverse the record of a march upwards. It then begins with the pull at the upper end of the
-    leg instead of the pull at the lower end.
+    """Reverse the record of a march upwards, so that it begins with the pull at the upper end of
+    the leg.
     """
     for k in range(6):
         a, b = 1, nodes - 1
@@ -300,7 +301,7 @@ def turn_round(record: Record, nodes: int) -> None:
 @within
 def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Write the horizontal distance by which a leg misses its anchor, and the height above the
-    seabed at which it begins.
+    seabed of its lower end.
 
     A part on the seabed under tension leads straight to the anchor. A slack part may be longer than
     this distance. One condition covers both. Let d be the vector from the touchdown to the anchor,
@@ -337,7 +338,9 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
 
 
 def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> None:
-    """Draw the part of a slack leg on the seabed as a straight, shortened line to its anchor."""
+    """Draw the part of a slack leg on the seabed as a straight line to its anchor, shortened to
+    this distance.
+    """
     state, hung, count = net.state[i], int(net.state[i][HUNG]), int(net.state[i][COUNT])
     foot, reach = hung - 1, max(net.state[i][LIES], 1e-300)
     to_east, to_north, _ = place_of(net, i, x, 1)

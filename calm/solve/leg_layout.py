@@ -1,4 +1,4 @@
-"""Layout of a net's leg for the march, and as a line of its own after the solution."""
+"""Layout of a net's leg for the march, and conversion of the solved leg to a single line."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class NetLeg:
 
 @dataclass(frozen=True)
 class LaidLeg:
-    """A leg prepared for the march: its line and its problem.
+    """A leg prepared for the march: its line and its single-line problem.
 
     The line of a leg that hangs with a free lower end is listed from the free end.
     """
@@ -105,12 +105,14 @@ class LaidLeg:
 
     @property
     def below_a_point(self) -> bool:
-        """Whether its line begins with a point load."""
+        """Whether the line of the leg begins with a point load."""
         return self.kind in (leg_numbers.PULLED, leg_numbers.ANCHORED)
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number over the diameter at the end [1/m] and current there, as in `LegRow`."""
+        """Strouhal number divided by the diameter at the end of the leg [1/m], and the current
+        there, as in `LegRow`.
+        """
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -118,7 +120,7 @@ class LaidLeg:
 
     @staticmethod
     def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
-        """Lay out a leg; `rough` as in `problem_of`."""
+        """Prepare a leg for the march; `rough` as in `problem_of`."""
         line = leg.line
         if leg.upper.free:
             kind = leg_numbers.STANDING
@@ -131,7 +133,7 @@ class LaidLeg:
         return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int, span: float) -> LegRow:
-        """The leg as a row of numbers.
+        """The leg as a row of numbers for compiled code.
 
         Parameters
         ----------
@@ -154,8 +156,9 @@ class LaidLeg:
 
     @property
     def stands(self) -> float:
-        """Range of its unknown that stands for a float at the surface, from immersed to out of the
-        water [m]. It is as long as the leg, so that a Newton step does not pass over it."""
+        """Range of the leg's unknown for a float at the surface, from immersed to out of the water
+        [m]. The range equals the leg's length, so that a Newton step does not skip it.
+        """
         return max(float(self.line.length.sum()), 0.5)
 
     @property
@@ -173,15 +176,15 @@ class LaidLeg:
 
     @property
     def may_lie(self) -> tuple[float, float]:
-        """Length [m] and weight [N] of the part that may lie on the seabed."""
+        """Length [m] and weight [N] of the part of the leg that is allowed on the seabed."""
         course = self.problem.course
         stages = course.stages[max(course.landing, 1) :] if isfinite(self.leg.lower.seabed) else []
         weights = [weight_of(course, stage, self.bed.excess) for stage in stages]
         return sum(stage.length for stage in stages), sum(weights)
 
     def most_lying(self, height: float) -> float:
-        """Largest weight of line on the seabed [N] if the upper end is at a height above the seabed
-        [m]; inf if the leg cannot lie there.
+        """Return the largest weight of line on the seabed [N] for a given height of the upper end
+        above the seabed [m]; inf if no part of the leg may touch the seabed.
         """
         course, hung, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
@@ -194,12 +197,14 @@ class LaidLeg:
 
     @property
     def highest(self) -> float:
-        """Largest allowed height [m]: the surface, or an end that is held above the surface."""
+        """Largest allowed height of the leg [m]: that of the surface, or of an end that is held
+        above the surface.
+        """
         return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
 
 def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> NetProblem:
-    """Lay out a net, with room for `room` segments in each of its legs."""
+    """Prepare a net for the search, with work arrays for `room` segments per leg."""
     firsts = [0, *np.cumsum([each.unknowns for each in laid]).tolist()]
     size, problems = firsts[-1] + 3 * nodes, [each.problem for each in laid]
     courses = [each.course for each in problems]
@@ -280,7 +285,7 @@ def leg_found(
     errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
-    """Return a leg as the audited solution of a single line.
+    """Convert a solved leg to the audited solution of a single line.
 
     Parameters
     ----------
@@ -344,7 +349,9 @@ def leg_found(
 
 
 def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> None:
-    """Raise an exception if a leg is out of the water, or below a seabed on which it cannot lie."""
+    """Raise an exception if part of a leg is out of the water, or below a seabed that this part may
+    not touch.
+    """
     depth = leg.water.depth
     near += 1e-6 * depth
     height, lower = leg.position[:, 2], laid.leg.lower
@@ -372,7 +379,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
 
 def unsettled(why: str) -> NoEquilibrium:
-    """Return the exception for a net without equilibrium, with advice."""
+    """Return the exception, with advice, for a net without equilibrium."""
     return Status.NOT_CONVERGED.because(
         f"No equilibrium of the net was found: {why}.",
         advice="Check the lengths of its legs against the distances between their ends. Solve the "

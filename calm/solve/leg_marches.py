@@ -39,12 +39,14 @@ from calm.solve.leg_numbers import (
 from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 
 SLOPE_STEP = 1e-6
-"""Share by which an unknown is moved for the slopes."""
+"""Relative change of an unknown for the finite differences of the slopes."""
 LEAST_PULL = 1e-3
-"""Pull of a leg, as a share of its weight, below which that is the scale of its forces."""
+"""Pull of a leg, as a fraction of its weight, below which this fraction of the weight is the leg's
+force scale.
+"""
 ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
-"""Allowed relative error of the frequency while segments are chosen and while they are given; the
-most marches of a leg for its frequency; and the slope limit of the secants in the frequency.
+"""Parameters of the strumming frequency: allowed relative error while segments are chosen, and on
+fixed segments; largest number of marches of a leg; smallest slope of the secants.
 """
 
 
@@ -102,7 +104,7 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
 
 
 def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg once, with its last frequency if it strums."""
+    """March a leg once; a strumming leg keeps its last frequency."""
     net.state[i][SHARE] = 1.0
     if net.legs[i].kind == ANCHORED:
         return march_up(net, i, x, how)
@@ -151,7 +153,9 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Row of the residual for result k of a leg's march (see `OUT`), -1 if there is none."""
+    """Return the row of the residual for result k of a leg's march (see `OUT`), or -1 if no row
+    exists.
+    """
     leg = net.legs[i]
     pulled = leg.own > 1
     if k < 2:
@@ -165,7 +169,9 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add a share of the results of a leg's march to the residual, or to a column of its slopes."""
+    """Add a multiple of the results of a leg's march to the residual, or to a column of its
+    slopes.
+    """
     for k in range(OUT):
         row = row_of(net, i, k)
         if row < 0:
@@ -178,8 +184,8 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """March all legs and write the residual to `found`, and if requested also its slopes, for which
-    the scales of forces are updated.
+    """March all legs and write the residual to `found`. If requested, also write its slopes and
+    update the force scales.
 
     Returns the outcome of the marches.
     """
@@ -219,7 +225,7 @@ def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, sl
 
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
-    """Add the contribution of a leg to the slopes of the residual."""
+    """Add the derivatives of a leg's march to the slopes of the residual."""
     leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
     start, end = nodes + 3 * leg.start, nodes + 3 * leg.end
     if leg.kind == ANCHORED and leg.start >= 0:
@@ -259,7 +265,7 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
 
 
 def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
-    """Scale the unknown forces on a leg by the pull of its last march.
+    """Scale the unknown forces of a leg by the pull in its last march.
 
     The pull of a slack leg may be a thousandth of other pulls: steps of a size suited to these give
     no information about its slopes. No scale exceeds the weight of the heaviest leg; otherwise legs

@@ -1,4 +1,4 @@
-"""Data structures of a net of legs: arrays and named tuples used by compiled code."""
+"""Data structures of a net of legs for compiled code: arrays and named tuples."""
 
 from collections.abc import MutableSequence, Sequence
 from math import inf
@@ -13,12 +13,13 @@ from calm.physics.track import Course
 from calm.solve.problem import LineProblem, SearchArrays
 
 STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
-"""Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
-node, and from the seabed up to such an end."""
+"""Kinds of march of a leg: from a free upper end, from a free lower end, from an upper end that is
+held or at a node, and from the seabed up to such an end.
+"""
 STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
-"""Indices into the state of a leg after its last march: the stage of its touchdown, or -1; its
-length on the seabed [m]; the share of a float's buoyancy in use; the numbers of marches, of nodes,
-and of hanging nodes.
+"""Indices into the state of a leg after its last march: stage of its touchdown, or -1; length on
+the seabed [m]; used fraction of a float's buoyancy; numbers of marches, of nodes, and of nodes off
+the seabed.
 """
 EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
 """Indices into the state of an anchored leg: vector from its touchdown to its upper end, east and
@@ -28,10 +29,12 @@ length over the distance to the anchor [m].
 """
 FREQUENCY, LACKING, YIELD = range(14, 17)
 """Indices into the state of a strumming leg: frequency of its cables [Hz]; shedding frequency minus
-this frequency [Hz]; slope of this difference [-].
+cable frequency [Hz]; slope of this difference [-].
 """
 COARSE_COUNT, COARSE_HUNG, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
-"""`COUNT`, `HUNG`, `STAGE` and `GROUNDED` of the shape on coarse segments."""
+"""Indices of the same four state values (`COUNT`, `HUNG`, `STAGE`, `GROUNDED`) for the shape on
+coarse segments.
+"""
 OF_LEG = 21
 OUT = 7
 """Number of results of a march (`passed`): 0 and 1 are the distance east and north, or the miss of
@@ -163,7 +166,7 @@ class Marching(NamedTuple):
 
 @within
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
-    """Return a leg in the form of a single-line problem."""
+    """Convert a leg to the form of a single-line problem."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
     course, work = lines.course, lines.work
     course = Course(
@@ -192,8 +195,8 @@ def bed_of(net: NetProblem, i: int) -> Bed:
 
 
 def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
-    """Height of a node of a leg above the plane of the seabed through its anchor, or through the
-    origin if it has no anchor [m].
+    """Return the height of a leg's node above the seabed plane through its anchor, or through the
+    origin if the leg has no anchor [m].
     """
     end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
     east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -205,7 +208,9 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
 
 @within
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Position at which the record of a leg begins (`end` 0) or ends (1) [m]."""
+    """Return the position of the first node (`end` 0) or last node (`end` 1) in the record of a leg
+    [m].
+    """
     leg, held = net.legs[i], net.held[i]
     node = leg.end if end else leg.start
     if node >= 0:
@@ -216,7 +221,7 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
 
 @within
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
-    """Height of the lower end of an anchored leg [m], from the vertical pull there [N].
+    """Return the height of the lower end of an anchored leg [m], given its vertical pull there [N].
 
     A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
     If the pull is less than the weight of a piece of line as long as the anchor height, its end is

@@ -1,4 +1,4 @@
-"""A moored line closed on coarse and on halved segments, see `calm.solve.fineness`."""
+"""Shapes of a moored line on coarse and on halved segments, see `calm.solve.fineness`."""
 
 from math import inf, isnan
 from typing import NamedTuple
@@ -28,14 +28,14 @@ from calm.solve.solution import (
 )
 
 MOST_BETWEEN = 6
-"""Largest number of marches to find two shapes close enough for linear interpolation."""
+"""Largest number of marches to find two shapes that are close enough for linear interpolation."""
 LINEAR = 4e-7
-"""Largest product of the misses of two shapes, in spans squared, for linear interpolation."""
+"""Largest product of the misses of two shapes for linear interpolation, in squared spans."""
 FAR = 3e-4
-"""Largest miss on halved cuts, as a share of the span, for this interpolation."""
+"""Largest miss on halved segments for linear interpolation, as a fraction of the span."""
 COARSE_REJECTION_DEPTH = 0.01
-"""Depth below the seabed, as a share of the water depth, at which a line is already rejected on
-coarse cuts.
+"""Depth below the seabed, as a fraction of the water depth, at which a line is rejected already on
+coarse segments.
 """
 
 
@@ -65,18 +65,18 @@ NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
-    """Return a shape before its audit."""
+    """Return a shape that was not audited yet."""
     return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
 
 
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
-    """Return the outcome of a line without a shape."""
+    """Return the outcome for a line without a shape."""
     closed = Closed(ending, value, piece, root, 0, 0, False, 0.0, 0)
     return not_audited(closed, UNKNOWN_ERRORS, root.x, 0.0)
 
 
 def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
-    """Close a line near a coarse root on sufficiently fine segments.
+    """Close a line near a coarse root, on segments that are fine enough.
 
     The shape is in the record `FINE` and is not yet audited.
 
@@ -106,7 +106,8 @@ def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
 
 
 def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
-    """Close a line near a root on the segments chosen at twice a step, and on halved segments.
+    """Close a line near a root, first on the segments chosen at twice an angle step, then on halved
+    segments.
 
     `hangs` is as in `settle_line`.
     """
@@ -126,12 +127,12 @@ def extent_of(closed: Closed) -> Extent:
 
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
-    """Apply `polish`, and reject a line that hangs far below the seabed before it is cut finer."""
+    """Apply `polish`, but reject a line far below the seabed before its segments are refined."""
     return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
-    """Return a closed line, rejected if it must hang but is far below the seabed."""
+    """Return a closed line; reject a line that may not touch the seabed but is far below it."""
     if not hangs or closed.ending != FOUND:
         return closed
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
@@ -142,7 +143,7 @@ def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: 
 
 
 def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, float]:
-    """Node nearest to the seabed, and its height above the seabed [m]."""
+    """Find the node nearest to the seabed and its height above the seabed [m]."""
     lowest, least, end = 0, inf, nodes - 1
     for n in range(nodes):
         x, y = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -153,7 +154,7 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
 
 
 def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
-    """Close a line of a batch on its cuts and on halved cuts, by linear interpolation.
+    """Close a line of a batch on its segments and on halved segments, by linear interpolation.
 
     Two shapes on the cuts, in the records `OTHER` and `COARSE`, give the change of every node with
     the unknown. Both closed shapes follow from this change and from one march on the halved cuts.
@@ -202,7 +203,8 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
 
 
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
-    """Move the shapes `COARSE` and `FINE` by shares of the change from `OTHER` to `COARSE`.
+    """Move the shapes `COARSE` and `FINE` by given fractions of the change from `OTHER` to
+    `COARSE`.
 
     Returns
     -------

@@ -1,4 +1,6 @@
-"""Search for the root: below the surface from the upright side, else at the surface float."""
+"""Search for equilibria: below the surface in order of depth from the upright line, else with a
+float at the surface.
+"""
 
 from math import isnan, nan, sqrt
 from typing import NamedTuple
@@ -36,34 +38,34 @@ from calm.solve.solution import (
 )
 
 SCAN = 16
-"""Number of depths tried between the upright line and its largest possible knockdown, if the
-current grows or turns with depth. This is the resolution at which separate equilibria are
+"""Number of top depths tried between the upright line and its largest possible knockdown, if the
+current grows or turns with depth. Separate equilibria closer than this spacing are not
 distinguished.
 """
 NEAR = (0.02, 0.2)
-"""Positions of additional samples, as shares of the first step of this scan. A line whose top is in
-a weak current may miss the anchor there, and reach the anchor in slightly stronger current.
+"""Additional depths tried near the upright line, as fractions of the first step of `SCAN`. With its
+top in a weak current, a line may miss its anchor, but reach it in the stronger current just below.
 """
 DIP_SAMPLES = 8
-"""Number of depths tried to see whether the miss changes sign between three samples."""
+"""Number of depths tried between three samples, to detect a change of sign of the miss."""
 GOLDEN = 0.381966
 ROUNDING = 1e-12
-"""Rounding error of the current, as a share: a smaller growth does not count."""
+"""Relative rounding error of the current; a smaller growth of the current is ignored."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
-"""Shares of its buoyancy in use with which an immersed float is tried afloat."""
+"""Used fractions of buoyancy for which an immersed float is tried at the surface."""
 SHARE_STEPS, CURRENT_STEPS = 8, 10
-"""Number of steps of the buoyancy in use in the search for several roots, and of the current as it
-is raised from zero to select a root.
+"""Number of steps of the used buoyancy in the search for several roots, and number of steps in
+which the current is raised from zero to select a root.
 """
 WEAK = 0.1
-"""Speed, as a share of the maximum, below which a change of direction is ignored."""
+"""Speed, as a fraction of the maximum, below which a change of current direction is ignored."""
 
 Sample = tuple[float, float]
-"""A value of the unknown and the miss there [m]."""
+"""A value of the unknown, and the miss at this value [m]."""
 
 
 class CoarseRoots(NamedTuple):
-    """Coarse roots of a line, either hanging clear of the seabed or with a touchdown.
+    """Approximate roots for a line: one that is clear of the seabed, one with a touchdown.
 
     Attributes
     ----------
@@ -80,7 +82,7 @@ class CoarseRoots(NamedTuple):
 
 
 def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
-    """Find coarse roots, or only the `first` below the surface.
+    """Find approximate roots, or only the `first` root below the surface.
 
     Roots at which the miss grows with depth are unstable and are ignored.
     """
@@ -147,7 +149,7 @@ def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
 
 
 def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
-    """Add the miss at a depth to the samples, and return the number of samples."""
+    """Add the miss at a depth to the samples, and return the new number of samples."""
     miss = coarse_miss(search, unknown, depth)
     samples = search.problem.work.samples
     samples[0][count], samples[1][count] = depth, miss
@@ -155,8 +157,8 @@ def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
 
 
 def samples_below(search: Search, unknown: Unknown, count: int) -> int:
-    """Sample the miss in depth so that its roots are separated, and return the number of samples,
-    or 0 if a march stops.
+    """Sample the miss at increasing depths so that its roots are separated. Return the number of
+    samples, or 0 if a march stops.
 
     If the current neither grows nor turns with depth, the miss falls by more than the shift. Then
     there is at most one root, which the first shift brackets. If the current grows or turns
@@ -195,7 +197,8 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
 
 
 def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
-    """Find a sample with the opposite sign next to the middle sample, in a dip of the miss.
+    """Find a sample of opposite sign close to the middle of three samples, between which the miss
+    has a dip.
 
     Uses a golden-section search; returns the middle sample if this fails.
     """
@@ -219,7 +222,8 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
 
 
 def growth_below(sea: Sea, depth: float) -> float:
-    """Largest growth of the current with depth below a depth, relative to the maximum speed [1/m].
+    """Return the largest growth of the current with depth below a given depth, relative to the
+    maximum speed [1/m].
 
     A current that only weakens does not grow. For a current that turns, the part that is not
     parallel to the current above counts as growth.
@@ -244,7 +248,7 @@ def growth_below(sea: Sea, depth: float) -> float:
 
 
 def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
-    """Knockdown if the strongest current acted at all levels [m]."""
+    """Return the knockdown [m] if the strongest current acted at all levels."""
     problem, sea = search.problem, search.problem.sea
     greatest, fastest = 1, -1.0
     for k in range(1, len(sea.intervals)):
@@ -259,7 +263,7 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
 
 
 def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineProblem:
-    """Return a copy of the problem with a uniform current."""
+    """Return a copy of the problem in a uniform current."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -271,7 +275,7 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
 
 
 def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
-    """Return a copy of the problem with a share of the current at every level."""
+    """Return a copy of the problem with the current at every level reduced to a fraction."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -294,7 +298,7 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest root with a float at the surface that could also be immersed.
+    """Find the highest root with a float at the surface, for a float that could also be immersed.
 
     At the surface its drag is less, or the wind acts against the current. `immersed` ≥ 0 is the
     miss with all buoyancy in use. A miss of NaN in a root that is `found` marks a march that
@@ -326,8 +330,8 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
 
 
 def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
-    """Find the share of buoyancy in use of the lowest float at the surface, and of the floats above
-    it.
+    """Find the used fraction of buoyancy of the lowest float at the surface, and of the floats
+    above that float.
 
     The top float is tried first. If it closes the line only with the next float out of the water,
     or not at all, the next float is at the surface too. The share of the upper float then follows
@@ -380,7 +384,7 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
 
 
 def turns_back(sea: Sea) -> bool:
-    """Whether the current turns by more than 90° with depth.
+    """Return whether the direction of the current turns by more than 90° with depth.
 
     Then a line at the surface may have several equilibria. Weak currents are ignored.
     """
@@ -403,8 +407,7 @@ def turns_back(sea: Sea) -> bool:
 
 
 def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
-    """Find the share of its buoyancy in use with which the top float rides, and another stable
-    root.
+    """Find the used fraction of the top float's buoyancy, and a second stable root.
 
     If there are several roots, the first root returned is reached by raising the current from zero.
     The second is not `found` if there is only one root.
@@ -431,7 +434,7 @@ def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
-    """Find the stable roots with the smallest and the largest share of the buoyancy in use.
+    """Find the stable roots with the smallest and the largest used fraction of buoyancy.
 
     An equilibrium is stable if more buoyancy in use draws the line down. Without stable roots, the
     roots are not `found`; a miss of NaN marks a march that stopped.
@@ -449,13 +452,15 @@ def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:
-    """Height of the top of a float above the surface [m]."""
+    """Return the height of a float's top above the surface [m]."""
     miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
     return nan if isnan(miss) else search.problem.work.left[Z]
 
 
 def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
-    """Find the share in use of a float that places the next float's top at the surface."""
+    """Find the used fraction of a float's buoyancy that places the top of the next float at the
+    surface.
+    """
     part = down_to(search.problem, unknown, lower)
     loaded, unloaded = coarse_miss(search, part, 1.0), coarse_miss(search, part, 0.0)
     if isnan(loaded) or isnan(unloaded):
@@ -468,7 +473,9 @@ def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """Whether the line in still water stays too deep even with the smallest buoyancy in use."""
+    """Return whether the line in still water stays too deep even with the smallest used
+    buoyancy.
+    """
     assert unknown.sought != BELOW
     least = search.problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)

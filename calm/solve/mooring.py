@@ -1,4 +1,5 @@
-"""Static equilibrium of a moored line, interpreted or compiled, and shapes close to a solved one.
+"""Static equilibrium of a moored line, interpreted or compiled, and shapes near a solved
+equilibrium.
 
 Two independent solutions cut a line differently and also differ by their truncation errors, which
 hides a small change. Here every neighbouring line keeps the cuts of the first shape and starts at
@@ -48,17 +49,18 @@ from calm.solve.starts import fill_starts
 from calm.solve.two_speeds import CompiledPart, runs_compiled
 
 MOST_DEPTHS = 500
-"""Largest length of a line, in water depths: segments are at most a hundredth of the depth."""
+"""Largest line length in water depths, since segments are at most a hundredth of the depth."""
 MORE_ROOM = 8
-"""Factor by which the work arrays grow if a line needs more segments."""
+"""Factor by which the work arrays grow if they hold too few segments for a line."""
 
 
 SLACK_LINE_CURRENT = 1e-3
-"""Speed of a current that gives a slack line a direction but has no other effect [m/s]."""
+"""Speed of a weak current [m/s] that defines the direction of a slack line and has no other effect.
+"""
 
 
 def stirred(water: Water) -> Water | None:
-    """Return the water with a weak current at its still levels, or None if no level is still.
+    """Return the water with a weak current added at its still levels, or None if no level is still.
 
     A slack line in a still layer of a current hangs in a vertical fold, as in the weakest current.
     """
@@ -113,7 +115,7 @@ def find_compiled(search: Search, referee: Referee) -> FoundShape:
 
 
 def search_of(problem: LineProblem, compiled: bool) -> Search:
-    """Return the search for a problem, compiled or interpreted."""
+    """Return the search function of a problem, compiled or interpreted."""
     if not compiled:
         return Search(miss_at, problem)
     whole = whole_line(problem, False)
@@ -143,7 +145,7 @@ def refuse_endless(line: Line, water: Water) -> None:
 
 
 class SearchTask(NamedTuple):
-    """Arguments of `run_search`."""
+    """Arguments of the function `run_search`."""
 
     search: Search
     referee: Referee
@@ -162,15 +164,15 @@ def run_search(task: SearchTask, first: float) -> float:
 
 
 def call_search(find: Callable[[SearchTask, float], float], task: SearchTask) -> float:
-    """Call a search by its address."""
+    """Call a compiled search by its address."""
     return find(task, 0.0)
 
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
 NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
 CLOSURE, MOMENT, SHARE_IN_USE, LIES, FIRST_OTHER = range(22, 27)
-"""Indices into the result array of a search; from `FIRST_ERROR` on the errors, and from
-`FIRST_OTHER` on another equilibrium.
+"""Indices into the result array of a search. The errors begin at `FIRST_ERROR`, another equilibrium
+at `FIRST_OTHER`.
 """
 
 
@@ -219,7 +221,7 @@ WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SE
 
 
 class Nearby:
-    """A moored line, and lines that differ slightly from this line.
+    """A moored line and its solution, from which slightly different lines are solved.
 
     Parameters
     ----------
@@ -252,15 +254,15 @@ class Nearby:
         self._trace = Trace.of(work.records[FINE], closed.nodes)
 
     def node(self, piece: int, clamp: int = -1) -> int:
-        """Node at the top of a piece, or at a clamp, with the same number in all of these
-        shapes.
+        """Return the node number of a piece's top, or of a clamp; the number holds for all slightly
+        different lines.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
         return int(np.argmax(self._trace.piece == piece))
 
     def shape(self, line: Line) -> tuple[Floats, float]:
-        """Return the nodes of a slightly different line, and its share of buoyancy in use.
+        """Return the nodes of a slightly different line, and the used fraction of its buoyancy.
 
         Returns
         -------
@@ -279,7 +281,7 @@ class Nearby:
         return position, _used(search.problem, closed, line)
 
     def solved(self, line: Line, water: Water) -> Solution:
-        """Solve a different line on the cuts of this line.
+        """Solve a different line on the segments of this line.
 
         The error estimates are those of this line, since the cuts are the same.
 
@@ -323,7 +325,7 @@ class Nearby:
         return search, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:
-        """Return the root in water of another depth."""
+        """Return the root for another water depth."""
         root, deeper = self._root, water.depth - self._water.depth
         was, x = root.unknown, root.x
         unknown = Unknown(was.goal - deeper, was.sought, was.rides, was.lands, was.stages)
@@ -333,7 +335,7 @@ class Nearby:
 
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line on the cuts that the march chooses at its angle step, in the record `FINE`."""
+    """Close a line on segments chosen at its angle step, in the record `FINE`."""
     located, step = locate(search, lands, False), search.problem.limits.angle_step
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)
@@ -344,7 +346,7 @@ def close_coarsely(search: Search, lands: bool) -> Closed:
 
 
 def _used(problem: LineProblem, closed: Closed, line: Line) -> float:
-    """Share of the buoyancy (in reference water) of the floats at the surface that is in use."""
+    """Return the used fraction of the surface floats' buoyancy (at the reference density)."""
     sought = closed.root.unknown.sought
     if sought == BELOW:
         return 1.0

@@ -1,4 +1,4 @@
-"""A net of legs: lines with more ends than one free and one anchored, joined at nodes.
+"""Equilibrium of a net of legs: lines that are joined at nodes.
 
 Every leg is integrated by the march of a single line: from its free end if it has one, else from
 its upper end with an unknown pull. Further unknowns are the depths of the free ends and the
@@ -36,8 +36,8 @@ from calm.solve.two_speeds import CompiledPart, count_lines, runs_compiled
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
 LOOSE, TIGHTEST, FALL = 1e-2, 1e-8, 0.1
-"""First and last pull of slack legs, as shares of their scales, in the search for a net that is
-held by slack legs alone, and the factor between successive pulls.
+"""First and last pull of slack legs, as fractions of their scales, and the factor between
+successive pulls. Used in the search for a net that is held by slack legs alone.
 """
 
 
@@ -88,12 +88,12 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the water by other water of the same depth and density."""
+        """Replace the water by water of equal depth and density, with another current."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:
-        """Return the unknowns of a start."""
+        """Return the unknowns that correspond to an approximate start."""
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
@@ -134,7 +134,7 @@ class NetSearch:
         return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
-        """Return the unknowns closed by Newton's method, or None if it does not converge.
+        """Return the unknowns found by Newton's method, or None if the method does not converge.
 
         `loose` is as in `Marching`.
         """
@@ -143,7 +143,7 @@ class NetSearch:
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """Return the unknowns closed to full precision, on sufficiently fine segments.
+        """Return the unknowns to full precision, on segments that are fine enough.
 
         Raises NoEquilibrium if Newton's method does not converge.
         """
@@ -156,19 +156,20 @@ class NetSearch:
         raise unsettled("its legs do not meet to full precision")
 
     def end(self, i: int, x: Floats) -> Floats:
-        """Position at which the march of a leg must end [m]."""
+        """Return the position at which the march of a leg must end [m]."""
         end, first = self.laid[i].ends[1], self.net.nodes_at
         return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
 
     def shape(self, i: int, x: Floats) -> Trace:
-        """Return the shape of the last march of a leg, in the frame of the net."""
+        """Return the shape of a leg in its last march, in the coordinates of the net."""
         nodes = int(self.net.state[i][leg_numbers.COUNT])
         trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
 
     def solution(self, x: Floats) -> NetSolution:
-        """Return the last settled solution, with every leg audited and every node in balance.
+        """Return the last equilibrium found, after an audit of every leg and of the balance at
+        every node.
 
         Raises NoEquilibrium if the solution fails a check.
         """
@@ -252,7 +253,9 @@ def with_room(
     solve: Callable[[NetSearch], Answer],
     legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
 ) -> Answer:  # fmt: skip
-    """Return the result of a search, repeated with larger work arrays until all segments fit."""
+    """Return the result of a search, repeated with larger work arrays until these hold all
+    segments.
+    """
     room = ROOM
     while True:
         try:
@@ -262,7 +265,7 @@ def with_room(
 
 
 def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
-    """Return the unknowns of a net, closed to full precision.
+    """Return the unknowns of a net in equilibrium, to full precision.
 
     If a net in still water is held by slack legs alone, no force determines the direction in which
     it drifts. Newton's method then begins with slack legs that pull slightly towards their anchors.
@@ -288,7 +291,7 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 
 
 def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
-    """Return roughly closed unknowns of a net.
+    """Return approximate unknowns of a net in equilibrium.
 
     If another solution is given, the search starts near it. Otherwise the current is raised from
     still water in steps, which leads to the highest of several equilibria. If that fails, the
@@ -327,8 +330,8 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 
 
 class NearbyNet:
-    """A net, and nets in which one leg differs slightly, on the slopes and the cuts of the first
-    net.
+    """A net and its solution, from which nets with a slightly different leg are solved on the same
+    segments.
 
     Parameters
     ----------
@@ -357,8 +360,8 @@ class NearbyNet:
         net.do(leg_closing.MARCH, self._x, self._how)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
-        """Node at the top of a piece of a leg, or at a clamp, with the same number in all of these
-        shapes.
+        """Return the node number of a piece's top in a leg, or of a clamp; the number holds for all
+        slightly different lines.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
@@ -369,7 +372,8 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Return the nodes of a leg, and its buoyancy in use, if leg `number` has another line.
+        """Return the nodes and the used fraction of buoyancy of leg `number`, if that leg has
+        another line.
 
         Two steps with the slopes of the original net leave an error of third order in the change.
 

@@ -1,4 +1,4 @@
-"""Approximate start for a net: lumped masses on springs are released and settle.
+"""Approximate start for a net: lumped masses on springs are released and come to rest.
 
 This is only a start for the march, which solves the net anew: cables stretch here by some
 hundredths, and tangential friction is ignored.
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 MOST_LUMPS, SOFTEST = 14, 0.02
 """Largest number of springs in a leg, and the strain of a spring under the weight of the net."""
 ROUNDS, AT_REST, SWAY = 6000, 2e-3, 20
-"""Largest number of steps; allowed imbalance, as a share of a typical force; number of steps
-between updates of the drag.
+"""Largest number of steps; allowed imbalance, as a fraction of a typical force; number of steps
+between two updates of the drag.
 """
 
 
@@ -92,7 +92,7 @@ class _Lumps:
         self.stiffness = self.typical / SOFTEST / self.lengths
 
     def _spread(self, place: Floats, legs: tuple[NetLeg, ...]) -> Floats:
-        """Place all lumps: nodes between the points that hold them, other lumps along their
+        """Place all lumps: nodes between the points that hold the net, other lumps along their
         legs.
         """
         for _ in range(200):
@@ -122,7 +122,9 @@ class _Lumps:
         return place
 
     def settle(self) -> None:
-        """Release all lumps, and stop them whenever their kinetic energy peaks, until they rest."""
+        """Release all lumps and stop them at every peak of their kinetic energy, until they
+        rest.
+        """
         a, b = self.springs.T
         mass = np.zeros(len(self.place))
         for ends in (a, b):
@@ -153,7 +155,7 @@ class _Lumps:
             self.place += speed
 
     def pulls(self) -> Floats:
-        """(m, 3) force of every spring on its first lump [N]."""
+        """Return (m, 3) force of every spring on its first lump [N]."""
         a, b = self.springs.T
         way = self.place[b] - self.place[a]
         size = np.maximum(np.linalg.norm(way, axis=1), 1e-12)
@@ -162,7 +164,7 @@ class _Lumps:
         return pull
 
     def _flow(self) -> Floats:
-        """(n, 3) drag on the lumps [N]."""
+        """Return (n, 3) drag on the lumps [N]."""
         current = self.water.current_at(-self.place[:, 2])
         axis = np.zeros_like(self.place)
         a, b = self.springs.T

@@ -22,9 +22,9 @@ from calm.solve.solution import (
 )
 
 COARSE_STEP = np.radians(4.0).item()
-"""Angle step of the marches that search for the neighbourhood of a root."""
+"""Angle step of the coarse marches that search for the neighbourhood of a root [rad]."""
 REACH, ROUGH_REACH = 0.01, 0.013
-"""Longest segment at an angle step of 1°, as a share of the span: for a single line, and in a
+"""Longest segment at an angle step of 1°, as a fraction of the span: for a single line, and in a
 batch.
 """
 ROOM, MANY_ROOM = 512, 256
@@ -32,36 +32,36 @@ ROOM, MANY_ROOM = 512, 256
 that need more are solved again with larger arrays.
 """
 MOST_AFLOAT = 16
-"""Largest number of successive floats at the surface; each is solved together with all those
-above.
+"""Largest number of successive floats at the surface. The solver treats each float together with
+all floats above it.
 """
 MOST_SAMPLES = 64
 STARTS, FASTEST, START_ROWS = 41, 4.0, 7
-"""Number of uniform currents in which a line is solved before a batch, the fastest of them [m/s],
-and the number of stored values per current.
+"""Uniform currents in which a line is solved before a batch: their number, the fastest current
+[m/s], and the number of stored values per current.
 """
 SHARE_TOLERANCE = 1e-9
-"""Tolerance of the share of a surface float's buoyancy in use."""
+"""Tolerance of the used fraction of a surface float's buoyancy."""
 ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
-"""Tolerances in a batch: the allowed miss and the distance of a load from its water sample, as
-shares of the water depth, and the tolerance of the buoyancy share.
+"""Tolerances in a batch: allowed miss, as a fraction of the water depth; used fraction of buoyancy;
+distance of a load from its water sample, as a fraction of the water depth.
 
 In the order allowed miss, buoyancy share, distance.
 """
 
 FOUND_SIZE = 32
-"""Size of the array for the results of a search."""
+"""Length of the array for the results of a search."""
 
 COARSE, FINE, KEPT, OTHER = range(4)
-"""Records of shapes: on the cuts chosen by the march, on halved cuts, and two for shapes that are
-kept during another search.
+"""Records of shapes: on the segments chosen by the march, on halved segments, and two that are kept
+during another search.
 """
 CHOSEN, HALVED = range(2)
-"""Cuts as chosen by the march, and halved cuts."""
+"""Segment lists: chosen by the march, and halved."""
 NOT_RECORDED = -1
 MARCHES, CHANGED, LAST = range(LEFT, LEFT + 3)
-"""Indices into `SearchArrays.left` after the results of a march: the number of marches of the whole
-line, the number of loads changed for floats at the surface, and the unknown of the last march.
+"""Indices into `SearchArrays.left`, after the results of a march: number of marches of the whole
+line, number of loads changed for floats at the surface, and unknown of the last march.
 """
 
 
@@ -184,7 +184,7 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """The unknown that closes a line: the depth of its free end, or the used share of a float's
+    """The unknown that closes a line: the depth of its free end, or the used fraction of a float's
     buoyancy.
 
     Attributes
@@ -227,7 +227,7 @@ class About(NamedTuple):
 
 
 class Search(NamedTuple):
-    """A problem, and the function that marches it (see `calm.solve.closing.miss_at`)."""
+    """A problem, and the function that marches its line (see `calm.solve.closing.miss_at`)."""
 
     miss: Callable[[About, float], float]
     problem: LineProblem
@@ -313,7 +313,7 @@ def problem_of(
 
 
 def work_for(course: Course, intervals: int, room: int, compiled: bool) -> SearchArrays:
-    """Create work arrays for given numbers of water intervals and segments."""
+    """Create work arrays for a given number of water intervals and of segments."""
     cables = len(course.cables)
     nodes = 2 * room + 3 * len(course.loads) + 2 * len(course.stages) + 2
     if compiled:
@@ -347,7 +347,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
 
 
 def reach_of(limits: Limits, step: float) -> float:
-    """Longest segment at an angle step [m]."""
+    """Return the longest segment at an angle step [m]."""
     reach = ROUGH_REACH if limits.near > 0.0 else REACH
     return reach * degrees(step) * limits.span
 

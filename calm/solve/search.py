@@ -1,4 +1,4 @@
-"""The whole search for a moored line: from a problem to a shape that has passed every check.
+"""The whole search for a moored line, from the problem to a shape that has passed every check.
 
 A shape found clear of the seabed, or lying on it, is closed on fine segments, checked for parts out
 of the water or below the seabed, and audited.
@@ -57,19 +57,18 @@ from calm.solve.starts import is_highest, start_of
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
 UNSEEN = 1e-9
-"""Error, as a share of the span and of the largest force, that is the same at both step sizes and
-so does not appear in their difference: rounding, the buoyancy share, and nodes that should be at a
-level but are slightly off.
+"""Error, as a fraction of the span and of the largest force, that the comparison of two step sizes
+cannot reveal: rounding, the tolerance of the used buoyancy, and nodes slightly off their level.
 """
 SHORT_LANDED_LENGTH = 4.0
-"""Length on the seabed, in anchor heights, up to which a line is solved as hanging from the top of
-its anchor if it can also hang there; beyond this length, only if that equilibrium is higher.
+"""Longest part on the seabed, in anchor heights, for which an equilibrium without touchdown takes
+precedence. With more line on the seabed, the hanging equilibrium is used only if it is higher.
 """
 LEAST_SHARE_DIFFERENCE = 1e-3
-"""Smallest difference of the used buoyancy shares between two equilibria of a surface float."""
+"""Smallest difference in used buoyancy between two distinct equilibria of a surface float."""
 CHECKED_LANDED_LENGTH = 20.0
-"""Length on the seabed, in anchor heights, up to which a hanging equilibrium is also sought; the
-other shape is then reported.
+"""Longest part on the seabed, in anchor heights, for which a hanging equilibrium is also sought.
+The second equilibrium is then reported.
 """
 
 
@@ -90,7 +89,9 @@ class Referee(NamedTuple):
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
-    """Search for a shape clear of the seabed or lying on it, the likelier one first."""
+    """Search for a shape clear of the seabed and for a shape with a touchdown, the likelier
+    first.
+    """
     problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
@@ -113,7 +114,8 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
 
 
 def rising(search: Search, referee: Referee) -> FoundShape:
-    """Search for a line of a batch that could lie on the seabed but clearly rises from its anchor.
+    """Find the shape of a line in a batch that could touch the seabed but clearly rises from its
+    anchor.
 
     It is sought if the line does not descend anywhere from its start. A line with a sag, for
     example, is rejected here, since it could also lie on the seabed.
@@ -136,19 +138,19 @@ def rising(search: Search, referee: Referee) -> FoundShape:
 
 
 def is_slack(found: FoundShape) -> bool:
-    """Whether a line was rejected as slack."""
+    """Return whether a line was rejected as slack."""
     return found.closed.ending == SLACK_AT_REST or found.closed.ending == SLACK_ON_DIGITS
 
 
 def beside(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
-    """Return the shape with another equilibrium attached."""
+    """Attach another equilibrium to a shape."""
     return FoundShape(
         found.closed, found.errors, found.share, found.grounded, found.closure, found.moment, other
     )
 
 
 def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
-    """Return the shape in the record `FINE` as another equilibrium."""
+    """Convert the shape in the record `FINE` to another equilibrium."""
     record, closed = problem.work.records[FINE], found.closed
     end = closed.nodes - 1
     x, y, z = record[BETTER + 3][end], record[BETTER + 4][end], record[BETTER + 5][end]
@@ -158,7 +160,7 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 
 
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
-    """Find the highest shape of a kind, and attach the deepest shape if it differs."""
+    """Find the highest shape of a kind, and attach the deepest shape if the two differ."""
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
@@ -198,7 +200,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
-    """Copy a shape from one record to another, including the used shares of the floats above."""
+    """Copy a shape and the used buoyancy of its surface floats from one record to another."""
     source, kept = problem.work.records[of], problem.work.records[to]
     shares = problem.work.shares
     for k in range(found.closed.root.unknown.sought):
@@ -212,13 +214,13 @@ def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
 
 
 def load_again(problem: LineProblem, found: FoundShape) -> None:
-    """Set the loads of the pieces at the surface as in a shape."""
+    """Set the loads of the pieces at the surface to those of a shape."""
     root = found.closed.root
     place(problem, root.unknown, root.x)
 
 
 def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
-    """Return the audited shape near a coarse root."""
+    """Return the audited shape near an approximate root."""
     problem, limits = search.problem, search.problem.limits
     if not lands:
         return audited(problem, referee, settle_line(search, root, True))
@@ -254,7 +256,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """Return the root for a line that hangs clear of the seabed, as a start for its search."""
+    """Return an approximate root for a line that hangs clear of the seabed."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
@@ -280,7 +282,7 @@ def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundS
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
-    """Closure and moment residual of the shape in the record `FINE`."""
+    """Return the force closure and the moment residual of the shape in the record `FINE`."""
     record, elements = problem.work.records[FINE], problem.work.elements
     shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
     take_loads(problem, referee)
@@ -294,7 +296,7 @@ def residuals(
     landed: bool,
     limits: Limits,
 ) -> tuple[float, float]:
-    """Compute closure and moment residual of a shape from its coordinates.
+    """Compute the force closure and the moment residual of a shape from its coordinates.
 
     Parameters
     ----------
@@ -308,7 +310,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return the outcome of the audit, and the residual that exceeds its limit."""
+    """Return the outcome of the audit, and any residual that exceeds its limit."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
@@ -317,7 +319,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """Complete the error estimates with errors that are equal at both step sizes."""
+    """Complete the error estimates with the errors that are equal at both step sizes."""
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0
@@ -336,8 +338,8 @@ def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
 
 
 def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
-    """Return a piece out of the water or below the seabed, else -1, and its height above the
-    surface or (negative) above the seabed [m].
+    """Find a piece out of the water or below the seabed. Return its index and its height above the
+    surface, or (negative) above the seabed [m]; the index is -1 if there is none.
 
     A float at the surface may extend above the surface by its length, whatever its inclination.
     """
@@ -361,7 +363,7 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Set the loads of the audit to the loads in use at the surface."""
+    """Set the loads of the audit to the loads of the pieces at the surface in this solution."""
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
         set_row(bodies, k, referee.bodies[k])
@@ -372,7 +374,7 @@ def take_loads(problem: LineProblem, referee: Referee) -> None:
 
 
 def loaded(body: RefereeBody, load: Load) -> RefereeBody:
-    """Return a body with the forces of a load."""
+    """Return an audit body with the forces of a load."""
     return RefereeBody(
         body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
         load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,

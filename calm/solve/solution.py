@@ -14,7 +14,7 @@ from calm.physics.line import Floats, Integers, Line, Trace, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LOOSEST_TOLERANCE = 2e-4
-"""Largest miss, as a share of the water depth, that is accepted for a solution."""
+"""Largest miss, as a fraction of the water depth, at which a solution is accepted."""
 
 
 @dataclass(frozen=True)
@@ -141,12 +141,12 @@ class Solution:
 
     @property
     def surface(self) -> bool:
-        """Whether the line reaches the sea surface."""
+        """Whether part of the line is at the sea surface."""
         return bool(self.afloat)
 
     @cached_property
     def tension(self) -> Floats:
-        """(k+1,) |force| at the nodes [N]."""
+        """(k+1,) magnitude of the force at the nodes [N]."""
         size: Floats = np.linalg.norm(self.force, axis=1)
         return size
 
@@ -161,23 +161,23 @@ class Solution:
 
     @property
     def body_node(self) -> int:
-        """Node at which the lowest piece of a tow is attached, or the end of a bare cable."""
+        """Node at which the lowest piece of a tow is attached, or the end node of a bare cable."""
         return 0 if self.line.flexible[0] else int(self.piece_nodes[0, 1])
 
     def piece_at(self, node: int) -> int:
-        """The piece that ends at a node, or contains the node."""
+        """Return the piece that ends at a node, or contains this node."""
         return int(self.element_piece[max(node - 1, 0)])
 
 
 def sizes(vectors: Floats) -> Floats:
-    """(n,) lengths of vectors (n, 3)."""
+    """Return the (n,) lengths of vectors (n, 3)."""
     lengths: Floats = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
     return lengths
 
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
-    """Positions relative to the line's end, with heights above the surface, and forces, (k+1, 3)
-    each.
+    """Return the nodes and the forces, (k+1, 3) each: positions relative to the line's end, with
+    heights above the surface.
     """
     position = trace.position.copy()
     position[:, :2] -= position[-1, :2]
@@ -217,7 +217,7 @@ class Status(Enum):
     def because(
         self, message: str, piece: int | None = None, advice: str | None = None
     ) -> NoEquilibrium:
-        """Return the exception for this outcome, with the piece of the line, if any.
+        """Return the exception for this outcome, with the index of the piece concerned, if any.
 
         `advice` replaces the outcome's own advice, which applies to moorings.
         """
@@ -245,7 +245,8 @@ class Status(Enum):
 
 
 def standing_lift(line: Line, water: Water) -> Floats:
-    """(n,) net force of every piece with its clamps, in an upright line, positive up [N].
+    """Return the (n,) net force of every piece with its clamps, in an upright line, positive up
+    [N].
 
     The line is upright and unstretched, from the anchor up; parts that would be out of the water
     are assumed just below the surface.
@@ -257,14 +258,17 @@ def standing_lift(line: Line, water: Water) -> Floats:
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
-    """(n,) net force of every piece without its clamps in surface water, positive up [N]."""
+    """Return the (n,) net force of every piece without its clamps in surface water, positive up
+    [N].
+    """
     excess = float(water.density_at(np.zeros(()))) - REFERENCE_DENSITY
     return line.buoyancy + excess * water.gravity * line.volume
 
 
 def standing_length(line: Line, lift: Floats) -> float:
-    """Length of the line upright in still water, each piece stretched by its mean tension [m]. The
-    position of clamps on a piece is ignored. `lift` is the `standing_lift`.
+    """Return the length of the upright line in still water, each piece stretched by its mean
+    tension [m]. The position of clamps on a piece is ignored. `lift` is the result of
+    `standing_lift`.
     """
     tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
     strain: Floats = line.compliance * tension
@@ -275,12 +279,12 @@ def standing_length(line: Line, lift: Floats) -> float:
 
 
 SUPPORTED, TOO_HEAVY, FOLDS = range(3)
-"""Whether a line has enough buoyancy, or the reason why not."""
+"""Results of the buoyancy check: enough buoyancy, or the reason why a line fails."""
 
 
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
-    """Return whether a line has enough buoyancy, else the piece below which it folds and the
-    missing buoyancy [N].
+    """Return whether a line has enough buoyancy; if not, also the piece below which the line folds
+    and the missing buoyancy [N].
 
     Parameters
     ----------
@@ -302,7 +306,8 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
 
 def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
-    """Raise an exception if a line has too little buoyancy or, in still water, folds.
+    """Raise an exception if the buoyancy of a line is insufficient, or if the line folds in still
+    water.
 
     Below its first buoyant part, the line must be held up down to its lowest float. `lift` is the
     `standing_lift`.
@@ -325,7 +330,7 @@ def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
 
 
 def too_heavy(lift: Floats) -> NoEquilibrium:
-    """Return the exception for a line with too little buoyancy, from the net force of each piece
+    """Return the exception for a line with insufficient buoyancy, from the net force of each piece
     [N].
     """
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())

@@ -15,17 +15,19 @@ from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem, Search
 from calm.solve.solution import FOUND
 
 IMMERSION_SHARE = 0.97
-"""Share of its buoyancy in use above which a float may also be immersed."""
+"""Used fraction of its buoyancy above which a float at the surface may also have an immersed
+equilibrium.
+"""
 DROPS = 3
-"""Number of iterations for the current that acts on a line after its knockdown."""
+"""Number of iterations to find the current that acts on a line after its knockdown."""
 LEAN_ROW = 6
-"""Row with the knockdowns according to `lean_of`."""
+"""Row of the knockdowns computed by `lean_of`."""
 LOOKED_AT, SURE = 6, 0.3
-"""Number of depths at which a line is tested for falling further, and the smallest share of the
-remaining fall.
+"""Parameters of the test for a lower equilibrium: number of depths, and smallest fraction of the
+remaining knockdown.
 """
 LEAST_CURRENT_GROWTH = 0.25
-"""Growth of the current over the largest fall of a line above which this test is made."""
+"""Growth of the current over the largest knockdown of a line above which this test is made."""
 
 
 def fill_starts(search: Search) -> int:
@@ -63,7 +65,7 @@ def fill_starts(search: Search) -> int:
 
 
 def start_of(search: Search, lands: bool) -> Root:
-    """Return the start of a search, not `found` if the complete search is needed."""
+    """Return the start of a search; `found` is false if the complete search is needed."""
     problem, limits = search.problem, search.problem.limits
     unknown = whole_line(problem, lands)
     nowhere = Root(False, unknown, nan, nan, nan)
@@ -90,7 +92,7 @@ def start_of(search: Search, lands: bool) -> Root:
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Whether a line found from its start certainly has no higher equilibrium.
+    """Return whether the equilibrium found from its start is certainly the highest.
 
     This is certain if the current does not grow significantly with depth. Otherwise the fall in the
     currents higher up is estimated from `lean_of`, relative to its value at the position found.
@@ -119,8 +121,8 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
 
 
 def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
-    """Interpolate the unknown of a line and the slope of its miss in the uniform current that
-    inclines it equally.
+    """Interpolate the unknown of a line and the slope of its miss, from the uniform current that
+    inclines the line equally.
 
     Parameters
     ----------
@@ -136,7 +138,7 @@ def expected(problem: LineProblem, row: int, upright: float, top: float) -> tupl
 
 
 def greatest_speed(sea: Sea) -> float:
-    """Maximum speed of the current [m/s]."""
+    """Return the maximum speed of the current [m/s]."""
     greatest = 0.0
     for k in range(1, len(sea.intervals)):
         here = sea.intervals[k]
@@ -145,12 +147,12 @@ def greatest_speed(sea: Sea) -> float:
 
 
 def between(row: Sequence[float], k: int, share: float) -> float:
-    """Interpolate a row between the k-th uniform current and the next."""
+    """Interpolate a row between uniform current k and the next current."""
     return row[k] + share * (row[k + 1] - row[k])
 
 
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
-    """Approximate knockdown of a line that is only slightly inclined by the current [m].
+    """Return the approximate knockdown of a line that the current inclines only slightly [m].
 
     The inclination is the drag on the part above divided by its tension, and the knockdown grows
     with the square of the inclination. In a uniform current it is thus proportional to the fourth

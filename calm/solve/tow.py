@@ -32,24 +32,27 @@ from calm.solve.solution import (
 from calm.solve.two_speeds import CompiledPart, count_lines
 
 SURFACE_BAND = 1e-7
-"""Thickness of the band from water to air, as a share of the line out."""
+"""Thickness of the transition from water to air, as a fraction of the paid-out length."""
 SCAN = 16
-"""Number of depths tried if the flow varies with depth: the resolution of separate equilibria."""
+"""Number of depths tried if the flow varies with depth. Separate equilibria closer than this
+spacing are not distinguished.
+"""
 OVERSHOOT = 1.05
-"""Distance beyond the expected root that is tried in a uniform current, in misses. Since levels cut
-a line, the march is not quite the same at every depth.
+"""Distance beyond the expected root that is tried in a uniform current, as a multiple of the miss.
+The march varies slightly with depth, since water levels divide a line.
 """
 ROUGHLY = 5e-3
-"""Miss at which a rough root is one linear step away, as a share of the line paid out."""
+"""Miss at which one linear step completes a rough root, as a fraction of the paid-out length."""
 SAME = 1e-6
-"""Relative tolerance of the frequency of a line that strums."""
+"""Relative tolerance of the strumming frequency."""
 LEAVING_DEPTH = 2e-3
-"""Depth at which a line that does not close is assumed to be leaving the water, as a share of the
-line paid out.
+"""Depth of the free end, as a fraction of the paid-out length, below which a line that does not
+close is assumed to be leaving the water.
 """
 NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
-"""Width of a jump of the miss, and distance from the surface of the body that causes it, as shares
-of the line out."""
+"""Width of a jump of the miss, and distance from the surface of the body that causes this jump, as
+fractions of the paid-out length.
+"""
 PAY_OUT = "Pay out more line."
 RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
 AT_SURFACE = "The towed line reaches the surface behind the ship."
@@ -162,7 +165,7 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
 
 
 class _Marches:
-    """Marches of a towed line, each with its free end at a depth.
+    """Marches of a towed line from a given depth of its free end.
 
     Parameters
     ----------
@@ -188,7 +191,7 @@ class _Marches:
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Find the deepest equilibrium, and the depth of the free end in the next equilibrium above
+    """Find the deepest equilibrium, and the depth of the free end in the next higher equilibrium
     [m].
     """
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
@@ -201,12 +204,14 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
 
 
 def _lacking(net: NetSearch) -> bool:
-    """Whether the frequency of the last march differs from the shedding frequency at the ship."""
+    """Return whether the frequency of the last march differs from the shedding frequency at the
+    ship.
+    """
     return bool(abs(net.net.state[0][LACKING]) > SAME * net.net.state[0][FREQUENCY])
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
-    """Find the depth of the free end at the deepest root, and at the next root above [m]."""
+    """Find the depth of the free end at the deepest root, and at the next higher root [m]."""
     span = rough.span
     found: list[float] = []
     allowed = rough.net.settings.tolerance * span
@@ -253,7 +258,9 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 
 
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
-    """Depths to try, from below. In uniform water the miss itself is the distance to the root."""
+    """Return the depths to try, from below. In uniform water the miss is the distance to
+    the root.
+    """
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps

@@ -20,17 +20,20 @@ from calm.physics.line import Line
 from calm.solve.solution import Settings
 
 LOAD_FROM = 60
-"""Number of lines for which loading compiled code from the cache pays."""
+"""Number of lines above which it pays to load compiled code from the cache."""
 COMPILE_FROM = 1200
-"""Number of lines, announced by `expect_many`, for which compiling pays."""
+"""Number of lines, announced by `expect_many`, above which it pays to compile."""
 UNANNOUNCED = 250
 """Number of solved lines, beyond those announced, after which many more are expected."""
 TYPICAL_PARTS = 8
-"""Number of pieces and clamps of an ordinary line. The work of a line is in proportion to it."""
+"""Number of pieces and clamps of an ordinary line. Computing time is in proportion to this number.
+"""
 
 
 class CompiledPart(Enum):
-    """A part of the solver that is compiled by itself. Its value is the law compiled last."""
+    """A part of the solver that is compiled separately. Its value is the name of the function
+    compiled last.
+    """
 
     LINE = "call_search"
     NEARBY = "audited"
@@ -50,7 +53,7 @@ class _Pace:
         self.child: Popen[bytes] | None = None
 
     def consider(self) -> None:
-        """Change over to compiled code if it is there, or have it compiled if that pays."""
+        """Switch to compiled code if it is ready, or start to compile it if that pays."""
         if self.compiled:
             return
         if self.child is not None:
@@ -70,7 +73,7 @@ _paces = {solver: _Pace(solver) for solver in CompiledPart}
 
 
 def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
-    """Announce that so many lines are about to be solved."""
+    """Announce the number of lines that are about to be solved."""
     pace = _paces[solver]
     pace.announced = pace.solved + lines
     if _may_choose():
@@ -80,7 +83,7 @@ def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
 def runs_compiled(
     settings: Settings, line: Line | None = None, solver: CompiledPart = CompiledPart.LINE
 ) -> bool:
-    """Whether to run compiled code for the line that is solved next; it is counted."""
+    """Count the next line, and return whether compiled code runs for it."""
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
@@ -92,7 +95,9 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are solved next; `work` is relative to that of a typical line."""
+    """Count lines that are about to be solved; `work` is the computing time relative to a typical
+    line.
+    """
     pace = _paces[solver]
     pace.solved += lines
     pace.work += lines if work is None else work

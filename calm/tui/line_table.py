@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import ClassVar, Literal
 
 from rich.cells import cell_len
@@ -135,9 +136,11 @@ class LineTable(TableCells, can_focus=True):
 
     def below(self, y: int) -> list[Segment]:
         """Return the hints that are shown below an empty line."""
-        if self.rows or not 1 < y < len(_EMPTY) + 2:
+        width = max(self.size.width, 20)
+        hints = [line for text in _EMPTY for line in wrap(text, width, subsequent_indent=" " * 6)]
+        if self.rows or not 1 < y < len(hints) + 2:
             return []
-        return [Segment(_EMPTY[y - 2], self.get_component_rich_style("line-table--clamp"))]
+        return [Segment(hints[y - 2], self.get_component_rich_style("line-table--clamp"))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
         """Return the text of a cell."""

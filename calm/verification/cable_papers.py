@@ -1,4 +1,4 @@
-"""Verify CALM against three papers on cables: Braconnot, Bourget & Marichal, Villain-Guillot.
+"""Verification against three papers on cables: Braconnot, Bourget & Marichal, Villain-Guillot.
 
 Braconnot's charts (EDF) give a buoy, towed cables and a point of the curve. Bourget & Marichal give
 a towed cable that strums. Villain-Guillot gives the closed form of a cable with linear drag.
@@ -51,8 +51,8 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 
 @cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
-    """Return the cable that three given quantities determine; if there are several, the first,
-    which does not dip below A.
+    """Return the cable that has three given quantities; if there are several, the first, which
+    stays above A.
     """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
@@ -72,8 +72,8 @@ _below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
-    """Return the buoy with a buoyancy [N] in water of a depth [m]; its drag at 1 m/s is K w = 12
-    N/m.
+    """Return a buoy of given buoyancy [N] in water of a given depth [m]; its drag at 1 m/s is K w =
+    12 N/m.
     """
     cable = LinePiece(28.467, True, -_BUOY_WEIGHT, normal_drag=_K * _BUOY_WEIGHT)
     return line_of(point(buoyancy, _BUOY_TENSION * cos(_BUOY_ANGLE)), cable), stream(depth, 1.0)
@@ -86,8 +86,8 @@ def _afloat() -> Solution:
 
 @cache
 def _towed() -> Wake:
-    """Return the tow as solved by the march: the body pulls the cable with the printed T_A at
-    φ_A.
+    """Return the tow as solved by the march; the body pulls the cable with the printed tension T_A
+    at the angle φ_A.
     """
     pull, angle = 63.401, radians(116.373)
     body = point(-pull * sin(angle), -pull * cos(angle))
@@ -209,7 +209,7 @@ _LAW = BourgetMarichal()
 
 
 def _line(length: float, *others: LinePiece, strums: bool = True) -> Line:
-    """Return a length of the cable, and the pieces towed on it."""
+    """Return a given length of the cable, and the pieces towed at its end."""
     cable = LinePiece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
     diameter = np.array([_DIAMETER] + [0.0] * len(others))
     return replace(
@@ -229,7 +229,7 @@ def _bare(speed: float) -> Wake:
 
 
 def _coefficient(angle: float) -> float:
-    """C* of the example's cable at an angle of the cable [rad]."""
+    """Return C* of the example's cable at an angle of the cable [rad]."""
     return _LAW.coefficient(angle, radians(_example(True).angle))
 
 
@@ -239,7 +239,7 @@ def _at_the_sphere() -> float:
 
 
 def _amplitude(speed: float) -> float:
-    """a/D of the bare cable at its towing angle."""
+    """Return a/D of the bare cable at its towing angle."""
     return _LAW.amplitude(radians(_bare(speed).angle))
 
 
@@ -295,12 +295,12 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
 
 
 _LENGTH, _UNIT = 1.25, 0.5
-"""L and ℓ = T₀/√((μg)² + (kV)²) of the figure."""
+"""Length L and ℓ = T₀/√((μg)² + (kV)²) of the cable in the figure."""
 
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """The cable with α₀ and α_d in degrees, under unit load."""
+    """Return the cable with angles α₀ and α_d in degrees, under unit load."""
     angle = radians(mean)
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 

@@ -1,4 +1,4 @@
-"""Verify the formulas of drag, strumming, sea water and gravity (C23).
+"""Verification of the formulas for drag, strumming, sea water and gravity (C23).
 
 Drag coefficients of smooth cylinders and spheres are compared over the Reynolds number. Three
 published fits give the increase of drag by strumming. The last figures are those of the paper on
@@ -25,7 +25,7 @@ WIESELSBERGER = (
     (2.20e5, 1.06), (2.93e5, 0.910), (3.65e5, 0.726), (4.27e5, 0.547), (4.90e5, 0.337),
     (5.03e5, 0.302), (6.28e5, 0.318), (8.10e5, 0.355),
 )  # fmt: skip
-"""Reynolds number and Cn of a long cylinder, measured (NACA report 121)."""
+"""Reynolds number and measured Cn of a long cylinder (NACA report 121)."""
 
 DNV = (
     (2.1e5, 1.21), (2.31e5, 1.20), (2.72e5, 1.17), (2.97e5, 1.11), (3.25e5, 1.01),
@@ -33,16 +33,16 @@ DNV = (
     (6.38e5, 0.284), (7.44e5, 0.297), (1.07e6, 0.389), (1.39e6, 0.470), (1.83e6, 0.539),
     (2.26e6, 0.584), (2.90e6, 0.629), (3.66e6, 0.648), (4.94e6, 0.678),
 )  # fmt: skip
-"""Reynolds number and Cn of a long cylinder, recommended (DNV-RP-C205, figure 6-6)."""
+"""Reynolds number and recommended Cn of a long cylinder (DNV-RP-C205, figure 6-6)."""
 
 MORRISON = (
     (1.0, 24.673), (1e2, 1.0381), (1e3, 0.4838), (1e4, 0.3926), (1e5, 0.4257), (2e5, 0.4159),
     (3e5, 0.1734), (4e5, 0.0930), (1e6, 0.1296),
 )  # fmt: skip
-"""Reynolds number and Cx of a sphere, by Morrison's correlation."""
+"""Reynolds number and Cx of a sphere, from Morrison's correlation."""
 
 MEASURED_UP_TO = 1.61e5
-"""Reynolds number up to which CALM's cylinder follows the measurements."""
+"""Reynolds number up to which CALM's curve for a cylinder follows the measurements."""
 
 _SLENDERNESS = (2.0, 5.0, 10.0, 20.0, 40.0, 50.0, 100.0)
 _KAPPA = (0.58, 0.62, 0.68, 0.74, 0.82, 0.87, 0.98)
@@ -54,7 +54,7 @@ _SHARE = 1e-9
 
 
 def cheng(reynolds: float) -> float:
-    """Cn of a smooth cylinder by Cheng's fit, for Reynolds numbers below 2e5."""
+    """Return Cn of a smooth cylinder from Cheng's fit, for Reynolds numbers below 2e5."""
     creeping = 11.0 * pow(reynolds, -0.75)
     middle = 0.9 * (1.0 - exp(-1000.0 / reynolds))
     return creeping + middle + 1.2 * (1.0 - exp(-pow(reynolds / 4500.0, 0.7)))
@@ -163,12 +163,12 @@ _LATITUDE = 30.0
 
 
 def _viscosity(temperature: float, salinity: float) -> float:
-    """Dynamic viscosity [mPa s]."""
+    """Return the dynamic viscosity [mPa s]."""
     return 1e3 * float(seawater.dynamic_viscosity(temperature, salinity))
 
 
 def _kinematic(temperature: float) -> float:
-    """Kinematic viscosity at 35 g/kg [1e-6 m²/s]."""
+    """Return the kinematic viscosity at 35 g/kg [1e-6 m²/s]."""
     density = float(seawater.density(temperature, 35.0, 0.0))
     return 1e6 * float(seawater.kinematic_viscosity(temperature, 35.0, density))
 
@@ -227,7 +227,9 @@ _PAPER_VISCOSITY = (
 
 _METER_SPEED = (0.51, 1.03, 1.54, 2.06, 2.57)
 _METER_DRAG = (1.03, 2.45, 4.98, 10.56, 20.60)
-"""Drag of an Aanderaa RCM4 or RCM5 [kgf] at those speeds [m/s], as given by the manufacturer."""
+"""Drag of an Aanderaa RCM4 or RCM5 current meter [kgf] at the tabulated speeds [m/s], as published
+by the manufacturer.
+"""
 
 
 CALM_PAPER = Source(

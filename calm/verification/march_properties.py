@@ -1,5 +1,5 @@
-"""Verify properties that hold for every line (C20), and the order of convergence with the angle
-step.
+"""Verification of properties that hold for every line (C20), and of the order of convergence with
+the angle step.
 """
 
 from collections.abc import Callable
@@ -68,7 +68,7 @@ def _solved() -> Solution:
 
 
 def _apart(one: Solution, other: Solution) -> float:
-    """Return the largest difference between two solutions at the ends of pieces.
+    """Return the largest difference between two solutions, at the ends of their pieces.
 
     Differences in position are divided by the depth, those in tension by the largest tension.
     """
@@ -94,8 +94,8 @@ def _mirrored(east: float, north: float) -> float:
 
 
 def _deeper() -> float:
-    """Compare with the mooring in water that is 100 m deeper, with the current moved down as
-    much.
+    """Compare a mooring with a copy in water that is 100 m deeper, whose current is moved down by
+    100 m.
     """
     down = 100.0
     water = replace(_SEA, depth=_SEA.depth + down, level=_SEA.level + down)
@@ -104,7 +104,7 @@ def _deeper() -> float:
 
 
 def _similar(length: float, force: float, speed: float) -> float:
-    """Compare with the mooring in other units of length, force and speed; drags are scaled
+    """Compare a mooring with a copy in other units of length, force and speed, with drags scaled
     accordingly.
     """
     amount = force / np.where(_LINE.flexible, length, 1.0)
@@ -128,7 +128,7 @@ def _similar(length: float, force: float, speed: float) -> float:
 
 
 def _split() -> float:
-    """Compare S1000 with its cable divided into ten pieces to the same mooring undivided."""
+    """Compare the mooring S1000 with a copy whose cable is divided into ten pieces."""
     finest = Settings(radians(0.01), tolerance=1e-10)
     whole, split = (
         solve_mooring(solved_moorings.s1000_mooring(parts), solved_moorings.S1000_SEA, finest)
@@ -140,7 +140,7 @@ def _split() -> float:
 
 
 def _loads(solution: Solution) -> Floats:
-    """Sum of the weights and drags on all elements at their positions, shape (3,) [N]."""
+    """Sum the weights and drags on all elements at their positions, shape (3,) [N]."""
     line, water = solution.line, solution.water
     piece, clamp = solution.element_piece, solution.element_clamp
     chord = np.diff(solution.position, axis=0)
@@ -179,8 +179,8 @@ def _reaction() -> float:
 
 
 def _tension_by_height() -> float:
-    """Largest |T_top − T_bottom − w Δz| of a cable without tangential drag, divided by its
-    tension.
+    """Return the largest |T_top − T_bottom − w Δz| of a cable without tangential drag, divided by
+    its tension.
     """
     line = line_of(
         *(
@@ -197,7 +197,7 @@ def _tension_by_height() -> float:
 
 
 def _tension_by_height_and_friction() -> float:
-    """|T_ship − T_body − w Δz − F s| of a tow with constant friction, divided by T_ship."""
+    """Return |T_ship − T_body − w Δz − F s| of a tow with constant friction, divided by T_ship."""
     weight, friction, length, pull = 2.5, 0.3, 300.0, 2000.0
     line = line_of(LinePiece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
     wake = towed(replace(line, friction=Friction.CONSTANT), deep_water(), 1.0)
@@ -205,8 +205,8 @@ def _tension_by_height_and_friction() -> float:
 
 
 def _plumb() -> float:
-    """Largest error of offset and tension in still water, where the tension is the sum of the loads
-    above.
+    """Return the largest error of offset and tension in still water; the exact tension is the sum
+    of the loads above.
     """
     water = replace(_SEA.still(), density=np.full(len(_SEA.level), REFERENCE_DENSITY))
     solution = solve_mooring(_LINE, water, _TIGHT)
@@ -224,7 +224,7 @@ def _undercurrent() -> Solution:
 
 
 def _other_depth() -> float:
-    """Return the depth of the float in the other equilibrium; 0 if none was found."""
+    """Return the depth of the float in the second equilibrium; 0 if none was found."""
     other = _undercurrent().other
     return 0.0 if other is None else other.depth
 
@@ -281,7 +281,7 @@ returns the highest and reports the lowest; the one between them is unstable."""
 
 
 ANGLE_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
-"""Angle steps [degrees]."""
+"""Angle steps for the order of convergence [degrees]."""
 
 LENGTH = 1000.0
 _BUOYANCY, _WEIGHT = 4905.0, 2.0
@@ -289,8 +289,8 @@ _BUOYANCY, _WEIGHT = 4905.0, 2.0
 
 @cache
 def heavy_line_error(degrees: float) -> float:
-    """Distance [m] between the free end of a heavy line as marched, at an angle step [degrees], and
-    its closed form.
+    """Return the distance [m] between the free end of a heavy line as marched with an angle step
+    [degrees] and in closed form.
     """
     drag, rope = sphere_drag(1.0, 0.65), cable(LENGTH, 0.0127, _WEIGHT, 1.3, 0.01)
     line = line_of(point(_BUOYANCY, drag), rope)

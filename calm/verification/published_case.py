@@ -1,5 +1,4 @@
-"""Define the cases of `calm verify`: expected figures, their computation by CALM, and the
-comparison.
+"""Cases of `calm verify`: expected values, their computation by CALM, and the comparison.
 
 Lines and waters of published cases are built here without a mooring file.
 """
@@ -21,12 +20,12 @@ from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 
 Solved = TypeVar("Solved")
 
-PRINTED = "Half a unit of the last printed digit, plus a tenth."
-"""The reason for the tolerance of a printed figure that CALM computes to more digits."""
+PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
+"""Reason for the tolerance of a printed value that CALM computes to more digits."""
 
 
 class Kind(StrEnum):
-    """Source of an expected figure, which determines the value of an agreement as evidence."""
+    """Source of an expected value, which determines the weight of an agreement as evidence."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"
@@ -36,12 +35,12 @@ class Kind(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """The kind as a sentence."""
+        """Explanation of the kind in a sentence."""
         return _MEANINGS[self]
 
     @property
     def verifies(self) -> bool:
-        """True if agreement is evidence that CALM is correct."""
+        """Whether agreement is evidence that CALM is correct."""
         return self is not Kind.BY_CONSTRUCTION
 
 
@@ -59,7 +58,7 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Case:
-    """One figure to reproduce.
+    """One value to reproduce.
 
     Attributes
     ----------
@@ -81,7 +80,9 @@ class Case:
     kind: Kind
 
     def check(self) -> CaseOutcome:
-        """Compute the figure; an exception is returned as the reason for a missing figure."""
+        """Compute the value with CALM; an exception is returned as the reason for a missing
+        value.
+        """
         try:
             return CaseOutcome(self, float(self.got()))
         except Exception as error:
@@ -90,7 +91,7 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseOutcome:
-    """Result of a case: CALM's figure, or NaN and the reason why there is none."""
+    """Result of a case: CALM's value, or NaN and the reason why there is none."""
 
     case: Case
     got: float
@@ -98,12 +99,12 @@ class CaseOutcome:
 
     @property
     def difference(self) -> float:
-        """CALM's figure less the expected one [unit of the case]."""
+        """CALM's value minus the expected value [unit of the case]."""
         return self.got - self.case.expected
 
     @property
     def within(self) -> bool:
-        """True if the figure agrees within the tolerance."""
+        """Whether the two values agree within the tolerance."""
         return abs(self.difference) <= self.case.tolerance
 
 
@@ -126,7 +127,7 @@ class Source:
     picture: str = ""
 
     def having(self, words: Iterable[str]) -> Source:
-        """Return the source with only those cases whose name, or the title, contains all given
+        """Return the source with the cases whose name, together with the title, contains all given
         words or parts of words.
         """
         wanted = [word.casefold() for word in words]
@@ -140,7 +141,7 @@ class Source:
 
 @dataclass(frozen=True)
 class CaseColumn(Generic[Solved]):
-    """Describe a column of a published table.
+    """Description of a column in a published table.
 
     Attributes
     ----------
@@ -187,14 +188,14 @@ def table(
 
 
 GRAVITY = 9.81
-"""Gravitational acceleration of every case that gives no other [m/s²]."""
+"""Gravitational acceleration of every case that specifies no other [m/s²]."""
 
 HALF_DENSITY = REFERENCE_DENSITY / 2.0
 
 
 @dataclass(frozen=True)
 class LinePiece:
-    """A piece of a line; names and units are those of `calm.physics.line.Line`.
+    """A piece of a line; attributes and units are those of `calm.physics.line.Line`.
 
     `clamps` are tuples of the distance from the piece's top, the buoyancy, the volume and the drag.
     """
@@ -217,7 +218,7 @@ def point(buoyancy: float, drag: float) -> LinePiece:
 
 
 def sphere_drag(diameter: float, cx: float) -> float:
-    """Drag of a sphere at 1 m/s [N/(m/s)²]."""
+    """Return the drag of a sphere at 1 m/s [N/(m/s)²]."""
     return HALF_DENSITY * cx * pi / 4.0 * diameter**2
 
 
@@ -240,7 +241,7 @@ def cable(
 
 
 def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
-    """Return the line of a list of pieces, the free end first."""
+    """Return the line that consists of given pieces, the free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
 
@@ -269,8 +270,8 @@ def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
 def profile(
     depth: float, rows: Sequence[tuple[float, float]], density: float = REFERENCE_DENSITY
 ) -> Water:
-    """Water of a depth [m] and density [kg/m³] with an eastward current, given by rows of depth and
-    speed.
+    """Return water of a given depth [m] and density [kg/m³], with an eastward current given by rows
+    of depth and speed.
     """
     level, u = np.array(rows).T
     still = np.zeros_like(u)
@@ -280,22 +281,22 @@ def profile(
 
 
 def stream(depth: float, speed: float, density: float = REFERENCE_DENSITY) -> Water:
-    """Water with the same eastward current [m/s] everywhere."""
+    """Return water with a uniform eastward current [m/s]."""
     return profile(depth, [(0.0, speed)], density)
 
 
 def deep_water(density: float = REFERENCE_DENSITY) -> Water:
-    """Still water without a seabed, for tows, whose current comes from the ship's speed."""
+    """Still water without a seabed, for tows; their flow results from the speed of the ship."""
     return stream(inf, 0.0, density)
 
 
 FINE = Settings(radians(0.1), tolerance=1e-9)
-"""Settings for figures of seven digits: the error of the march is about 4e-8 of the length."""
+"""Settings for values of seven digits; the error of the march is about 4e-8 of the length."""
 
 
 @dataclass(frozen=True)
 class Ends:
-    """Positions and forces of a line's ends in an eastward current.
+    """Positions and forces at a line's ends in an eastward current.
 
     Attributes
     ----------
@@ -310,7 +311,7 @@ class Ends:
 
     @property
     def tension(self) -> float:
-        """The tension at the lower end [N]."""
+        """Tension at the lower end [N]."""
         return hypot(self.horizontal, self.vertical)
 
     @property
@@ -328,7 +329,9 @@ def ends_of(solution: Solution) -> Ends:
 
 @cache
 def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
-    """Return the ends of the line that a function makes of the given figures, solved at `FINE`."""
+    """Return the ends of a line, solved at `FINE`; the line is built by a function from given
+    values.
+    """
     return ends_of(solve_mooring(*made(*given), FINE))
 
 

@@ -1,4 +1,4 @@
-"""Verify two moorings solved by others: S1000, and CDMS-1 of Berteaux's manual (C16).
+"""Verification against two moorings solved by others: S1000, and CDMS-1 of Berteaux's manual (C16).
 
 S1000 is a float on 1000 m of elastic cable in a sheared current. CDMS-1 was solved by two other
 programs.
@@ -26,7 +26,7 @@ _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """Return the line, with its cable divided into equal parts."""
+    """Return the line of the mooring S1000, with its cable divided into equal parts."""
     part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return published_case.line_of(
         published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
@@ -35,7 +35,7 @@ def s1000_mooring(parts: int = 1) -> Line:
 
 @cache
 def solved_s1000(degrees: float) -> Solution:
-    """Return the solution at an angle step [degrees]."""
+    """Return the solution for the mooring S1000 at an angle step [degrees]."""
     return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
 
 
@@ -59,7 +59,7 @@ def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
 
 
 def _order(coarse: float, fine: float) -> float:
-    """Order of convergence of the float's depth as marched, between two angle steps."""
+    """Return the order of convergence of the float's depth as marched, from two angle steps."""
     errors = [
         abs(float_depth(solved_s1000(degrees).as_marched) - DEPTH) for degrees in (coarse, fine)
     ]
@@ -115,7 +115,9 @@ def _rope(length: float, diameter: float, weight: float, modulus: float, ct: flo
 
 
 def cdms_1_mooring(ct: float = 0.0) -> Line:
-    """Return the line, with a tangential drag coefficient of its cables."""
+    """Return the line of the mooring CDMS-1, with a given tangential drag coefficient of its
+    cables.
+    """
     meter = LinePiece(2.0, False, -20.0 * GRAVITY, published_case.HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
     return published_case.line_of(
@@ -131,7 +133,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
 
 @cache
 def solved_cdms_1() -> Solution:
-    """CALM's solution at default settings, with the anchor at the origin."""
+    """Return CALM's solution for CDMS-1 at default settings, with the anchor at the origin."""
     return solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
 
 
@@ -158,14 +160,14 @@ def tension_at(solution: Solution, node: int) -> float:
 
 
 def _centre(piece: int, solution: Solution) -> tuple[float, float]:
-    """Offset from the anchor and height above the seabed of the middle of a piece [m]."""
+    """Return offset from the anchor and height above the seabed of a piece's midpoint [m]."""
     first, last = solution.piece_nodes[piece].tolist()
     offset = 0.5 * float(solution.position[first, 0] + solution.position[last, 0])
     return offset, 0.5 * (height_at(solution, first) + height_at(solution, last))
 
 
 def _stretched(piece: int, solution: Solution) -> float:
-    """Length of a piece under load [m]."""
+    """Return the length of a piece under load [m]."""
     first, last = solution.piece_nodes[piece].tolist()
     place = solution.position[first : last + 1]
     return float(np.linalg.norm(np.diff(place, axis=0), axis=1).sum())
@@ -192,8 +194,8 @@ PROGRAMS = {
     "MD&D": (432.07, 75.5, 682.9, 631.7, 827.2),
     "independent": (431.82, 76.81, 682.9, 621.3, 815.06),
 }
-"""Printed results: height and offset of the sphere [m]; tensions below the sphere, below the third
-meter and at the anchor [kgf].
+"""Printed results of other programs: height and offset of the sphere [m]; tensions below the
+sphere, below the third meter and at the anchor [kgf].
 """
 
 _PROGRAM = (

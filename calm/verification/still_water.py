@@ -1,5 +1,5 @@
-"""Verify lines in still water: catenaries (C12 to C14), an elastic rope, a slack line, an anchor
-drop.
+"""Verification for lines in still water: catenaries (C12 to C14), an elastic rope, a slack line, an
+anchor drop.
 
 The rope (C15) hangs under its own weight and a load. The slack mooring (C22) has a watch circle.
 """
@@ -58,7 +58,9 @@ def _number(field: ArrayLike) -> float:
 
 
 def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: float) -> Line:
-    """Return a line without drag below a float whose force at 1 m/s is horizontal and upward."""
+    """Return a line without drag below a float on which the flow exerts a horizontal and an upward
+    force at 1 m/s.
+    """
     horizontal, vertical = pull
     return line_of(
         point(vertical, horizontal), LinePiece(length, True, -weight, compliance=1.0 / stiffness)
@@ -168,8 +170,8 @@ moored, with the march.""",
 _LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
 
 _WHY = (
-    "Half a unit of the last printed digit, plus a tenth. Tension falls linearly along a hanging "
-    "rope, so the stretch of a segment at its mean tension is exact whatever the angle step."
+    "Half a unit of the last printed digit, plus 10 % of that. Tension falls linearly along a "
+    "hanging rope, so the stretch of a segment at its mean tension is exact for any angle step."
 )
 
 
@@ -203,7 +205,7 @@ _SLACK_DEPTH, _SCOPE = 540.0, 2.0
 
 
 def _radius() -> float:
-    """Return the watch-circle radius reported when a line without a unique shape is refused [m]."""
+    """Return the watch-circle radius in the error for a line without a unique shape [m]."""
     rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
@@ -270,7 +272,7 @@ _PLUMB_WIRE, _PLUMB_ANCHOR = 150.0, FallingAnchor(weight=8896.0, drag=400.0)
 
 @cache
 def _plumb() -> float:
-    """Terminal speed of a vertical line, 3000 m down [m/s]."""
+    """Return the terminal speed of a vertical line, at a depth of 3000 m [m/s]."""
     water = replace(_SEA, depth=3000.0)
     line = replace(_wire_below_a_sphere().with_length(1, _PLUMB_WIRE), floating=None)
     start = towed(line, water, _PLUMB_ANCHOR, Ship(0.0, 1.0), _FINE)
@@ -279,7 +281,7 @@ def _plumb() -> float:
 
 @cache
 def _alone() -> float:
-    """Terminal speed of a heavy sphere below a light thread and a cork [m/s]."""
+    """Return the terminal speed of a heavy sphere below a light thread and a cork [m/s]."""
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
     )
@@ -299,7 +301,7 @@ _PLUMB = sqrt(
         + 0.5 * REFERENCE_DENSITY * pi * 0.01 * 0.01 * _PLUMB_WIRE
     )
 )
-"""√(net weight/sum of the drags) of the vertical line [m/s]."""
+"""Terminal speed of the vertical line in closed form, √(net weight/sum of the drags) [m/s]."""
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
 _THREAD = "The drag of the thread and the cork, and the last bend of the line."
 

@@ -1,4 +1,5 @@
-"""Verify lines and towed cables in a uniform current against closed forms and quadratures.
+"""Verification for lines and towed cables in a uniform current, against closed forms and
+quadratures.
 
 C1 to C5 are a float on a thread, a neutral line and a heavy line. C7 and C8 are a bare cable at its
 critical angle and a cable that tows a body. C6 is Pode's cable functions and their identities.
@@ -39,7 +40,7 @@ _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
 _HEAVY = 2.0
 
-_PRINTED = "Half a unit of the last printed digit, plus a tenth: one straight rod is exact."
+_PRINTED = "Half a unit of the last printed digit, plus 10 % of that: one straight rod is exact."
 _SEVEN_DIGITS = (
     "1e-6 of the line's length or of the tension, 6e-5° for an angle; the figures have seven "
     "digits, and the march errs by 4e-8 at an angle step of 0.1°."
@@ -47,12 +48,12 @@ _SEVEN_DIGITS = (
 
 
 def float_on_a_thread(speed: float) -> tuple[Line, Water]:
-    """Return case C1 at a speed [m/s]."""
+    """Return case C1, a float on a thread, at a speed [m/s]."""
     return line_of(_FLOAT, LinePiece(100.0, True, 0.0)), stream(110.0, speed)
 
 
 def ball_on_a_thread() -> tuple[Line, Water]:
-    """Return case C2."""
+    """Return case C2, a ball on a thread."""
     ball = point(0.337612, sphere_drag(0.04, 1.0))
     return line_of(ball, LinePiece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
 
@@ -77,7 +78,7 @@ def _drop(length: float, ends: Ends) -> float:
 
 
 def _fall(speed: float) -> float:
-    """T_top − T_bottom of the heavy line [N]."""
+    """Return T_top − T_bottom of the heavy line [N]."""
     at_the_float = hypot(_FLOAT.buoyancy, _FLOAT.normal_drag * speed**2)
     return at_the_float - _rope_ends(_HEAVY, 0.0, speed).tension
 
@@ -85,13 +86,13 @@ def _fall(speed: float) -> float:
 def _identity(speed: float) -> Case:
     return Case(
         f"C4 heavy line, {speed} m/s: (T_top − T_bottom) / (w z_top)", 1.0, "", 1e-6,
-        "Exact; the rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°.",
+        "Exact; the error of straight segments is 1 − cos of half an angle step, 4e-7 at 0.1°.",
         lambda: _fall(speed) / (_HEAVY * _rope_ends(_HEAVY, 0.0, speed).z), Kind.PROPERTY,
     )  # fmt: skip
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """Return the columns of a float on a thread, with their tolerances."""
+    """Return the columns for a float on a thread, with their tolerances."""
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
         CaseColumn("tension", "N", force, lambda ends: ends.tension),
@@ -104,7 +105,7 @@ def _thread(length: float, force: float, place: float, angle: float) -> list[Cas
 def _by_speed(
     name: str, solve: Callable[[float], Solved], rows: Iterable[tuple[float, ...]]
 ) -> list[tuple[str, Callable[[], Solved], list[float]]]:
-    """Return the rows of a table with the speed [m/s] as first column."""
+    """Return the rows of a table with the speed [m/s] as its first column."""
     return [(f"{name}, {v} m/s", partial(solve, v), figures) for v, *figures in rows]
 
 
@@ -206,7 +207,7 @@ error 1e-10) without CALM. The march is compared with both; its angle step is 0.
             _by_speed("C7 bare cable", _bare, (
                 (1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277),
             )),
-            "Half a unit of the last printed digit, plus a tenth: a straight cable is exact "
+            "Half a unit of the last printed digit, plus 10 % of that: a straight cable is exact "
             "whatever the angle step.", Kind.CLOSED_FORM),
         *table(
             [
@@ -244,16 +245,16 @@ _TABLE = (
     (60, 0.00, 80, 1.357894, 0.240017, 0.023141, 0.238596),
     (60, 0.02, 70, 2.218338, 0.825827, 0.183732, 0.801214),
 )
-"""Columns: φc [degrees], f, φ [degrees], τ, σ, ξ, η."""
+"""Table of Pode's functions, with the columns φc [degrees], f, φ [degrees], τ, σ, ξ, η."""
 
 _CRITICAL = (
     (0.05, 12.7578), (0.1, 17.9642), (0.2, 25.1784), (0.5, 38.6683), (1.0, 51.8273),
     (2.0, 65.5302), (5.0, 78.8965), (10.0, 84.3173),
 )  # fmt: skip
-"""Columns: p, φc [degrees]."""
+"""Table of critical angles, with the columns p, φc [degrees]."""
 
 _PULL = 100.0
-"""Force of the towed body [N]."""
+"""Tension of the cable at the towed body [N]."""
 
 
 @cache
@@ -278,7 +279,7 @@ def _name(critical: float, friction: float, angle: float) -> str:
 
 
 def _identity_missed() -> float:
-    """Return the largest |τ − 1 − p η − f σ| of the table."""
+    """Return the largest |τ − 1 − p η − f σ| in the table."""
     misses = []
     for critical, friction, angle, *_ in _TABLE:
         tau, sigma, _, eta = _functions(critical, friction, angle)
@@ -299,7 +300,7 @@ def _tension(critical: float, angle: float, tau: float) -> Case:
 
 
 def _critical_angle(ratio: float) -> float:
-    """Critical angle [degrees]."""
+    """Return the critical angle [degrees]."""
     return degrees(float(uniform.critical_angle(ratio)))
 
 

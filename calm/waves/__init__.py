@@ -1,1 +1,1 @@
-"""Waves on a mooring: linear tensions and motions about its static equilibrium."""
+"""Effect of waves on a mooring: linear tensions and motions about its static equilibrium."""

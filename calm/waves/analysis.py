@@ -1,5 +1,5 @@
-"""Tensions and motions of a mooring in sea states, converged, with an estimate of their
-accuracy.
+"""Tensions and motions of a mooring in sea states, with automatic refinement and an error
+estimate.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ if TYPE_CHECKING:
     from calm.solve import Solution
 
 SHALLOWEST = 0.6
-"""Significant height over water depth at which a sea breaks (Thornton and Guza 1983, who give 0.42
-for the root mean square height).
+"""Ratio of significant height to water depth at which waves break (Thornton and Guza 1983, who give
+0.42 for the root mean square height).
 """
 
 CONVERGED, SLACK = "converged", "slack-in-waves"
 
 SETTLED = 0.01
-"""Relative change of the standard deviations of tension and pitch, for twice the elements or
-frequencies, at which the number of elements or frequencies suffices.
+"""Tolerance of refinement: relative change in the standard deviations of tension and pitch if the
+number of elements or frequencies is doubled.
 """
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
-"""Coarsest elements as a share of the depth, smallest number of frequencies, and largest number of
-joint refinements.
+"""Longest initial elements, as a fraction of the depth; smallest number of frequencies; largest
+number of refinements of both.
 """
 
 SMALL = 0.05
-"""Share of the largest standard deviation below which changes are ignored."""
+"""Fraction of the largest standard deviation below which changes are ignored."""
 
 
 @dataclass(frozen=True)
 class WaveAccuracy:
-    """Relative changes of the standard deviations of tension and float pitch.
+    """Estimated relative errors of the standard deviations of tension and float pitch.
 
     `mesh` and `frequencies` are the changes for twice the number of elements or frequencies.
     `linearisation` is the change if the linearised drag is reduced by a fifth; it shows the
@@ -61,7 +61,7 @@ class WaveAccuracy:
 
 @dataclass(frozen=True)
 class WaveAnalysis:
-    """Results for a mooring in waves.
+    """Results for a mooring in all its sea states.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class WaveAnalysis:
 
 @dataclass(frozen=True)
 class _Setting:
-    """Line, float and water of a computation, and the number of frequencies of each sea."""
+    """Line, float and water of a computation, and the number of frequencies per sea state."""
 
     line: LumpedLine
     buoy: Buoy | None
@@ -117,15 +117,15 @@ class _Setting:
     def respond(
         self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
     ) -> tuple[WaveResponse, Floats]:
-        """Return the response to a sea and the flow past its nodes; `first` is the flow in a
-        similar sea.
+        """Compute the response to a sea state, and the flow past the nodes; `first` is the flow in
+        a similar sea state.
         """
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
-        """Return the responses to half and to twice the cut-off frequency, with the drag of a
-        response.
+        """Compute the responses for half and for twice the cut-off frequency, with the linearised
+        drag of a given response.
 
         The spacing of the additional frequencies is that of the response.
         """
@@ -136,7 +136,9 @@ class _Setting:
         return CutOffs(response, response.below(0.5 * last), response.joined(beyond))
 
     def below_a_follower(self, sea: SeaState, flow: Floats) -> float | None:
-        """Standard deviation of the tension below a float that follows every wave [N]."""
+        """Return the standard deviation of the tension below a float that follows every
+        wave [N].
+        """
         if self.buoy is None:
             return None
         following = replace(self, buoy=replace(self.buoy, follows=True))
@@ -145,7 +147,8 @@ class _Setting:
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
-        """Return standard deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows.
+        """Compute the standard deviations of tension (seas, pieces) [N], 0 on the seabed, and the
+        flows.
 
         Next to the tensions are the standard deviations of the float's pitch (seas, 1), 0 if
         unknown.
@@ -220,7 +223,7 @@ def analyse(
 
 
 def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
-    """Return the fatigue of a piece, with its lives for half and for twice the cut-off
+    """Compute the fatigue of a piece, with its lives for half and for twice the cut-off
     frequency.
     """
     found, half, twice = (
@@ -236,8 +239,8 @@ def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
 def _settled(
     leg: Leg, solution: Solution, seas: Sequence[SeaState], toward: float
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
-    """Refine elements and frequencies until they suffice for the seas, and estimate the remaining
-    error.
+    """Refine elements and frequencies until they suffice for all sea states, and estimate the
+    remaining error.
 
     The second result is the flow past the nodes in the first sea.
     """

@@ -19,44 +19,43 @@ if TYPE_CHECKING:
     from calm.solve import Solution
 
 DISC_ADDED = 4.0 / 3.0
-"""Added mass of a disc at the surface over ρR³: half that of a deeply submerged disc, 8/3 (Lamb
-1932).
+"""Added mass of a disc at the surface, divided by ρR³: half that of a deeply submerged disc, 8/3
+(Lamb 1932).
 """
 
 DISC_CD = 1.17
 """Drag coefficient of a disc normal to the flow (Hoerner 1965, 3-15)."""
 
 SIDEWAYS_ADDED = 0.5
-"""Added mass in surge over displaced mass, for a short hull."""
+"""Added mass of a short hull in surge, divided by the displaced mass."""
 
 DISC_TURNED = 8.0 / 45.0
-"""Added moment of inertia of a disc at the surface over ρR⁵: half that of a deeply submerged disc
-(Lamb 1932).
+"""Added moment of inertia of a disc at the surface, divided by ρR⁵: half that of a deeply submerged
+disc (Lamb 1932).
 """
 
 END_LOSS = 0.42
-"""Length over the radius in which flow round the keel reduces the added mass of a hull in surge:
-the sectional added mass is multiplied by 1 - e^(-h/0.42R) at height h above the keel. With this
-factor, cylinders with a draft of 0.6 to 10 radii have the added mass of a panel method (Capytaine
-3) within 4 %.
+"""Ratio of length to radius for the reduction of added mass in surge by flow around the keel: the
+added mass of a section at height h above the keel is multiplied by 1 - e^(-h/0.42R). Cylinders with
+a draft of 0.6 to 10 radii then have the added mass of a panel method (Capytaine 3) within 4 %.
 """
 
 SECTIONS = 46
-"""Number of sections of a hull, from its keel up."""
+"""Number of horizontal sections of a hull, from its keel up."""
 
 PANELS_ROUND = 28
-"""Number of panels round a hull, which extend along its side over five sections each."""
+"""Number of panels around a hull; each panel extends over five sections."""
 
 PANEL_FREQUENCIES = (0.1, *(0.5 + 0.25 * each for each in range(15)), 5.0, 7.0, 10.0)
-"""Frequencies of the panel method, between which its results are interpolated [rad/s]."""
+"""Frequencies of the panel method [rad/s]; results in between are interpolated."""
 
 PRESCRIBED_STIFFNESS = 1e10
-"""Stiffness that forces a prescribed motion of a float [N/m]."""
+"""Stiffness that forces a float to follow a prescribed motion [N/m]."""
 
 
 @dataclass(frozen=True)
 class Buoy:
-    """A hull at the surface.
+    """Float at the surface, with its hull.
 
     Attributes
     ----------
@@ -94,7 +93,7 @@ class Buoy:
 
     @property
     def heaves(self) -> Literal["filtered", "panels", "follows"] | None:
-        """Return how its heave is computed; None if its response is given."""
+        """Method for computing heave; None if the file gives the response of the float."""
         if self.follows:
             return "follows"
         if self.rao:
@@ -104,8 +103,8 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness in heave, and the exciting force per metre of elevation
-        [N/m].
+        """Return the dynamic stiffness in heave [N/m], and the exciting force per metre of wave
+        elevation [N/m].
 
         Froude-Krylov force of a disc at its draft, ρgA e^(-kT) 2 J1(kR)/(kR); added mass
         `DISC_ADDED`, excited by the acceleration of the water at this draft; radiation by Haskind's
@@ -141,7 +140,7 @@ class Buoy:
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
         """Return the dynamic stiffness in surge and pitch, and the exciting forces per metre of
-        elevation.
+        wave elevation.
 
         Both refer to the point of the axis at the surface; pitch is positive if it moves the part
         above forward. Stiffness (3, f): surge [N/m], surge with pitch [N] and pitch [N m]; forces
@@ -169,7 +168,7 @@ class Buoy:
         return held, pushing
 
     def _given(self, omega: Floats, column: int) -> Complexes:
-        """Interpolate the response in `rao`, with the amplitude in a column and the phase in the
+        """Interpolate the response given in `rao`, with amplitudes in one column and phases in the
         next.
         """
         at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
@@ -192,7 +191,8 @@ class Buoy:
     def _of_sections(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Floats, Floats, Complexes]:
-        """Return added mass (3, f), radiation (3, f) and exciting forces (2, f), as in `pitch`.
+        """Compute added mass (3, f), radiation (3, f) and exciting forces (2, f) from the sections
+        of the hull, as in `pitch`.
 
         Exciting forces include the wave pressure on the hull, the added mass of its sections from
         `END_LOSS` and that of its bottom from `DISC_TURNED`, with the local acceleration of the
@@ -232,7 +232,7 @@ class Buoy:
 
 
 def bessel(order: int, x: Floats) -> Floats:
-    """Bessel function of the first kind, of an integer order from 0 on.
+    """Evaluate the Bessel function of the first kind, of an integer order ≥ 0.
 
     Its power series below 4 (Abramowitz and Stegun 9.1.10), which keeps its relative accuracy at
     small x. Above, the mean of cos(nθ − x sin θ) over a circle (9.1.21), in equal steps: exact to
@@ -322,8 +322,8 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
 
 
 def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
-    """Radius of a hull's waterplane [m], and radius and height above the surface of its sections
-    (s, 2) [m] from the keel up; 0 and None if they are unknown.
+    """Return the radius of a hull's waterplane [m], and radius and height above the surface of its
+    sections (s, 2) [m] from the keel up; 0 and None if the hull is unknown.
     """
     if hull is None or draft <= 0.0:
         return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None
@@ -342,8 +342,8 @@ def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
 
 
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
-    """Return added mass, radiation and exciting forces of an axisymmetric hull in deep water, as in
-    `Buoy.panels`, computed by Capytaine.
+    """Compute added mass, radiation and exciting forces of an axisymmetric hull in deep water by
+    Capytaine, in the form of `Buoy.panels`.
 
     Parameters
     ----------

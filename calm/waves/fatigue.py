@@ -1,4 +1,4 @@
-"""Extremes and fatigue of a Gaussian tension: cycles by Dirlik, damage by Miner."""
+"""Extremes and fatigue of a Gaussian tension: cycle distribution by Dirlik, damage by Miner."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from calm.physics.materials import fibre_of, materials_in
 
 
 def greatest_of(deviation: float, period: float, duration: float) -> float:
-    """Most probable maximum of a Gaussian process, as distance from the mean.
+    """Return the most probable maximum of a Gaussian process, as the distance from its mean.
 
     σ √(2 ln N) with N = duration / zero-crossing period (Longuet-Higgins 1952); 0 for a constant
     process.
@@ -30,8 +30,8 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
 
 
 def passing_probability(margin: float, deviation: float, period: float, duration: float) -> float:
-    """Probability that a Gaussian process deviates by more than a margin from its mean in a
-    duration.
+    """Return the probability that a Gaussian process deviates by more than a margin from its mean
+    within a duration.
 
     1 - exp(-N exp(-½ (margin/σ)²)), with N as in `greatest_of` (Rice 1945).
 
@@ -51,14 +51,14 @@ YEAR = 365.25 * 86_400.0
 """Length of a year [s]."""
 
 BAND = 0.15
-"""Relative change of the standard deviations of tension for `life_low` and `life_high`; the band of
+"""Relative change in the standard deviations of tension for `life_low` and `life_high`. The band of
 tensions measured at sea is wider (`calm.waves.measured`).
 """
 
 
 @dataclass(frozen=True)
 class FatigueCurve:
-    """Number of cycles of a tension range to failure: N = K R^-slope.
+    """Fatigue curve: number of cycles to failure for a tension range R, N = K R^-slope.
 
     Attributes
     ----------
@@ -126,14 +126,17 @@ class PieceFatigue:
 
 
 def moments_of(omega: Floats, spectral: Floats) -> Floats:
-    """Moments m0, m1, m2 and m4 of variances (f, …) at frequencies (f,) [rad/s]."""
+    """Return the spectral moments m0, m1, m2 and m4 of variances (f, …) at frequencies (f,)
+    [rad/s].
+    """
     shape = (-1,) + (1,) * (spectral.ndim - 1)
     powers = [(spectral * omega.reshape(shape) ** power).sum(0) for power in (0, 1, 2, 4)]
     return np.array(powers)
 
 
 def dirlik(moments: Sequence[float], slope: float) -> float:
-    """Rate of rainflow ranges of a Gaussian process, raised to a power and summed, per second.
+    """Return the rate of rainflow ranges of a Gaussian process, raised to a power and summed, per
+    second.
 
     Dirlik 1985, Application of computers in fatigue analysis (University of Warwick): the ranges
     have one exponential and two Rayleigh distributions, fitted to simulations.
@@ -163,7 +166,8 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
 
 
 def narrow_band(moments: Sequence[float], slope: float) -> float:
-    """As `dirlik`, for a narrow-band process with Rayleigh ranges: ν0 (2 √(2 m0))^m Γ(1 + m/2).
+    """Return the result of `dirlik` for a narrow-band process with Rayleigh ranges: ν0 (2 √(2
+    m0))^m Γ(1 + m/2).
 
     It is an upper bound for processes with the same moments m0 and m2 (Rychlik 1993).
     """
@@ -176,7 +180,9 @@ def narrow_band(moments: Sequence[float], slope: float) -> float:
 
 
 def curve_of(component: Component) -> str | None:
-    """Name of a component's curve: its own, or by its type and material; None if unknown."""
+    """Return the name of a component's fatigue curve, as specified or by type and material; None if
+    unknown.
+    """
     if component.fatigue is not None and component.fatigue.curve is not None:
         return component.fatigue.curve
     if isinstance(component, Chain):
@@ -192,7 +198,7 @@ def curve_of(component: Component) -> str | None:
 def fatigue_of(
     component: Component, index: int, label: str, seas: Sequence[tuple[float, float, Floats]]
 ) -> PieceFatigue:
-    """Damage per year of a piece, summed over the seas by Miner's rule.
+    """Compute the damage per year of a piece, summed over the sea states by Miner's rule.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A line in equilibrium as lumped masses and springs, for small motions about the equilibrium."""
+"""A line in equilibrium as lumped masses and springs, for small motions about this equilibrium."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
 Complexes = NDArray[np.complex128]
 
 SHORTEST = 0.05
-"""Length below which elements are not springs; their mass is lumped at the node [m]."""
+"""Length below which an element is no spring and its mass is added to the node [m]."""
 
 RIGID = 1e9
-"""Stiffness EA of inextensible elements [N]."""
+"""Stiffness EA of elements that are treated as inextensible [N]."""
 
 CHAIN_STIFFNESS = 0.854e11
-"""EA of studless chain over the squared bar diameter [N/m²], from the catenary tables of
-OrcaFlex.
+"""Stiffness EA of studless chain divided by the squared bar diameter [N/m²], from the catenary
+tables of OrcaFlex.
 """
 
 CYLINDER_ADDED, SPHERE_ADDED, BODY_ADDED = 1.0, 0.5, 1.0
-"""Added mass over displaced mass: normal to a cylinder, for a sphere, and for other bodies
+"""Ratios of added mass to displaced mass: normal to a cylinder, for a sphere, and for other bodies
 (DNV-RP-C205, appendix D).
 """
 
 
 @dataclass(frozen=True)
 class LumpedLine:
-    """Lumped line: n nodes from the free end down, and n - 1 springs; the last node is fixed.
+    """Line of n lumped masses from the free end down, and n - 1 springs; the last node is fixed.
 
     Attributes
     ----------
@@ -86,8 +86,8 @@ class LumpedLine:
     inextensible: tuple[str, ...]
 
     def turned(self, motion: Complexes) -> Complexes:
-        """Rotation (f, n-1, 3) of the springs, normal to their axes, for a motion (f, n, 3)
-        [rad].
+        """Return the rotation (f, n-1, 3) of the springs normal to their axes, for a motion (f, n,
+        3) [rad].
         """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
@@ -207,7 +207,9 @@ _NODE_FIGURES = (
 def _element_figures(
     component: Component, carried: Line, piece: int, cut: float
 ) -> dict[str, float]:
-    """Masses and drag of an element: a rigid piece, or a length [m] of a flexible piece."""
+    """Return the masses and drag of an element: a rigid piece, or a length [m] of a
+    flexible piece.
+    """
     flexible = isinstance(component, Flexible)
     share, length = (cut, 1.0) if flexible else (1.0, _length_of(component))
     across, along = float(carried.normal_drag[piece]), float(carried.tangential_drag[piece])
@@ -223,7 +225,7 @@ def _length_of(component: Component) -> float:
 
 
 def _figures_of(component: Component, length: float) -> dict[str, float]:
-    """Masses of a component, per metre for a flexible one [kg, kg/m].
+    """Return the masses of a component, per metre for a flexible component [kg, kg/m].
 
     An unknown mass follows from the net buoyancy and the displacement for its size.
     """
@@ -245,7 +247,9 @@ def _figures_of(component: Component, length: float) -> dict[str, float]:
 
 
 def _volume(component: Component, length: float) -> float:
-    """Displaced volume, estimated from the outer size if it is not specified [m³, m³/m]."""
+    """Return the displaced volume, estimated from the outer dimensions if unspecified [m³,
+    m³/m].
+    """
     diameter = float(getattr(component, "diameter", 0.0) or 0.0)
     if isinstance(component, Cable):
         return pi * diameter**2 / 4.0
@@ -262,7 +266,7 @@ def _volume(component: Component, length: float) -> float:
 
 
 def _axial(component: Component, tension: float) -> float:
-    """Tangent stiffness EA at a tension [N]."""
+    """Return the tangent stiffness EA at a tension [N]."""
     if isinstance(component, Chain):
         return component.stiffness or CHAIN_STIFFNESS * component.diameter**2
     if isinstance(component, Cable):

@@ -1,4 +1,5 @@
-"""Tensions measured at sea against computed ones: a band by the height of the sea.
+"""Ratio of tensions measured at sea to computed tensions, as a band for low and for high sea
+states.
 
 The Southern Ocean Flux Station (SOFS, 47° S, 4600 m of water, disc buoys of 2.7 m on inverse
 catenaries) had a load cell below its buoy. Five of its lines are described well enough to be
@@ -14,7 +15,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 HIGHEST_LOW_SEA = 5.0
-"""Significant height up to which a sea is low in this comparison [m], between two bins."""
+"""Significant height up to which a sea state counts as low in this comparison [m], at the limit of
+two bins.
+"""
 
 COMPARED = 1.0, 10.0
 """Range of significant heights in which tensions were compared [m]."""
@@ -22,7 +25,7 @@ COMPARED = 1.0, 10.0
 
 @dataclass(frozen=True)
 class MeasuredBand:
-    """Measured over computed standard deviation of tension, from `low` to `high`.
+    """Band, `low` to `high`, of the ratio of measured to computed standard deviation of tension.
 
     `from_height` and `to_height` are the significant heights of the seas compared [m].
     """
@@ -38,16 +41,17 @@ _BY_HEAVE = {
     "panels": ((0.54, 0.9), (0.7, 1.05)),
     "follows": ((0.44, 0.7), (0.6, 0.9)),
 }
-"""Bands in low and in high seas for each method to compute the heave. They contain the ratios of
-computed to measured tension that were found: `filtered` 1.04 to 1.71 in low and 0.93 to 1.34 in
-high seas, `panels` 1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to 1.66.
+"""Bands in low and in high seas for each method of computing heave. They enclose the observed
+ratios of computed to measured tension: `filtered` 1.04 to 1.71 in low and 0.93 to 1.34 in high
+seas, `panels` 1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to 1.66.
 """
 
 
 def measured_band(
     significant_height: float, heave: Literal["filtered", "panels", "follows"]
 ) -> MeasuredBand:
-    """Return the band of measured tensions for a sea, for the line below a float at the surface.
+    """Return the band of measured tensions for a sea state, for the line below a float at the
+    surface.
 
     Seas outside the range of the comparison get the band of the nearest height.
 

@@ -1,5 +1,5 @@
-"""Tensions and motions of a mooring in one sea, also for other cut-offs and for the measured
-band.
+"""Tensions and motions of a mooring in one sea state, including those for other cut-off frequencies
+and for the measured band.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PieceLoads:
-    """Tensions of a piece in a sea [N].
+    """Tensions of a piece in a sea state [N].
 
     `tension_max` and `tension_min` are the most probable extremes of the duration at the upper end,
     `greatest` and `least` the extremes over the whole piece. `slack_probability` is the probability
@@ -42,7 +42,8 @@ class PieceLoads:
 
 @dataclass(frozen=True)
 class PieceInWaves:
-    """A piece of the line in a sea: tensions as in `PieceLoads`, motions [m], [degrees].
+    """Results for a piece of the line in a sea state: tensions as in `PieceLoads`, motions [m],
+    [degrees].
 
     Attributes
     ----------
@@ -70,13 +71,15 @@ class PieceInWaves:
 
 
 PieceMoments = tuple[tuple[float, Floats], ...]
-"""Mean tension [N] and spectral moments m0, m1, m2, m4 of each piece, at the spring with the
-largest standard deviation.
+"""Mean tension [N] and spectral moments m0, m1, m2, m4 of each piece, at the spring of the piece
+with the largest standard deviation.
 """
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea up to its cut-off frequency, and up to half and twice that frequency."""
+    """Responses to a sea state up to its cut-off frequency, and up to half and twice this
+    frequency.
+    """
 
     full: WaveResponse
     half: WaveResponse
@@ -85,7 +88,8 @@ class CutOffs(NamedTuple):
 
 @dataclass(frozen=True)
 class MooringInSea:
-    """A mooring in a sea: its pieces down the line, and the labels of pieces that become slack.
+    """Results for a mooring in a sea state: its pieces down the line, and the labels of pieces that
+    become slack.
 
     Attributes
     ----------
@@ -112,7 +116,7 @@ class MooringInSea:
     along: tuple[Floats, Floats, Floats, Floats]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object of the sea, in SI units and degrees."""
+        """Return the JSON object of the sea state, in SI units and degrees."""
         return {
             "significant_wave_height": self.sea.significant_height,
             "peak_period": self.sea.peak_period,
@@ -127,7 +131,7 @@ class MooringInSea:
 
 
 class _Tensions:
-    """Statistics of the tension in a line: in its springs, and at the upper ends of pieces."""
+    """Statistics of the tension in the springs of a line, and at the upper ends of its pieces."""
 
     def __init__(self, line: LumpedLine, response: WaveResponse, duration: float) -> None:
         spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
@@ -139,8 +143,8 @@ class _Tensions:
         self.mean, self.duration = line.tension, duration
 
     def loads(self, piece: int, mean: float, own: slice, factor: float = 1.0) -> PieceLoads:
-        """Tensions of a piece with the given springs, with standard deviations multiplied by a
-        factor.
+        """Return the tensions of a piece with given springs; standard deviations are multiplied by
+        a factor.
         """
         deviation, apart = factor * float(self.at_ends[piece]), float(self.periods[piece])
         most = greatest_of(deviation, apart, self.duration)
@@ -155,7 +159,9 @@ class _Tensions:
         )
 
     def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
-        """Mean and moments at the spring with the largest standard deviation; 0 on the seabed."""
+        """Return mean and spectral moments at the spring with the largest standard deviation; 0 on
+        the seabed.
+        """
         if own == slice(0):
             return mean, np.zeros(4)
         at = own.start + int(self.deviation[own].argmax())
@@ -172,7 +178,7 @@ def mooring_in_sea(
     duration: float,
     follower: float | None,
 ) -> MooringInSea:
-    """Compute tensions and motions of the pieces of a mooring from its responses to a sea.
+    """Compute tensions and motions of the pieces of a mooring from its responses to a sea state.
 
     Parameters
     ----------
@@ -230,7 +236,7 @@ def mooring_in_sea(
 
 
 def _springs(line: LumpedLine, piece: int) -> slice:
-    """Springs of a piece, an empty slice on the seabed."""
+    """Return the springs of a piece as a slice, which is empty on the seabed."""
     first = int(line.piece_spring[piece])
     if first < 0:
         return slice(0)

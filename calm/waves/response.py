@@ -1,4 +1,4 @@
-"""Linear response of a line to waves at all frequencies, with drag linearised at equal
+"""Linear response of a line to waves, frequency by frequency, with drag linearised for equal energy
 dissipation.
 """
 
@@ -18,17 +18,17 @@ from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
 from calm.waves.lumped_line import Complexes, LumpedLine
 
 SETTLED = 5e-3
-"""Relative change of the flow past the nodes at which the linearisation of drag has converged. The
+"""Relative change of the flow past the nodes at which the linearised drag has converged. The
 relative change of tension is twenty times smaller.
 """
 
 STILL = 1e-12
-"""Smallest flow past a node, to avoid division by zero [m/s]."""
+"""Smallest speed of flow past a node, to avoid division by zero [m/s]."""
 
 MOST_ITERATIONS = 40
 
 RELAXATION = 0.8
-"""Under-relaxation of the iteration: applied share of the change in flow."""
+"""Under-relaxation of the iteration: the fraction of a change in flow that is applied."""
 
 _POINTS, _WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -36,7 +36,8 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 @dataclass(frozen=True)
 class WaveResponse:
-    """Transfer functions of a line for waves of unit elevation, and their weights in a sea.
+    """Transfer functions of a line for unit wave elevation, and the weights of the frequencies in a
+    sea state.
 
     Attributes
     ----------
@@ -54,7 +55,7 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Standard deviation and zero-crossing period [s] of transfer functions (f, …)."""
+        """Return standard deviation and zero-crossing period [s] of transfer functions (f, …)."""
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
         zeroth = spectral.sum(0)
@@ -64,7 +65,7 @@ class WaveResponse:
         return np.sqrt(zeroth), period
 
     def below(self, limit: float) -> WaveResponse:
-        """Return the response without the waves above a frequency [rad/s].
+        """Return the response to the waves below a frequency only [rad/s].
 
         Each frequency represents the waves to the midpoints between it and its neighbours.
         """
@@ -74,7 +75,7 @@ class WaveResponse:
         return replace(self, weight=self.weight * np.clip(share, 0.0, 1.0))
 
     def joined(self, other: WaveResponse) -> WaveResponse:
-        """Return the combined response to the waves of both responses."""
+        """Return the combined response to the waves of two responses."""
         names = [each.name for each in fields(self)]
         both = ((getattr(self, name), getattr(other, name)) for name in names)
         return WaveResponse(*(np.concatenate(pair) for pair in both))
@@ -104,11 +105,11 @@ class Waves:
 
     @property
     def ahead(self) -> Floats:
-        """Unit vector of the direction of travel, (3,)."""
+        """Unit vector in the direction of travel, (3,)."""
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Velocity of the water at positions (n, 3), per metre of elevation: (f, n, 3).
+        """Return the water velocity at positions (n, 3), per metre of wave elevation: (f, n, 3).
 
         Linear waves with elevation Re e^(i(ωt - ks)), s in the direction of travel.
         """
@@ -126,8 +127,8 @@ class Waves:
 
 
 class _Afloat(NamedTuple):
-    """Dynamic stiffness of a float and its exciting forces, in the three translations of its bail
-    and in pitch.
+    """Dynamic stiffness of a float and its exciting forces, in the three translations of its
+    attachment point and in pitch.
 
     `held` (f, 4, 4) is the stiffness and `pushed` (f, 4) the force per metre of elevation, both
     without drag. Drag acts at p points whose motion is given by `ways` (p, 3, 4), in water of
@@ -175,7 +176,9 @@ class _Afloat(NamedTuple):
         return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
-        """Return stiffness and exciting forces including linear drag (3, 3) and rotational drag."""
+        """Return stiffness and exciting forces with linear drag (3, 3) and rotational drag
+        added.
+        """
         each = drag / len(self.ways)
         whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
         held = self.held + 1j * omega[:, None, None] * whole
@@ -195,7 +198,7 @@ def respond(
     first: Floats | None = None,
     once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
-    """Compute the response to a sea, and the flow (n, 3) past the nodes for which drag is
+    """Compute the response to a sea state, and the flow (n, 3) past the nodes for which drag is
     linearised.
 
     The drag of each node is replaced by the linear drag that is equivalent, on average, over a
@@ -250,8 +253,8 @@ def respond(
 
 
 def _axes(line: LumpedLine) -> Floats:
-    """(n, 3, 3) unit vectors: along the line, along the mean normal flow, and normal to the first
-    two.
+    """Return (n, 3, 3) unit vectors: along the line, along the mean normal flow, and normal to
+    both.
     """
     t = line.tangent
     across = line.current - (line.current * t).sum(1, keepdims=True) * t
@@ -264,13 +267,15 @@ def _axes(line: LumpedLine) -> Floats:
 
 
 def _deviations(axes: Floats, relative: Complexes, weight: Floats) -> Floats:
-    """(n, 3) standard deviations of the flow past nodes, along their axes [m/s]."""
+    """Return (n, 3) standard deviations of the flow past the nodes, along their axes [m/s]."""
     own = _times(axes, relative)
     return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + STILL)
 
 
 def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Floats:
-    """(n, 3, 3) damping of the nodes for a flow with given standard deviations [N/(m/s)]."""
+    """Return the (n, 3, 3) damping of the nodes for a flow with given standard deviations
+    [N/(m/s)].
+    """
     axes = _axes(line)
     mean = np.einsum("nac,nc->na", axes, line.current)
     along = np.array([_slope(u, s) for u, s in zip(mean[:, 0], deviation[:, 0], strict=True)])
@@ -304,7 +309,7 @@ def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Float
 
 
 def _slope(mean: float, deviation: float) -> float:
-    """E[d(|v|v)/dv] of a Gaussian flow: 2 (σ √(2/π) e^(-U²/2σ²) + U erf(U/(√2 σ)))."""
+    """Evaluate E[d(|v|v)/dv] for a Gaussian flow: 2 (σ √(2/π) e^(-U²/2σ²) + U erf(U/(√2 σ)))."""
     ratio = mean / deviation
     return 2.0 * (
         deviation * sqrt(2.0 / pi) * exp(-0.5 * min(ratio**2, 1400.0))
@@ -313,7 +318,7 @@ def _slope(mean: float, deviation: float) -> float:
 
 
 def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexes:
-    """(f, n, 3) forces of the accelerated water, per metre of elevation [N/m]."""
+    """Return the (f, n, 3) forces of the accelerated water, per metre of wave elevation [N/m]."""
     across = line.water_across + line.added_across
     along = line.water_along + line.added_along
     t = line.tangent
@@ -323,12 +328,12 @@ def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexe
 
 
 FREQUENCIES_AT_ONCE = 16
-"""Number of frequencies solved at once: their matrices fit into the processor's cache."""
+"""Number of frequencies solved at once, so that their matrices fit into the processor's cache."""
 
 
 def _undamped(line: LumpedLine) -> tuple[Floats, Floats, Floats]:
-    """Blocks (n-1, 3, 3) of springs and of masses at the nodes, and blocks (n-2, 3, 3) of the
-    springs between neighbours.
+    """Return the blocks (n-1, 3, 3) of springs and of masses at the nodes, and the blocks (n-2, 3,
+    3) of the springs between neighbours.
     """
     eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
@@ -372,7 +377,7 @@ def _by_blocks(
     damping: Floats,
     push: Complexes,
 ) -> Complexes:
-    """Solve by NumPy alone, which takes twice as long as `_by_bands`."""
+    """Solve by NumPy alone, which takes twice the time of `_by_bands`."""
     held, masses, between = undamped
     beside, motion = between.astype(complex), np.empty_like(push)
     for first in range(0, len(omega), FREQUENCIES_AT_ONCE):
@@ -387,7 +392,7 @@ def _by_blocks(
 
 
 _BAND = 5
-"""Number of diagonals on each side of the main diagonal: a node has three directions and two
+"""Number of diagonals on each side of the main diagonal; a node has three directions and two
 neighbours.
 """
 
@@ -402,8 +407,8 @@ def _by_bands(
     damping: Floats,
     push: Complexes,
 ) -> Complexes:
-    """Solve by LAPACK's banded solver. All frequencies share one matrix, which fits into the cache
-    of the processor.
+    """Solve by LAPACK's banded solver. All frequencies share one matrix array, which fits into the
+    processor's cache.
     """
     from scipy.linalg.lapack import zgbsv
 
@@ -423,7 +428,9 @@ def _by_bands(
 
 
 def _banded(blocks: Floats, between: Floats | None = None) -> Floats:
-    """Columns (3n, 16) of the banded matrix of blocks (n, 3, 3), and of those between nodes."""
+    """Return the columns (3n, 16) of the banded matrix with blocks (n, 3, 3) for nodes, and blocks
+    between nodes.
+    """
     columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
     for row, column in _ENTRIES:
         at = 2 * _BAND + row - column
@@ -435,18 +442,18 @@ def _banded(blocks: Floats, between: Floats | None = None) -> Floats:
 
 
 def _times(matrices: Floats, vectors: Complexes) -> Complexes:
-    """Products (f, n, 3) of real matrices (n, 3, 3) with vectors (f, n, 3)."""
+    """Multiply real matrices (n, 3, 3) by vectors (f, n, 3)."""
     return np.asarray(sum(matrices[:, :, i] * vectors[:, :, i, None] for i in range(3)))
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
-    """(f, n-1) change of tension in the springs from equilibrium [N/m]."""
+    """Return the (f, n-1) change of tension in the springs from equilibrium [N/m]."""
     stretched = ((motion[:, 1:] - motion[:, :-1]) * line.spring).sum(2)
     return np.asarray(line.stiffness * stretched)
 
 
 def wave_numbers(omega: Floats, depth: float, gravity: float) -> Floats:
-    """Wave numbers of linear waves [1/m] from ω² = g k tanh(k h), by Newton's method.
+    """Solve ω² = g k tanh(k h) for the wave numbers k of linear waves [1/m], by Newton's method.
 
     Parameters
     ----------

@@ -23,13 +23,13 @@ from pages import pictures
 
 HEAD = """# Gallery
 
-The moorings and tows of the folder `lines/`, each with its file, its shape, its schematic, what
-CALM says of it, and one thing to try. Everything on these pages is made from the files. In these
-small pictures distances are drawn larger than depths.
+The moorings and tows of the folder `lines/`, each with its file, shape, schematic, results, and
+a command to try. These pages are generated from the files. In the
+small pictures the horizontal scale is larger than the vertical scale.
 """
 
 LEADING = ("tall-array-mooring", "compact-adcp", "s-tether", "profiler-mooring")
-"""The designs that most groups build today come first."""
+"""Common designs, which come first."""
 
 CASES = ("bourget-marichal-sphere", "braconnot-buoy", "cdms-1", "s1000")
 """Cases published in articles or solved by other programs; not designs to copy."""
@@ -56,37 +56,37 @@ TRIES = {
         "runs at another depth, on the other side of the wake.",
     ),
     "bourget-marichal-sphere": Try(
-        "The paper gives the depth of the sphere at several speeds. Compare:",
+        "The article gives the depth of the sphere at several speeds. Compare:",
         ("calm verify bourget",),
     ),
     "braconnot-buoy": Try(
-        "The charts from which the example comes are a command of their own:",
+        "CALM also draws the charts from which the example comes. Compare:",
         ("calm verify braconnot buoy",),
     ),
     "cdms-1": Try(
-        "Two other programs have printed tensions of this line. Compare:",
+        "Tensions of this line by two other programs are published. Compare:",
         ("calm verify cdms tension",),
     ),
     "chain-and-rope-surface": Try(
-        "How sure are its figures? The current, the drags and the depth are not known exactly:",
+        "How uncertain are the results? Current, drag and depth are not known exactly:",
         ("calm run {file} --uncertainty --samples 256",),
-        start="How sure",
+        start="Uncertainty of",
     ),
     "deep-current-meters": Try(
-        "Which part of the line costs most knockdown?",
+        "Which part of the line causes most of the knockdown?",
         ("calm run {file} --explain",),
-        start="What makes",
+        start="What causes",
     ),
     "compact-adcp": Try(
-        "It is lifted as one piece. What goes to sea, in which order, and how it is let go:",
+        "The mooring is lifted as a whole. Print the parts list, the logs and other deck sheets:",
         ("calm deck {file} -o deck",),
     ),
     "depressor-fit-depth": Try(
-        "The wire was paid out for one speed. Where does the sonar run at others?",
+        "The length of wire is right for one speed. How deep is the sonar at other speeds?",
         (f'{_SPEEDS} "3 knot:8 knot:1 knot"',),
     ),
     "fit-top-depth": Try(
-        "The rope is cut for still water. Where does the top stand in a storm?",
+        "The rope is cut for still water. How deep is the top in a storm?",
         ("calm run {file} --environment storm",),
         start="Top ",
     ),
@@ -95,44 +95,44 @@ TRIES = {
         (f'{_SPEEDS} "20 knot:80 knot:20 knot"',),
     ),
     "profiler-mooring": Try(
-        "The profiler pulls at another place every hour. Where does its wire lean most?",
+        "The load of the profiler moves along the wire. Where is the tilt of the wire largest?",
         ("calm run {file}",),
-        start="profiler travels",
+        start="Profilers ",
     ),
     "receiver-line": Try(
-        "A short line hardly moves. What moves it all the same?",
+        "A short line moves little. Which part causes its excursion?",
         ("calm run {file} --explain",),
-        start="What makes",
+        start="What causes",
     ),
     "s-tether": Try(
-        "The longer the tether, the farther the buoy strays. How long may it be for 65 m?",
+        "A longer tether increases the excursion of the buoy. How long may it be for 65 m?",
         ('calm size {file} --target "excursion(top) <= 65 m" --change "upper tether.length"',),
     ),
     "s1000": Try(
-        "Its continuous solution is known. How far is CALM from it, by angle step?",
+        "The continuous solution is known. How large is the error of CALM at each angle step?",
         ("calm verify s1000",),
     ),
     "sediment-trap-undercurrent": Try(
-        "Traps are worth nothing beyond 10° of tilt. What causes theirs?",
+        "Traps do not sample beyond 10° of tilt. What causes the knockdown?",
         ("calm run {file} --explain",),
-        start="What makes",
+        start="What causes",
     ),
     "tall-array-mooring": Try(
-        "Where does its knockdown come from?",
+        "What causes its knockdown?",
         ("calm run {file} --explain",),
-        start="What makes",
+        start="What causes",
     ),
     "taut-nylon-surface": Try(
-        "The stiffness of the nylon matters most. How much?",
+        "How large is the effect of the stiffness of the nylon?",
         ("calm run {file} --uncertainty --samples 256",),
-        start="How sure",
+        start="Uncertainty of",
     ),
     "thermistor-string": Try(
         "How much buoyancy keeps the recorders within a metre of their depths?",
         ('calm size {file} --target "knockdown(top) <= 1 m" --change "top float.buoyancy"',),
     ),
     "tidal-adcp": Try(
-        "The tide turns. Solve the ebb:",
+        "Solve it in the ebb:",
         ("calm run {file} --environment ebb",),
         start="Top ",
     ),
@@ -143,16 +143,16 @@ TRIES = {
             "calm batch {file} --currents record.nc -o moved.nc",
         ),
         picture=pictures.year,
-        seen="Every hour of a made year, 8760 profiles: tides move the float little, an eddy that "
-        "passes knocks it down. Solved by `calm.solve_profiles` in less than a second.",
+        seen="Every hour of a synthetic year, 8760 profiles: tides move the float little, but a "
+        "passing eddy knocks it down. Solved by `calm.solve_profiles` in less than a second.",
     ),
     "veering-current": Try(
-        "Draw it; the plan is the picture in which the current is seen:",
+        "Draw it; the plan shows how the line follows the current:",
         ("calm run {file} -o veering.png",),
         start="Top ",
         picture=pictures.veering_plan,
-        seen="The line from above, coloured by depth, beside the current in the same colours: "
-        "where the current turns, the line bends.",
+        seen="The line from above, coloured by depth, next to the current in the same colours: "
+        "the line bends at the depths at which the current turns.",
     ),
 }
 
@@ -219,7 +219,8 @@ def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
         f"```text\n{table}\n```",
     ]
     if verdict:
-        parts.append(f"## The verdict\n\n`calm check {file.name}` says:\n\n```text\n{verdict}\n```")
+        command = f"calm check {file.name}"
+        parts.append(f"## The verdict\n\n`{command}` prints:\n\n```text\n{verdict}\n```")
     parts.append(f"## One thing to try\n\n{tried.why}\n\n```sh\n" + "\n".join(commands) + "\n```")
     parts.append(f"```text\n{outcome}\n```")
     if tried.picture is not None:

@@ -12,9 +12,8 @@ Schema = Mapping[str, Any]
 
 HEAD = """# Every key
 
-All keys of a mooring file, from the schema by which CALM reads it (`calm schema`), with an
-example of each. [The mooring file](mooring-file.md) explains how the keys work together. Keys in
-bold are required.
+All keys of a mooring file with examples, from its schema (`calm schema`).
+[The mooring file](mooring-file.md) explains how the keys work together. Keys in bold are required.
 
 """
 _QUANTITY = "text with its unit"
@@ -43,9 +42,9 @@ _SECTIONS = {
     "AnchoredKeys": "`anchor:` of a leg",
     "HeldKeys": "`held:` of a leg",
     "Clamp": "`clamps:`, an item",
-    "Definition": "`components:`, what every kind has",
+    "Definition": "`components:`, keys of every kind",
     "FatigueKeys": "`fatigue:`",
-    "EstimatedFigure": "`estimate:`, or an item of it",
+    "EstimatedFigure": "`estimate:`, or one of its items",
     "Sphere": "`kind: sphere`",
     "Cylinder": "`kind: cylinder`",
     "Body": "`kind: body`",

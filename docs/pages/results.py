@@ -18,8 +18,8 @@ from pages.markdown import code, plain, table
 
 HEAD = """# Names in results
 
-What `calm run`, `calm batch` and `calm motion` write, with units: SI and degrees. x is
-east and y north of the anchor, or of the tow point; depths are positive downwards. Unknown figures
+Names in the output of `calm run`, `calm batch` and `calm motion`, in SI units and degrees. x is
+east and y north of the anchor or the tow point; depths are positive downwards. Unknown values
 are `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
 [`calm check`](check.md#json), [`calm batch`](batch-statistics.md),
 [`calm deck`](deck.md), [`calm locate`](locate.md),
@@ -66,7 +66,7 @@ def page() -> str:
         table(("key", "unit", "meaning"), (_json(key) for key, _ in own)),
         "## JSON of a net of legs",
         "The keys of a mooring without `top` and `shape`. Pieces and clamps have the name of their "
-        "`leg`; `anchor` stands only in a net with a single anchor. `held` has the keys of "
+        "`leg`; `anchor` is present only in a net with a single anchor. `held` has the keys of "
         "`anchors` up to `depth`. Each of `legs` has its `name`, `closure`, `used_buoyancy`, "
         "`reserve` and `shape`.",
         table(

@@ -11,6 +11,14 @@ def test_without_a_terminal_it_says_what_else_there_is(calm_process, write_moori
     assert done.stdout == ""
 
 
+def test_a_redirected_error_output_is_named(calm, monkeypatch):
+    for name in ("stdin", "stdout"):
+        monkeypatch.setattr(f"sys.{name}.isatty", lambda: True, raising=False)
+    done = calm("build", "m.yaml")
+    assert done.code == 2
+    assert "draws its screen on the standard error output, which is redirected" in done.err
+
+
 @pytest.fixture
 def in_terminal(monkeypatch):
     """As if there were one; nothing is to be opened in it."""

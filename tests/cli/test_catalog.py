@@ -192,7 +192,7 @@ def test_shipped_catalogue_has_no_finding_and_lists_what_it_lacks(calm):
     assert lines["rcm11"].endswith("not published: mass, working load, breaking load")
     assert "shackle-13" not in lines
     assert "findings: 0" in done.err
-    assert "lack figures" in done.err
+    assert "lack values" in done.err
 
 
 def test_what_is_missing_as_json(calm, mine):

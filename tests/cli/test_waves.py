@@ -125,10 +125,10 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
         (("--hs", "5 m", "--tp", "4 s"), "would break"),
         (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
         (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
-        ((*SEA, "--duration", "2 s"), "--duration: a minute at least"),
+        ((*SEA, "--duration", "2 s"), "--duration must be at least one minute"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
         ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma must be from 1"),
-        ((*SEA, "--scatter", "none.csv"), "--scatter: gives heights"),
+        ((*SEA, "--scatter", "none.csv"), "--scatter contains heights"),
         (("--scatter", "none.csv"), "none.csv"),
     ],
 )

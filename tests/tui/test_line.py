@@ -68,6 +68,17 @@ def test_the_form_of_a_new_cable_takes_what_its_cell_takes(drive, small, typed, 
     drive(story, small)
 
 
+@pytest.mark.parametrize("width", [80, 120])
+def test_hints_below_an_empty_line_are_not_cut(drive, folder, width):
+    async def story(driver):
+        lines = driver.screen.splitlines()
+        pane = " ".join(line[: driver.table.size.width].strip() for line in lines)
+        assert "adds the first piece, from the catalogue" in " ".join(pane.split())
+        assert "ADCP, taut or slack surface; a tow" in " ".join(pane.split())
+
+    drive(story, folder / "new.yaml", size=(width, 36))
+
+
 def test_the_cursor_goes_on_where_the_line_is_longer_than_the_screen(drive, small):
     """What a table scrolls by where it overflows would take these keys."""
 

@@ -310,7 +310,7 @@ def test_the_work_of_a_running_session_is_left_alone(drive, small, of_another):
 @pytest.fixture
 def not_kept_in_time(monkeypatch):
     """What ends a session comes before its work is kept."""
-    monkeypatch.setattr("calm.tui.app._AUTOSAVED_AFTER", 1e6)
+    monkeypatch.setattr("calm.tui.app._AUTOSAVE_DELAY", 1e6)
 
 
 @pytest.fixture

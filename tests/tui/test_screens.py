@@ -35,7 +35,7 @@ def test_a_broken_file_opens_as_text_with_its_mistakes_and_is_mended(drive, smal
     async def story(driver):
         await driver.settle()
         assert isinstance(driver.app.screen, TextScreen)
-        assert "is not valid YAML" in driver.screen
+        assert "the `[` that begins here is not closed" in driver.screen
         await driver.press("escape")
         assert isinstance(driver.app.screen, TextScreen)
         area = driver.app.screen.text_area

@@ -63,9 +63,9 @@ def test_the_knockdown_is_that_of_the_worst_finding():
     text = without_checks("s1000")
     lines = lines_of(text + "checks: {maximum_knockdown: 35 m}\n")
     head = next(each for each in lines if each.heading == "Knockdown" and "top at" in each.text)
-    below = next(each for each in lines if "The top is knocked down" in each.text)
-    worst = re.search(r"by ([\d.]+ m)", below.text)[1]
-    assert re.match(r"\d+ % of ≤ 35.0 m\. The top", below.text)
+    below = next(each for each in lines if "Knockdown of the top is" in each.text)
+    worst = re.search(r"is ([\d.]+ m)", below.text)[1]
+    assert re.match(r"\d+ % of ≤ 35.0 m\. Knockdown of the top", below.text)
     assert head.text.endswith(f"; {worst} at worst (strumming)") and head.state is below.state
 
 
@@ -119,9 +119,9 @@ def test_all_environments_are_judged_and_the_worst_is_named():
     view = judge_fully(judge(text))
     assert [each.environment for each in view.cases] == ["own", "storm"]
     lines = list(verdict_lines(view))
-    lines = {each.heading: each for each in lines}
-    assert lines["In storm"].state is State.FAIL
-    assert lines["In default environment"].state is not State.FAIL
+    by_heading = {each.heading: each for each in lines}
+    assert by_heading["In storm"].state is State.FAIL
+    assert by_heading["In default environment"].state is not State.FAIL
     assert headline(view).state is State.FAIL
     grave = [each.heading for each in lines if each.state is State.FAIL and each.heading]
     assert any("(storm" in heading for heading in grave)

@@ -121,7 +121,7 @@ def test_other_units_are_asked_of_pint(text: str, dimension: str, value: float) 
         ("77 lbs", "force", "is a mass; a force", "77 lbf"),
         ("5 nm/h", "speed", "is in nanometres", "5 nmi/h"),
         ("5 nm", "length", "is in nanometres", "5 nmi"),
-        ("5 fm", "length", "is no length at sea; a fathom is", "5 fathom"),
+        ("5 fm", "length", "is ambiguous; write `fathom`", "5 fathom"),
         ("2 miles", "length", "may be of 1609 or 1852 m", None),
         ("2 ton", "mass", "may be of 907, 1000 or 1016 kg", None),
         ("2 tons", "force", "may be of 907, 1000 or 1016 kg", None),

@@ -1,1 +1,1 @@
-"""Statistics of a finished result: distributions, limits, extremes."""
+"""Statistics of a finished batch result: distributions, limits, extremes."""

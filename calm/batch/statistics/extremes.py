@@ -1,4 +1,4 @@
-"""Return levels: the value that a response exceeds once in a number of years on average.
+"""Return levels: values that a response exceeds once in a given number of years on average.
 
 There are two methods, each with its own rules, which are reported with the levels:
 
@@ -23,39 +23,41 @@ PERIODS = (2, 10, 50, 100)
 """Return periods [years]."""
 
 EXTRAPOLATION = 4.0
-"""Longest return period, in record lengths, that is reported. Our choice: thirty years allow the
-level of a hundred years, and one year none above two.
+"""Longest reported return period, as a multiple of the record length. Choice of CALM: a record of
+thirty years allows the 100-year level, a record of one year only the 2-year level.
 """
 
 LEAST_MAXIMA = 10
-"""Number of whole years required for GEV. Our choice: three parameters are fitted, for which ten
-values are few, as their wide intervals show.
+"""Number of whole years required for GEV. Choice of CALM: the fit has three parameters, so ten
+values are few, as the wide intervals show.
 """
 
 LEAST_YEARS = 1.0
-"""Years of solved profiles required for POT. Our choice, because the year has a stormy season."""
+"""Years of solved profiles required for POT. Choice of CALM, because each year has a stormy
+season.
+"""
 
 LEAST_PEAKS = 30
-"""Independent peaks required for POT. Our choice: the intervals are valid for many peaks; with
-fewer peaks they contain the true level less often than stated.
+"""Number of independent peaks required for POT. Choice of CALM: the intervals hold for many peaks;
+with fewer peaks they contain the true level less often than stated.
 """
 
 THRESHOLDS = (99.0, 98.0, 97.0, 96.0, 95.0, 94.0, 93.0, 92.0, 91.0, 90.0)
-"""Percentiles tried as the threshold of POT; the first that leaves enough peaks is used. Our
-choice, because a generalised Pareto distribution is valid for high thresholds only (Coles 2001,
-§4.3.1).
+"""Percentiles tried in turn as the threshold of POT, until enough peaks exceed the threshold.
+Choice of CALM, because a generalised Pareto distribution is valid for high thresholds only (Coles
+2001, §4.3.1).
 """
 
 # our choice: a share of the record (nine hours a year) that is not worth reporting
 _FEW_GAPS = 1e-3
 
 METHODS = {"gev": "GEV of annual maxima", "pot": "POT, generalised Pareto"}
-"""The two methods, by their names in files."""
+"""Descriptions of the two methods, by their names in files."""
 
 
 @dataclass(frozen=True)
 class Level:
-    """A return level and its interval of `CONFIDENCE`, in the unit of the values.
+    """A return level and its `CONFIDENCE` interval, in the unit of the values.
 
     Attributes
     ----------
@@ -73,7 +75,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted distribution and its return levels.
+    """A fitted distribution and the return levels that follow from it.
 
     Attributes
     ----------
@@ -97,7 +99,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class LevelsRefused:
-    """Reason why there are no return levels by one of the `METHODS`."""
+    """Reason why a method in `METHODS` gives no return levels."""
 
     method: str
     reason: str
@@ -106,8 +108,8 @@ class LevelsRefused:
 def return_levels(
     time: Times, values: Column, statuses: Mapping[str, int], step: np.timedelta64 | None = None
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
-    """Compute return levels by GEV and by POT, each with 95 % intervals or a reason for their
-    absence.
+    """Compute return levels by GEV and by POT; each method returns 95 % intervals, or the reason
+    why there are no levels.
 
     They are also refused if profiles with a current were not solved: solutions are most often
     missing in the strongest currents, and levels from the remaining profiles would be too low.
@@ -136,7 +138,7 @@ def return_levels(
 
 
 def _censored(statuses: Mapping[str, int]) -> str:
-    """Reason why the extremes may be among the unsolved profiles, or an empty string."""
+    """Return the reason why unsolved profiles may contain the extremes, or an empty string."""
     ended = {ending: 0 for ending in (Ending.NO_EQUILIBRIUM, Ending.NOT_CONVERGED)}
     for status, count in statuses.items():
         if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
@@ -149,7 +151,7 @@ def _censored(statuses: Mapping[str, int]) -> str:
 
 
 def _unfit(time: Times, values: Column) -> str:
-    """Reason why no distribution can be fitted, or an empty string."""
+    """Return the reason why no distribution can be fitted, or an empty string."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
         return f"there are {count} values"
@@ -219,7 +221,7 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """Report on the missing share of a record, or an empty string."""
+    """Describe the gaps in a record, or return an empty string."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:
@@ -235,9 +237,7 @@ def _periods(years: float) -> list[int]:
 
 
 def _fit(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
-    """Return the fit with its levels, without intervals if the theory of the likelihood is not
-    valid.
-    """
+    """Return the fit with its levels; intervals are omitted if likelihood theory does not hold."""
     nothing = (None, None)
     sure = tail.shape > LEAST_SHAPE
     rules += (
@@ -255,8 +255,8 @@ def _fit(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[i
 
 
 WHOLE = 0.9
-"""Smallest share of profiles in a whole year. Our choice: five missing weeks seldom hide the annual
-maximum, but a missing season may.
+"""Smallest fraction of profiles in a year that counts as whole. Choice of CALM: five missing weeks
+seldom hide the annual maximum, but a missing season may.
 """
 
 YEAR = np.timedelta64(31_557_600, "s")
@@ -264,12 +264,16 @@ YEAR = np.timedelta64(31_557_600, "s")
 
 
 def years_of(step: np.timedelta64, count: int) -> float:
-    """Years represented by a number of profiles, each as long as the median step."""
+    """Return the time represented by a number of profiles, each as long as the median step
+    [years].
+    """
     return count * float(step / YEAR)
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Median time between profiles, which gaps do not lengthen, or zero for a single profile."""
+    """Return the median time between profiles, which gaps do not affect, or zero for a single
+    profile.
+    """
     if len(time) < 2:
         return np.timedelta64(0, "ns")
     steps = np.diff(time).astype("timedelta64[ns]", copy=False).view(np.int64)
@@ -281,7 +285,7 @@ def median_step(time: Times) -> np.timedelta64:
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """Find the maximum of every whole year, and the number of years, whole or not.
+    """Find the maximum of every whole year, and the number of all years, whole or not.
 
     Years have 365.25 days from the first profile. A year is whole if it has at least `WHOLE` of the
     possible values. The maximum of a whole year with gaps is that of the existing values.
@@ -297,7 +301,7 @@ def annual_maxima(
 def peaks_over(
     time: Times, values: Column, threshold: float, step: np.timedelta64
 ) -> NDArray[np.float64]:
-    """Find the maximum of each cluster of threshold exceedances.
+    """Find the maximum of each cluster of values above a threshold.
 
     The extremal index θ is computed from the intervals T between the N exceedances, in steps: θ = 2
     (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), at most 1. The θN - 1
@@ -317,7 +321,8 @@ def peaks_over(
 
 
 def extremal_index(intervals: NDArray[np.float64]) -> float:
-    """Extremal index θ, the share of exceedances that are independent of previous exceedances.
+    """Estimate the extremal index θ, the fraction of exceedances that are independent of previous
+    ones.
 
     The intervals between exceedances, (N - 1,), are at least 1 step; the estimator depends on
     whether one of them exceeds 2.

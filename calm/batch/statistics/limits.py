@@ -1,5 +1,5 @@
-"""Criteria of the design check in every profile of a batch, and the share of profiles that violate
-each.
+"""Criteria of the design check for every profile of a batch, and the fraction of profiles that
+violate each criterion.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -28,12 +28,12 @@ NOT_JUDGED = {
     for name, rule in RULES.items()
     if rule.criteria is None and name != "equilibrium"
 }
-"""Rules that cannot be evaluated per profile, with the reason."""
+"""Rules that cannot be evaluated per profile, each with the reason."""
 
 
 @dataclass(frozen=True)
 class CountedLimit:
-    """A criterion of a rule, with its values in a batch.
+    """A criterion of a rule, and its evaluation for all profiles of a batch.
 
     Attributes
     ----------
@@ -52,12 +52,14 @@ class CountedLimit:
     on_estimate: bool = False
 
     def values(self, series: ResultColumns) -> Column:
-        """Values (n,) of a batch, with NaN if there is nothing to evaluate."""
+        """Return the values (n,) of the limited quantity in a batch, with NaN for profiles to which
+        the criterion does not apply.
+        """
         own = series if self.seats is None else series.of_leg(self.seats)
         return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """Whether each value (n,) violates the limit (false for NaN)."""
+        """Return for each value (n,) whether it violates the limit (false for NaN)."""
         limit = self.criterion.limit
         assert limit is not None
         beyond = values < limit if self.criterion.least else values > limit
@@ -65,7 +67,8 @@ class CountedLimit:
 
 
 def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
-    """Every limit of a mooring that can be evaluated in a batch, rule by rule and down the line.
+    """List all limits of a mooring that can be evaluated in a batch, rule by rule and down the
+    line.
 
     The tension of a piece is the maximum or minimum of the tensions at its ends and at its clamps,
     which are the values in a result. A line meant for the surface is always checked as such, even
@@ -86,21 +89,21 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
 
 def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
-    """Whether a rule judges a part by a figure of which the leg as given has an estimate alone."""
+    """Return whether a rule uses a value of a part that is only known as an estimate."""
     figures, place = TEXTS[rule.name].figures, criterion.part.place
     own = (part.component.estimates for part in parts_of(leg.file.pieces) if part.place == place)
     return any(name in figures for estimates in own for name in estimates)
 
 
 def top_offset(series: ResultColumns) -> Column:
-    """Horizontal distance (n,) of the top of the line from the anchor [m]."""
+    """Compute the horizontal distance (n,) of the line's top from the anchor [m]."""
     offset = series.column("x_top", 0) - series.column("x_top", -1)
     np.hypot(offset, series.column("y_top", 0) - series.column("y_top", -1), out=offset)
     return offset
 
 
 def top_knockdown(series: ResultColumns) -> Column:
-    """Knockdown (n,) of the top of the line [m]."""
+    """Return the knockdown (n,) of the line's top [m]."""
     return series.column("knockdown", 0)
 
 
@@ -116,7 +119,9 @@ def _greatest_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Colu
 
 
 def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Minimum tension at the ends of a piece; NaN if the whole piece is on the seabed."""
+    """Return the minimum tension at the ends of a piece; NaN if the whole piece is on the
+    seabed.
+    """
     water, pieces, least = leg.water, leg.file.pieces, series.least_tension(_seat(part))
     bed: Column | float = water.depth * (1.0 - _LYING)
     for name, deeper in (("x_top", water.deeper_east), ("y_top", water.deeper_north)):
@@ -128,7 +133,7 @@ def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
 
 
 def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Depth of the deeper end of a piece; its lower end is the top of the next piece."""
+    """Return the depth of a piece's deeper end; its lower end is the top of the next piece."""
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
     pieces = leg.file.pieces
@@ -170,14 +175,15 @@ _VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Leg], Column]] = {
     "slide": _slide,
     "reserve": lambda series, _, __: 1.0 - series.ends("used_buoyancy"),
 }
-"""Quantities of `calm.checks.criterion` for the profiles of a batch."""
+"""Functions that read the quantities of `calm.checks.criterion` from batch results."""
 
 _LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on it
 
 
 @dataclass(frozen=True)
 class Exceedance:
-    """Exceedance of a limit: `share` of the `count` profiles in which it can be evaluated.
+    """Frequency with which a limit is exceeded: `share` of the `count` profiles in which the limit
+    can be evaluated.
 
     A profile beyond a limit that is an estimate is not counted as a failure.
 
@@ -194,7 +200,7 @@ class Exceedance:
 
 @dataclass(frozen=True)
 class RuleShare:
-    """Share of profiles in which a rule fails, or warns, at any part of the line.
+    """Fraction of profiles in which a rule fails, or warns, for any part of the line.
 
     Attributes
     ----------
@@ -217,7 +223,9 @@ class RuleShare:
 
 
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
-    """Share of profiles without equilibrium; profiles that did not converge are not counted."""
+    """Compute the fraction of profiles without equilibrium; profiles that did not converge are not
+    counted.
+    """
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
     return _rule_share(equilibrium, judged, without, 0, ended[Ending.NOT_CONVERGED], ())
@@ -226,7 +234,7 @@ def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
 def shares_of(
     series: ResultColumns, limits: Iterable[CountedLimit], unsolved: int
 ) -> Iterator[RuleShare]:
-    """Yield the share of failures of each rule, from its successive limits.
+    """Yield the fraction of failures for each rule, from successive limits of the rule.
 
     Parameters
     ----------
@@ -257,7 +265,7 @@ def _rule_share(
     unsolved: int,
     exceedances: tuple[Exceedance, ...],
 ) -> RuleShare:
-    """Compute the shares of a rule from numbers of profiles."""
+    """Compute the fractions for a rule from numbers of profiles."""
     return RuleShare(
         name=rule.name,
         title=rule.title,
@@ -273,7 +281,9 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Compute the exceedance of a limit, and mark the profiles beyond it and evaluated."""
+    """Compute how often a limit is exceeded, and mark the profiles that exceed it and those in
+    which it can be evaluated.
+    """
     if limit.criterion.limit is None:
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)

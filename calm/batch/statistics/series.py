@@ -1,4 +1,4 @@
-"""Columns of a batch result, with one column in memory at a time."""
+"""Columns of a batch result, read so that only one column is in memory at a time."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _FIGURE = np.dtype(np.float32)
 
 
 class Seat(NamedTuple):
-    """Column of a part of the line in a result.
+    """Position of a part's column in a result.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Seat(NamedTuple):
 
 
 class LegSeats(NamedTuple):
-    """Columns of a leg of a net: components, clamps, and number of the leg."""
+    """Positions of the columns for one leg of a net: components, clamps, and number of the leg."""
 
     components: slice
     clamps: slice
@@ -53,7 +53,7 @@ class LegSeats(NamedTuple):
 
     @classmethod
     def of_file(cls, file: MooringFile) -> list[LegSeats]:
-        """Return the columns of each leg of a file."""
+        """Return the column positions for each leg of a file."""
         found, clamped = [], 0
         for number, leg in enumerate(file.legs):
             own = sum(len(piece.clamps) for piece in file.pieces[leg.first : leg.end])
@@ -63,7 +63,7 @@ class LegSeats(NamedTuple):
 
 
 class ResultColumns:
-    """A batch result over time, for n profiles, with NaN for unsolved profiles.
+    """Columns of a batch result over n profiles, with NaN for unsolved profiles.
 
     A result is stored by profiles. Here it is transposed once into a temporary file by columns, so
     that columns can be read separately and memory does not grow with the number of components. The
@@ -118,7 +118,9 @@ class ResultColumns:
         return len(self.time)
 
     def of_leg(self, leg: LegSeats) -> ResultColumns:
-        """Return the columns of a leg of a net, read from the same temporary file."""
+        """Return the columns for a leg of a net, read from the temporary file of the whole
+        result.
+        """
         view, ends = copy(self), slice(leg.number, leg.number + 1)
         of_ends = {one.name for one in MOORED_ENDS}
         view._columns = {
@@ -132,24 +134,26 @@ class ResultColumns:
 
     @property
     def seats(self) -> tuple[Seat, ...]:
-        """Seats of the components, followed by the seats of the clamps."""
+        """Column positions of the components, followed by those of the clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
         return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
 
     def label(self, seat: Seat) -> str:
-        """Label of a part."""
+        """Return the label of a part."""
         return (self.clamp_label if seat.clamped else self.component_label)[seat.number]
 
     def ends(self, name: str) -> Column:
-        """Values (n,) of a variable of the whole line, such as `anchor_vertical`."""
+        """Return the values (n,) of a variable of the whole line, such as `anchor_vertical`."""
         return self.column(name, 0)
 
     def column(self, name: str, index: int) -> Column:
-        """Values (n,) of a component or a clamp, such as `tilt` or `clamp_tilt`."""
+        """Return the values (n,) for a component or a clamp, such as `tilt` or `clamp_tilt`."""
         return self._read(self._columns[name][index])
 
     def at(self, name: str, time: int) -> Column:
-        """Values (columns,) of all components or clamps in one profile; empty if there are none."""
+        """Return the values (columns,) for all components or clamps in one profile; empty if there
+        are none.
+        """
         values = []
         for column in self._columns.get(name, ()):
             self._turned.seek((column * len(self) + time) * _FIGURE.itemsize)
@@ -157,19 +161,25 @@ class ResultColumns:
         return np.array(values, _FIGURE)
 
     def depth(self, seat: Seat) -> Column:
-        """Depth (n,) of a clamp, or of a component's upper end [m]."""
+        """Return the depth (n,) of a clamp, or of a component's upper end [m]."""
         return self.column("clamp_depth" if seat.clamped else "depth_top", seat.number)
 
     def of_part(self, name: str, seat: Seat) -> Column:
-        """Values (n,) of `tilt` [degrees] or `knockdown` [m] of a component or a clamp."""
+        """Return the values (n,) of `tilt` [degrees] or `knockdown` [m] for a component or
+        a clamp.
+        """
         return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
 
     def greatest_tension(self, seats: Sequence[Seat]) -> Column:
-        """Maximum (n,) of the tensions at the ends of components and at clamps [N]."""
+        """Return the maximum (n,) over given parts: of the tensions at both ends of a component, or
+        of the tension at a clamp [N].
+        """
         return self._gathered(np.maximum, seats)
 
     def least_tension(self, seat: Seat) -> Column:
-        """Minimum (n,) of the tensions at both ends of a component, or tension at a clamp [N]."""
+        """Return the minimum (n,) of the tensions at both ends of a component, or the tension at a
+        clamp [N].
+        """
         return self._gathered(np.minimum, [seat])
 
     def _gathered(self, choose: np.ufunc, seats: Sequence[Seat]) -> Column:
@@ -181,7 +191,7 @@ class ResultColumns:
         return chosen
 
     def _tensions(self, seat: Seat) -> tuple[int, ...]:
-        """Columns of the tensions of a part."""
+        """Return the columns with the tensions of a part."""
         names = ("clamp_tension",) if seat.clamped else ("tension_top", "tension_bottom")
         return tuple(self._columns[name][seat.number] for name in names)
 

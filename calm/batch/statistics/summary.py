@@ -1,4 +1,4 @@
-"""Summary of a batch result: the distributions, the limits and the extremes of a mooring."""
+"""Summary of a batch result: distributions, limits and extremes for a mooring."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 WORST = 20
-"""Number of profiles listed as the most severe for a response."""
+"""Number of worst profiles listed for a response."""
 
 SOURCE = ("currents", "notes", "input_sha256")
-"""Attributes of a result that a summary repeats: the record, the rules applied to it, and the hash
-of the complete input.
+"""Attributes that a summary copies from a result: the record, the rules applied to the record, and
+the hash of the complete input.
 """
 
 
 @dataclass(frozen=True)
 class PartDistributions:
-    """Distributions of a component or a clamp; None if no values are known."""
+    """Distributions for a component or a clamp; None if no values are known."""
 
     label: str
     clamped: bool
@@ -49,7 +49,7 @@ class PartDistributions:
 
 @dataclass(frozen=True)
 class StopDepths:
-    """Depths [m] and pressures [dbar] of a profiler's stop at `STOP_SHARES`."""
+    """Depths [m] and pressures [dbar] of a profiler's stop, at the percentiles `STOP_SHARES`."""
 
     profiler: str
     stop: str
@@ -58,12 +58,12 @@ class StopDepths:
 
 
 STOP_SHARES = (1.0, 50.0, 99.0)
-"""Percentiles of the depth of a stop."""
+"""Percentiles at which the depth of a profiler's stop is reported."""
 
 
 @dataclass(frozen=True)
 class Response:
-    """One of the `RESPONSES`, quantities of the whole line.
+    """Statistics of one of the `RESPONSES`, which are quantities of the whole line.
 
     Attributes
     ----------
@@ -83,7 +83,9 @@ class Response:
 
 @dataclass(frozen=True)
 class WorstProfile:
-    """One profile and its responses; `leaning` is the label of the part with the largest tilt."""
+    """One of the worst profiles, with all its responses; `leaning` is the label of the part with
+    the largest tilt.
+    """
 
     time: np.datetime64
     knockdown: float
@@ -95,7 +97,7 @@ class WorstProfile:
 
 @dataclass(frozen=True)
 class Summary:
-    """All contents of the report on a batch result.
+    """All content of the report on a batch result.
 
     Attributes
     ----------
@@ -135,19 +137,19 @@ class Summary:
 
     @property
     def known_responses(self) -> Sequence[Response]:
-        """Responses with values in at least one profile, or else all responses; most nets have no
-        offset.
+        """Responses with values in at least one profile, or all responses if there are none; most
+        nets have no offset.
         """
         return [one for one in self.responses if one.distribution is not None] or self.responses
 
     @property
     def solved(self) -> int:
-        """Number of solved profiles, on which all values are based."""
+        """Number of solved profiles, on which all statistics are based."""
         return self.endings[Ending.SOLVED]
 
     @property
     def unsolved(self) -> int:
-        """Number of profiles with a current but without values: no equilibrium, or no
+        """Number of profiles that have a current but no values: no equilibrium, or no
         convergence.
         """
         return self.count - self.solved - self.endings[Ending.NO_DATA]
@@ -255,19 +257,21 @@ RESPONSES: Mapping[str, Callable[[ResultColumns], Column]] = {
     "tilt": _greatest_tilt,
     "offset": limits.top_offset,
 }
-"""Knockdown of the top, tension at the anchor, largest tilt of any part, offset of the top."""
+"""Responses of the line: knockdown of the top, tension at the anchor, largest tilt of any part,
+offset of the top.
+"""
 
 RANKED = ("knockdown", "anchor_tension", "tilt")
-"""Responses for which the most severe profiles are reported."""
+"""Responses for which the worst profiles are listed."""
 
 
 _LegColumns = Mapping[str, Sequence[ResultColumns]]
-"""Columns whose maximum each response is, of a line or of a net's legs."""
+"""Columns by response, for a line or for the legs of a net; the response is their maximum."""
 
 
 def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
-    """Columns for each response. In a net they are those of the free ends and the anchors, with
-    each offset relative to the leg's own anchor.
+    """Select the columns for each response. For a net these are the columns of the free ends and
+    the anchors; offsets are relative to the leg's own anchor.
     """
     if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
@@ -340,15 +344,15 @@ Floats = NDArray[np.float64]
 PERCENTILES = (50.0, 90.0, 99.0, 99.9)
 
 SHARES = np.geomspace(1.0, 1e-7, 57)
-"""Shares of the profiles in an exceedance curve, eight per decade."""
+"""Fractions of the profiles at the points of an exceedance curve, eight per decade."""
 
 MOST_INTERVALS = 1000
-"""Number of time intervals of a series in a drawing."""
+"""Largest number of time intervals in the drawing of a series."""
 
 
 @dataclass(frozen=True)
 class Distribution:
-    """Distribution of a quantity over the n profiles with a value.
+    """Distribution of a quantity over the n profiles that have a value.
 
     Attributes
     ----------

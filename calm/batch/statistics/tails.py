@@ -1,4 +1,5 @@
-"""Distributions of extremes, fitted by maximum likelihood, and the intervals of their levels.
+"""Extreme-value distributions, fitted by maximum likelihood, and confidence intervals of their
+return levels.
 
 Coles, S. (2001): An Introduction to Statistical Modeling of Extreme Values, Springer,
 doi:10.1007/978-1-4471-3675-0.
@@ -15,20 +16,20 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-"""Share of the intervals of `Tail.interval` that contain the true level if all assumptions are
-met.
+"""Confidence of the intervals by `Tail.interval`: fraction that contains the true level if all
+assumptions hold.
 """
 
 CHI_SQUARE = 3.841458820694124
 """Quantile of the χ² distribution with one degree of freedom at `CONFIDENCE`."""
 
 LEAST_SHAPE = -0.5
-"""Shape above which the theory of the likelihood is valid (Coles 2001, §3.3.2)."""
+"""Shape parameter above which the theory of the likelihood is valid (Coles 2001, §3.3.2)."""
 
 SHAPES = (-1.0, 2.0)
-"""Range of shapes that is searched. At -1 and below the likelihood has no maximum (Coles 2001,
-§3.3.2). The upper bound is our choice: from 1 on even the mean is infinite, unlike that of any
-force or depth.
+"""Searched range of the shape parameter. At -1 and below, the likelihood has no maximum (Coles
+2001, §3.3.2). The upper bound is a choice of CALM: from 1 on even the mean is infinite, unlike that
+of any force or depth.
 """
 
 _AT_BOUND = 0.01  # our choice: a hundred times the accuracy of the search for a shape
@@ -39,7 +40,7 @@ _MOST_DEVIANCE = 1e3  # keeps a root search away from infinities
 
 
 class NotFitted(Exception):
-    """A distribution could not be fitted; the message is the reason."""
+    """A distribution could not be fitted; the message gives the reason."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class Tail:
     values: Floats
 
     def level(self, growth: float) -> float:
-        """Return level μ + σ (e^{ξ g} - 1)/ξ of a period of T years.
+        """Return the level μ + σ (e^{ξ g} - 1)/ξ for a return period of T years.
 
         The growth g is -log(-log(1 - 1/T)) for annual maxima (Coles 2001, eq. 3.4), and log(λ T)
         for λ independent peaks per year (eq. 4.12 with λ instead of the rate of exceedances).
@@ -70,7 +71,8 @@ class Tail:
         return self.location + self.scale * _grown(self.shape, growth)
 
     def interval(self, growth: float) -> tuple[float | None, float | None]:
-        """Both ends of the `CONFIDENCE` interval of a level, by its profile likelihood.
+        """Return both ends of the `CONFIDENCE` interval of a return level, from its profile
+        likelihood.
 
         For each possible level the likelihood is maximised over the other parameters. The interval
         contains the levels for which twice the logarithm of this maximum is less than `CHI_SQUARE`
@@ -89,7 +91,7 @@ class Tail:
         return _end(excess, estimate, -spread), _end(excess, estimate, spread)
 
     def _profile(self, level: float, growth: float) -> float:
-        """Smallest loss of all distributions with a given level."""
+        """Return the smallest loss of all distributions that have a given return level."""
         if not self.maxima:
 
             def of_shape(free: Floats) -> float:
@@ -153,7 +155,7 @@ def fit_excesses(values: Floats, threshold: float) -> Tail:
 
 
 def _inside(shape: float) -> float:
-    """Return a fitted shape, or raise NotFitted if it is at a bound of the search."""
+    """Return a fitted shape parameter, or raise NotFitted if it is at a bound of the search."""
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
@@ -170,7 +172,7 @@ def _grown(shape: float, growth: float) -> float:
 
 
 def _loss(values: Floats, location: float, scale: float, shape: float, maxima: bool) -> float:
-    """Negative log-likelihood; infinite if a value cannot occur.
+    """Return the negative log-likelihood, which is infinite if a value is impossible.
 
     With s = log(1 + ξ (x - μ)/σ)/ξ each value adds log σ + (1 + ξ) s, and for maxima also e^{-s}.
     """
@@ -192,7 +194,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Minimise a loss from the best of several starts, and return the minimum and its loss."""
+    """Minimise the loss from several starts, and return the best minimum and its loss."""
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))
@@ -206,8 +208,8 @@ def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, 
 
 
 def _end(excess: Callable[[float], float], estimate: float, step: float) -> float | None:
-    """Find the position at which a function, negative at an estimate, becomes positive in the
-    direction of a step.
+    """Find the position, in the direction of a step from the estimate, at which a function becomes
+    positive.
     """
     from scipy.optimize import brentq
 

@@ -167,7 +167,7 @@ class _Reader:
 
     def _unary(self, depth: int) -> Formula:
         if depth > _DEEPEST:
-            raise self._words.next.refuse("signs are nested too deeply")
+            raise self._words.next.refuse("too many consecutive signs")
         if not self._words.is_next(*_UNARY):
             return self._value(depth)
         operation = _UNARY[self._words.take().text]

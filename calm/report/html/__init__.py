@@ -1,4 +1,4 @@
-"""A report as a self-contained HTML page, without other files or network access."""
+"""Rendering of a report as a self-contained HTML page, without other files or network access."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
-"""Positions where a long word may break: after a separator, else every ten characters."""
+"""Pattern for the positions where a long word may break: after a separator, else every ten
+characters.
+"""
 
 
 def leaf(section: Section, number: int) -> str:
@@ -29,7 +31,7 @@ def leaf(section: Section, number: int) -> str:
 
 
 def page(report: Report, leaves: Sequence[str] | None = None) -> str:
-    """Render a report as a page, with the section of each mooring in order.
+    """Render a report as a page; the sections of the moorings follow in order.
 
     All texts are escaped, and invalid Unicode becomes question marks. Style, script and drawings
     are embedded. The page is complete without its script, which sorts and filters the checks.
@@ -45,7 +47,7 @@ def page(report: Report, leaves: Sequence[str] | None = None) -> str:
 
 
 def fragment(part: ReportPart) -> str:
-    """Render a part for a notebook: without page style, and limited to its width."""
+    """Render a part for a notebook, without page style and limited to the width of its text."""
     blocks = tuple(one.narrow() if isinstance(one, Table) else one for one in part.blocks)
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts([replace(part, blocks=blocks)], "n")  # type: ignore[attr-defined]
@@ -70,13 +72,15 @@ def _environment() -> Environment:
 
 
 def _css_text(text: str) -> str:
-    """A text as a string of a style sheet: whatever is no letter or figure by its number."""
+    """Convert text to a style-sheet string; all characters except letters and digits are
+    escaped.
+    """
     signs = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
     return f'"{"".join(signs)}"'
 
 
 def _breakable(text: str) -> str:
-    """A text in which a word too long for a column may break, and is still one when copied."""
+    """Convert text so that long words may break at the edge of a column but are copied unbroken."""
     from markupsafe import Markup
 
     if not _LONG_WORD.search(text):  # as nearly always
@@ -87,7 +91,7 @@ def _breakable(text: str) -> str:
 
 
 def _kinds(columns: Sequence[Column]) -> list[str]:
-    """Class attributes of the cells of each column: numbers, or text by width."""
+    """Return the class attributes of the cells in each column: numbers, or text by width."""
     from markupsafe import Markup
 
     def kind(column: Column) -> str:

@@ -290,7 +290,6 @@ def test_zarr_that_is_not_installed_is_named(tmp_path: Path, monkeypatch) -> Non
     monkeypatch.setitem(sys.modules, "zarr", None)
     with pytest.raises(ModuleNotFoundError) as caught:
         opened(path)
-    assert (
-        how_to_install(caught.value)
-        == "this needs zarr: in CALM's checkout, pip install '.[cluster]'"
+    assert how_to_install(caught.value) == (
+        "this needs zarr: in CALM's checkout, pip install '.[cluster]'"
     )

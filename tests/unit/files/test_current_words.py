@@ -210,9 +210,7 @@ def test_the_way_of_a_direction_is_in_its_words(tmp_path: Path) -> None:
     assert table.u == pytest.approx([0.0, -1.0, 0.5], abs=1e-15)  # sines of 180°, 270°, 30°
     table, _ = read(directions(long_name="direction towards which it flows"), tmp_path)
     assert table.u == pytest.approx([0.0, 1.0, -0.5], abs=1e-15)
-    assert "is ambiguous: the current may flow to this direction" in refusal(
-        directions(), tmp_path
-    )
+    assert "is ambiguous: the current may flow to this direction" in refusal(directions(), tmp_path)
 
 
 def mhkit(**attributes: Any) -> xr.Dataset:

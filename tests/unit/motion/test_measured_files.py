@@ -125,6 +125,7 @@ def test_instruments_one_after_the_other_are_split(tmp_path):
     assert [(one.nominal, one.serial, len(one.time)) for one in found] == [
         (20.0, "101", TIMES // 2), (50.0, "102", TIMES // 2)
     ]  # fmt: skip
+    assert found[0].card is found[1].card and found[0].card.levels == 2
     assert np.concatenate([one.value for one in found]) == pytest.approx(
         depth_of(np.asarray(whole["PRES_REL"]), -32.0), nan_ok=True
     )

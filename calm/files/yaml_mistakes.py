@@ -1,0 +1,123 @@
+"""Messages about invalid YAML: the mistake that people made, instead of the state of the parser."""
+
+from __future__ import annotations
+
+import re
+
+from yaml.error import Mark, MarkedYAMLError
+
+Mistake = tuple[int, int, str]
+"""Line and column, from 1, and the message."""
+
+_KEY = re.compile(r"\s*(?:- +)*(?:[{\[] *)?[\w-]+:(?= |$)")
+_GLUED = re.compile(r"([\w-]+):(\S.*)")
+_OPENING = {"mapping": "{", "sequence": "["}
+
+
+def without_colon(text: str) -> str:
+    """Return the message about a key without a colon, or without a blank after it."""
+    if glued := _GLUED.fullmatch(text):
+        return f"`{text}` has no blank after its colon; did you mean `{glued[1]}: {glued[2]}`?"
+    key, _, value = text.partition(" ")
+    meant = f"{key}: {value.strip()}".strip()
+    return f"`{text}` has no colon; did you mean `{meant}`?"
+
+
+def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
+    """Return the mistake behind an error of the parser, every tab in the indentation being one.
+
+    An error of an unknown kind is reported in the words of the parser.
+    """
+    lines = text.splitlines()
+    if "\\t" in str(error.problem):
+        found = [
+            (number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
+            for number, line in enumerate(lines, 1)
+            if "\t" in line[: len(line) - len(line.lstrip())]
+        ]
+        if found:
+            return found
+    return [_mistake(lines, error) or _in_words_of_the_parser(error)]
+
+
+def _in_words_of_the_parser(error: MarkedYAMLError) -> Mistake:
+    mark = error.problem_mark or error.context_mark
+    what = error.problem or error.context
+    if error.context and error.context_mark and error.problem:
+        what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
+    return mark.line + 1, mark.column + 1, f"is not valid YAML: {what}"
+
+
+def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
+    problem, context = str(error.problem), str(error.context)
+    mark, begun = error.problem_mark, error.context_mark or error.problem_mark
+    if mark is None or begun is None:
+        return None
+    if "mapping values are not allowed" in problem:
+        return _colon(lines, mark)
+    if "could not find expected ':'" in problem:
+        return _at(begun, without_colon(_content(lines[begun.line])))
+    if "while scanning a quoted" in context:
+        return _at(begun, "the quotes that begin here are not closed")
+    sign = lines[mark.line][mark.column : mark.column + 1] if mark.line < len(lines) else ""
+    if "cannot start any token" in problem and sign.isprintable():
+        return _at(mark, f"a text that begins with {sign} must be in quotes")
+    if "undefined alias" in problem:
+        return _at(mark, "a text that begins with * must be in quotes")
+    if opening := next((sign for of, sign in _OPENING.items() if f"flow {of}" in context), ""):
+        if mark.line > begun.line:
+            return _at(begun, f"the `{opening}` that begins here is not closed")
+        if problem.endswith("got ':'"):
+            text = re.split(r"[{\[,]", lines[mark.line][: mark.column])[-1].strip()
+            advice = "add a comma before the next key, or put the text in quotes"
+            return _at(mark, f"`{text}:` has two colons; {advice}")
+    if problem.endswith(("found '}'", "found ']'")):
+        return _at(mark, f"`{problem[-2]}` closes nothing")
+    if "expected <block end>" in problem:
+        above = _above(lines, mark.line)
+        alike = above is not None and _indent(lines[above]) == _indent(lines[mark.line])
+        if above is not None and alike and re.match(r"\s*[A-Za-z]\w*(?!.*: )", lines[above]):
+            return _without_colon(lines, above)
+        where = f"the lines above it, which begin in line {begun.line + 1}"
+        return _at(mark, f"is indented neither like nor below {where}")
+    return None
+
+
+def _colon(lines: list[str], mark: Mark) -> Mistake | None:
+    """Return the mistake at a colon where none is allowed: the second of its line, one after a
+    line without any, or one in a line that is indented too far.
+    """
+    line = lines[mark.line]
+    if key := _KEY.match(line[: mark.column]):
+        name, value = key[0].strip(), line[key.end() :].strip()
+        return _at(mark, f'a text with a colon must be in quotes: `{name} "{value}"`')
+    above = _above(lines, mark.line)
+    if above is None:
+        return None
+    if not _KEY.match(lines[above]):
+        return _without_colon(lines, above)
+    message = f"is indented further than line {above + 1}, which has a value already"
+    return mark.line + 1, _indent(line) + 1, message
+
+
+def _without_colon(lines: list[str], number: int) -> Mistake:
+    line = lines[number]
+    return number + 1, _indent(line) + 1, without_colon(_content(line))
+
+
+def _above(lines: list[str], number: int) -> int | None:
+    """Return the number of the next line above that is not empty; None if there is none."""
+    return next((each for each in reversed(range(number)) if _content(lines[each])), None)
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip())
+
+
+def _content(line: str) -> str:
+    """Return a line without its comment, indentation and the dash of a list."""
+    return re.sub(r"(?:^|\s)#.*", "", line).strip().removeprefix("- ").strip()
+
+
+def _at(mark: Mark, message: str) -> Mistake:
+    return mark.line + 1, mark.column + 1, message
