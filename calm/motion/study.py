@@ -252,8 +252,8 @@ def judged(
     of_line = any(one.kind in OF_LINE for one in diagnosis)
     fits = not (of_line or unfit)
     return MotionEstimate(
-        task, result, intervals(task), fit_of, plain_of, held, tuple(diagnosis), fits, tuple(remarks),
-        false,
+        task, result, intervals(task), fit_of, plain_of, held, tuple(diagnosis), fits,
+        tuple(remarks), false,
     )  # fmt: skip
 
 
