@@ -56,7 +56,7 @@ class NetRows(NamedTuple):
     ----------
     pieces : (n, p, 12) position [m] and force [N] at the upper and at the lower end of each piece
     clamps : (n, c, 7) position, sum of the forces above and below, and the larger of the two forces
-    shares : (n, l) share in use of the buoyancy of the float at the upper end of each leg
+    shares : (n, l) used fraction of the buoyancy of the float at the upper end of each leg
     """
 
     pieces: Floats

@@ -35,8 +35,8 @@ def run_batch(
 ) -> dict[str, int]:
     """Solve a mooring for every profile of a record, and write the result file.
 
-    The file gets its name when it is complete. If the work ends earlier, no file is left, and an
-    older result stays.
+    The file gets its final name when it is complete. If the run ends earlier, no new file remains,
+    and an older result is kept.
 
     Parameters
     ----------

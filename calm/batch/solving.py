@@ -1,7 +1,7 @@
 """Solution of successive profiles by the search of `calm.solve`, and calculation of the results.
 
-A profile is solved roughly: to a millionth of the depth, and without an audit. The results are
-extrapolated from the shapes on cuts and on halved cuts.
+A profile is solved to a tolerance of about a millionth of the depth, and without an audit. The
+results are extrapolated from the shapes on cuts and on halved cuts.
 """
 
 from collections.abc import Callable
@@ -50,8 +50,7 @@ class ProfileLevels(NamedTuple):
     ----------
     read, joined : levels of the profile, and all levels after the merge: see `lay_profile`
     levels, intervals, bends : as in `Sea`
-    fixed : (f, 4) (f, 4) depth, addition to u and to v, and density of the levels added to all
-        profiles
+    fixed : (f, 4) depth, addition to u and to v, and density of the levels added to all profiles
     """
 
     read: Floats

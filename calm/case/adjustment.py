@@ -33,15 +33,15 @@ class Adjustment:
 
     Attributes
     ----------
-    text : the text that names it, e.g. ``top float.buoyancy``
+    text : name of the parameter, e.g. ``top float.buoyancy``
     file : the mooring before the change
     parts : parts that change together, before the change
     dimension : dimension of the number, a key of `calm.units.DIMENSIONS`
-    now : the number before the change
+    now : value before the change
     range : default smallest and largest value
-    to : function that returns the mooring with another number
+    to : function that returns the mooring with another value
     bounded : whether a range may not begin below that of `range`
-    whole : whether it is a whole number
+    whole : whether only whole numbers are valid
     note : remark for the user
     """
 

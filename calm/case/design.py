@@ -558,7 +558,8 @@ class Result:
     def plot(self, ax: Any = None) -> Any:
         """Draw the line from the side on matplotlib axes, and return the axes.
 
-        Without `ax` the axes are those of a new figure. UsageError: matplotlib is not installed.
+        Without `ax` the axes are those of a new figure. Raises UsageError if matplotlib is not
+        installed.
         """
         form = type(self).plot_form
         assert form is not None, "a design is read by calm.load"

@@ -43,9 +43,9 @@ class Leg:
     Attributes
     ----------
     file : file of this leg alone, its pieces counted from the upper end. A leg without an anchor,
-        other than a tow, has a stand-in of the id `STAND_IN` as its last piece
-    for_surface : whether the leg is meant to reach the surface; None if the leg itself decides. A
-        leg that is judged with a change keeps its purpose
+        other than a tow, has a stand-in with the id `STAND_IN` as its last piece
+    for_surface : whether the leg is meant to reach the surface; None decides this from the leg
+        itself. A leg that is checked after a change keeps this setting
     memory : cache of solutions for other states of the file and other environments
     given_line, given_water : replacements for the line and the water of the file
     """

@@ -43,7 +43,8 @@ class LegResult:
     leg : the solved leg
     solution : solution for its line
     still : solution in still water; None without a unique shape
-    profilers : profilers at their places; all other figures hold with them at their upper stops
+    profilers : results for the profilers at several positions; all other results hold for profilers
+        at their upper stops
     """
 
     leg: Leg

@@ -60,7 +60,7 @@ class StrummingBand:
     Attributes
     ----------
     factor : factor on Cn [-]
-    status : status of that line
+    status : status of the solver for this line
     depth : depth of the top of a mooring, or of a towed body [m]
     knockdown : knockdown of the top of a mooring, if it has a unique shape in still water [m]
     tension : tension at the anchor or the ship [N]

@@ -222,7 +222,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     """Report contacts between metals far apart in the galvanic series, if both materials are known.
 
     Pieces and clamps that are `insulated` touch nothing. The jaws of clamps for instruments are of
-    plastic, so a clamp touches its line only where its component says `insulated: false`.
+    plastic, so a clamp touches its line only if the component of the clamp has `insulated: false`.
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):

@@ -78,7 +78,7 @@ def judged_stand(
     Parameters
     ----------
     name : name of the mooring in its findings
-    day : date for the validity of accepts; today by default
+    day : date on which acceptances must be valid; today by default
     """
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
     if not leg.of_several:
@@ -126,7 +126,7 @@ def assessment_of(
 
     Parameters
     ----------
-    day : date for the validity of accepts; today by default
+    day : date on which acceptances must be valid; today by default
     """
     stands = with_cases(stands)
     first = next((stand for stand in stands if stand.result is not None), stands[0])
@@ -255,7 +255,7 @@ def findings_of(
     Parameters
     ----------
     mooring, environment : names used in the findings
-    day : date for the validity of accepts; today by default
+    day : date on which acceptances must be valid; today by default
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
@@ -379,12 +379,12 @@ def with_probabilities(
 
     Parameters
     ----------
-    samples, seed, mapped : as of `calm.case.uncertain.uncertain`
+    samples, seed, mapped : as in `calm.case.uncertain.uncertain`
 
     Raises
     ------
     UsageError
-        The number of samples is not a power of two, or none that is solved.
+        The number of samples is not a power of two within the limits.
     """
     normals = normals_of(checked_samples(samples), seed)
     expect_many(samples * len(assessment.stands), CompiledPart.NEARBY)

@@ -50,7 +50,7 @@ draft.
 class Situation:
     """A mooring solved in an environment, as given or with one changed input.
 
-    Either `result` or `failure` is None. Environments may have one in common.
+    Either `result` or `failure` is None. Several environments may share a situation.
     """
 
     name: str
@@ -101,7 +101,7 @@ class Assessment:
     findings : findings on launch, recovery and breaks
     losses : loss of each buoyant element above the release, from the top
     limits : limits applied to the mooring
-    notices : notices on accepts that have expired or are unused
+    notices : notices on acceptances that have expired or are unused
     draws : number of samples and seed of the probabilities; None without probabilities
     """
 
@@ -216,7 +216,7 @@ class Acceptance:
         """Mark a finding as estimated if it relies on an estimate, and as accepted if the file
         accepts this finding.
 
-        An accept of the rule `missing` covers every rule that lacks a value of that component.
+        An acceptance of the rule `missing` covers every rule that lacks a value of that component.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -298,7 +298,8 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
 def estimated(leg: Leg) -> Leg:
     """Return a copy of a leg in which the lower bounds of estimates replace missing values.
 
-    Waves move it where its environment has them, or its float is at the surface.
+    The bounds are those for a line moved by waves if the environment has waves, or if the float of
+    the line is at the surface.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):

@@ -1,6 +1,6 @@
 """Rules on component values: impossible values and missing values, in a catalogue or in a design.
 
-Only figures that a definition gives are judged; a missing one is no fault, except a missing source.
+Only specified values are checked. A missing value is no fault, except a missing source.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -106,7 +106,7 @@ def check_catalogue(
 ) -> list[CatalogueFinding]:
     """List all findings on the definitions of a catalogue, by component id.
 
-    Every known id is one that the parts of an assembly, or a `prefer`, may name.
+    `known` contains all ids to which the parts of an assembly, or a `prefer`, may refer.
     """
     findings = []
     for identifier, definition in definitions.items():
@@ -228,8 +228,8 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     """Yield values with which a rope would be heavier, stiffer, stronger or more buoyant than its
     section allows.
 
-    Its weight is compared with a solid bar of its `density`, else of its `material` if known, else
-    of steel.
+    The weight of the rope is compared with that of a solid bar with the specified `density`, else
+    with the density of its `material`, else of steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY

@@ -50,7 +50,7 @@ class Comparison:
 
     Attributes
     ----------
-    names : what each is called
+    names : names of the two designs
     differences : differences between the two files
     figures : values side by side
     notes : reasons for missing values
@@ -91,7 +91,7 @@ def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comp
 
     Parameters
     ----------
-    names : what each is called
+    names : names of the two designs
     """
     found = differences(before.file, after.file)
     designs = _solved(before), _solved(after)

@@ -1,6 +1,7 @@
 """Criteria: upper or lower limits on a quantity of a part of the line.
 
-The design check phrases a criterion for one result; batch statistics count it in every profile.
+The design check evaluates a criterion for one result; batch statistics count its violations over
+all profiles.
 """
 
 from collections.abc import Callable, Iterable, Iterator

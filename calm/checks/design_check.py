@@ -1,6 +1,6 @@
 """The design check: each leg in each environment, then handling, breaks and composition.
 
-Waves, launch and recovery are solved and judged for a single line only, breaks for nets as well.
+Waves, launch and recovery are solved and checked for a single line only, breaks also for nets.
 """
 
 from collections.abc import Sequence
@@ -49,7 +49,7 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
     Parameters
     ----------
     designs : the design in each of its environments
-    day : date for the validity of accepts; today by default
+    day : date on which acceptances must be valid; today by default
 
     Raises
     ------
@@ -72,7 +72,7 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
     Parameters
     ----------
     name : name of the design in its findings
-    day : date for the validity of accepts; today by default
+    day : date on which acceptances must be valid; today by default
     """
     environment = design.environment.name or OWN
     given, *changed = situations.situations_of(design)
@@ -105,7 +105,7 @@ def assessment_of(
     Parameters
     ----------
     stands : results of `stands_of`, one environment after the other
-    day : date for the validity of accepts
+    day : date on which acceptances must be valid
     """
     if not stands[0].leg.of_several:
         return assess.assessment_of(name, stands, day)

@@ -1,7 +1,8 @@
 """The rule `environment`: doubtful values in the environments of a mooring.
 
-Each environment is judged by its `Environment.doubts`. Compared with each other, environments show
-a storm that is weaker than the ordinary current, and a missing wind on a float with a wind area.
+The rule reports the `Environment.doubts` of each environment. A comparison of the environments
+reveals a storm that is weaker than the ordinary current, and missing wind for a float with a wind
+area.
 """
 
 from __future__ import annotations

@@ -44,8 +44,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 
     Breaks above the back-up floats are considered, and the loss of any one buoyant element. The net
     buoyancy should be a tenth of the weight it lifts, and raise it at `minimum_rise_speed`. A
-    compact line below a single float has no back-up buoyancy. Neither has a surface mooring without
-    floats below its buoy, which is recovered by hauling.
+    compact line below a single float has no back-up buoyancy. A surface mooring without floats
+    below its buoy has none either, and is recovered by hauling.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
@@ -99,8 +99,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Check the tension in every piece as the line falls behind its anchor.
 
-    It may be `launch_working_factor` times the working load, and the breaking load over
-    `launch_safety_factor`, whichever is less.
+    The limit is the smaller of working load × `launch_working_factor` and breaking load /
+    `launch_safety_factor`.
     """
     launch, file = handling.launch, handling.leg.file
     if isinstance(launch, NoEquilibrium):

@@ -19,8 +19,9 @@ MOST_NAMED = 5
 def joints(handling: Handling) -> Iterator[Verdict]:
     """Yield one warning for all joints without a shackle, link or swivel.
 
-    Exempt are ropes, which are spliced or made fast, equal pieces that follow each other, and wires
-    that give their `termination`. The rule `hardware` warns if a line lists no hardware at all.
+    Three kinds of joints are exempt: ropes, which are spliced or made fast; successive equal
+    pieces; and wires with a specified `termination`. The rule `hardware` warns if a line lists no
+    hardware at all.
     """
     pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):

@@ -62,8 +62,9 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
     """Check the tilt of instruments and releases against their own limits and the limit of the
     design.
 
-    The makers': an Aanderaa RCM deviates by 27 degrees at most (BODC), a single-point Doppler by
-    30, an ADCP by 20 and is doubtful from 15, a release by 45, a sediment trap by 10.
+    Typical limits of manufacturers: 27 degrees for an Aanderaa RCM (BODC), 30 for a single-point
+    Doppler current meter, 20 for an ADCP, whose data are doubtful above 15, 45 for a release, 10
+    for a sediment trap.
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -105,7 +106,7 @@ def depth_rating(leg: Leg) -> Iterator[Criterion]:
     instruments.
 
     A float that is knocked down below its rating implodes, and the line sinks. A surface float has
-    no depth rating; `freeboard` and `reserve` cover one that is pulled under.
+    no depth rating; the rules `freeboard` and `reserve` cover a surface float that is pulled under.
     """
     margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
     for part in parts_of(leg):

@@ -219,7 +219,7 @@ class Break:
     break_after, label : the piece above the break
     margin : net buoyancy of the pieces from below the break down to the release [N]
     weight_lifted : weight in water of the non-buoyant ones of these pieces [N]
-    required : what the margin should be [N]
+    required : required margin [N]
     judged : whether a better design could avoid the loss of the release
     loose : net buoyancy of the section that breaks away at once and drifts, + up [N]
     """
@@ -242,7 +242,7 @@ class Loss:
     index, label : index of the piece (that carries the clamp), label of the lost element
     margin : net buoyancy of the release and the remaining pieces above it [N]
     weight_lifted : weight in water of the non-buoyant pieces [N]
-    required : what the margin should be [N]
+    required : required margin [N]
     place : place of the lost element, in the line as read
     """
 

@@ -1,6 +1,6 @@
 """Rule `serials-and-dates`: contradictions between labels, serial numbers, release codes and dates.
 
-No figure depends on these entries, but sheets and labels print them.
+No result depends on these entries, but deck sheets and labels contain them.
 """
 
 from __future__ import annotations

@@ -188,9 +188,9 @@ def as_deployed(design: Design) -> Design:
     Raises
     ------
     UsageError
-        The file says nothing of a deployment.
+        The file has no key `deployed`.
     NoEquilibrium
-        What is cut to fit has no length that fits as designed.
+        A piece of fitted length has no length that fits, in the design.
     """
     file = design.file
     if file.deployed is None:

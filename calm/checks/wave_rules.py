@@ -52,7 +52,8 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Check the maximum tension of each piece in waves against its loads.
 
     The limits are its working load, and its breaking load over the factor that API RP 2SK requires
-    for dynamic analysis. Without waves, a mooring that reaches the surface is unknown.
+    for dynamic analysis. For a mooring that reaches the surface, the result without waves is
+    unknown.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):

@@ -1,6 +1,6 @@
 """Deck sheets of a mooring: parts with their depths, order of handling, and weights.
 
-This model is the common source of the printed sheets and their files.
+The class `Deck` is the common source of the printed sheets and of their files.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -117,7 +117,7 @@ class Deck:
     parts : every piece and clamp down the line, leg by leg in a net
     deployment, recovery : parts in the order over the side, and in order of surfacing
     rise : rise of the line without its anchor; None if it has no solution, and for a net
-    cuts, hardware, shipped, lifts, instruments : contents of the sheets of these names
+    cuts, hardware, shipped, lifts, instruments : contents of the sheets with these names
     plan : plan of the anchor drop, or the reason for having none; None for anchor-first
         deployment, and for a net
     notes : missing information, with reasons
@@ -182,9 +182,9 @@ def deck_of(
     Raises
     ------
     NoEquilibrium
-        It does not stand in the first environment.
+        The mooring has no equilibrium in the first environment.
     UsageError
-        The ship streams no line, or not so far.
+        The ship does not stream the line, or not to the required distance.
     """
     first = moorings[0]
     notes: list[str] = []
@@ -253,7 +253,7 @@ def _standing(mooring: Design, notes: list[str]) -> Result:
     Raises
     ------
     NoEquilibrium
-        It does not stand.
+        The mooring has no equilibrium.
     """
     try:
         return mooring.solve()

@@ -382,7 +382,8 @@ class Order(StrEnum):
 def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
     """Sort the pieces in the order of deployment, each followed by its clamps.
 
-    Anchor first, the lower end of a piece leads, so its lowest clamp comes first.
+    In an anchor-first deployment, the lower end of a piece goes first, and with it the lowest
+    clamp.
     """
     if order is Order.ANCHOR_LAST:
         return tuple(parts)

@@ -77,8 +77,8 @@ def towed(
     """Return the line as it streams behind the ship, with its lower end at the surface, at the
     origin.
 
-    For a shorter distance than at the ship's speed, the shape is that of a slower tow. For a longer
-    distance, its free end is held there.
+    If the required distance is shorter than that under tow, the shape is that of a slower tow. If
+    it is longer, the free end is held at this distance.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def settle(
 ) -> Motion:
     """Compute how a line settles on the anchor after touchdown.
 
-    Raises NoEquilibrium: ``not-converged`` if it does not settle.
+    Raises NoEquilibrium: ``not-converged`` if the line does not settle.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
     return Motion(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))

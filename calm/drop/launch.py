@@ -34,14 +34,14 @@ CHECK_FINENESS = Fineness(bars=50, steps=50)
 class Launch:
     """Fall of a line behind its anchor, from a ship that tows it at 1 m/s against the current.
 
-    The jerk as the line straightens, and its swing, are not included.
+    The jerk as the line straightens, and the swing of the line, are not included.
 
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
     fall_speed_band : slow and fast touchdown speed with the tangential drag of cables, chains and
         cylinders, and the drag of the anchor, doubled and halved in the last step [m/s]; nan if
-        that step is not found
+        this step has no solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,

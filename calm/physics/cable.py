@@ -81,8 +81,8 @@ def segment_area(cable: CableStretch, cut: float, density: float, strain: float)
     """Return the equivalent length of a segment for drag [m]: unstretched cable of this length in
     reference water has equal drag.
 
-    If the volume is conserved (thinning ½), the drag grows by √(1 + strain); else (0) it does not
-    grow.
+    If the cable keeps its volume (thinning ½), its drag grows by the factor √(1 + strain);
+    otherwise (thinning 0) the drag does not grow.
     """
     area = cut * density / REFERENCE_DENSITY
     if strain != 0.0 and cable.thinning != 0.0:
@@ -379,8 +379,8 @@ def until_level(
 ) -> float:
     """Return the length of a segment above a level of the profile [m].
 
-    It follows from the mean load of the segment. If full precision is required, it is then refined
-    by secants.
+    The length follows from the mean load of the segment. If full precision is required, the length
+    is refined by secants.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Drag coefficients of smooth shapes against Reynolds number, including the drag crisis.
 
-They hold for clean, smooth bodies in smooth flow. Paint, fittings and biofouling shift the crisis
-or remove it: a 1 m float in 0.5 m/s has Cx = 0.1 as a smooth sphere, while 0.5 to 0.65 is used for
-real floats. So these curves apply only to components declared smooth.
+The curves hold for clean, smooth bodies in smooth flow. Paint, fittings and biofouling shift the
+crisis or remove it: a 1 m float in 0.5 m/s has Cx = 0.1 as a smooth sphere, while 0.5 to 0.65 is
+used for real floats. Hence CALM uses the curves only for components declared smooth.
 """
 
 from dataclasses import dataclass

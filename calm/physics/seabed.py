@@ -132,7 +132,7 @@ def required_weight(
 ) -> Forces:
     """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
-    It is never negative: an anchor that is pressed on the seabed by the line needs none.
+    The weight is never negative: an anchor that the line presses on the seabed needs no weight.
 
     Parameters
     ----------

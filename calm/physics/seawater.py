@@ -64,7 +64,7 @@ def kinematic_viscosity(
 def gravity(latitude: float) -> float:
     """Return the acceleration of gravity at the sea surface [m/s²] for a latitude [degrees].
 
-    Its increase of 0.011 m/s² down to 5000 m is neglected.
+    The increase of gravity by 0.011 m/s² down to 5000 m is neglected.
 
     Source: the international gravity formula as adopted in TEOS-10, to 1e-6 m/s².
     """

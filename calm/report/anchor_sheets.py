@@ -206,9 +206,9 @@ _DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 def drop_figure(plan: DropPlan) -> str:
     """Draw the anchor drop as SVG.
 
-    Left, to one scale, the path of the anchor and the line at several times, each with its own
-    dashes and an entry in the legend: it reads in black and white too. Right the fall speed over
-    depth.
+    The left panel shows, true to scale, the path of the anchor, and the line at several times. Each
+    time has its own dash pattern, for black-and-white print, and an entry in the legend. The right
+    panel shows fall speed against depth.
     """
     greys = [round(255 * shade) for shade in np.linspace(0.65, 0.0, len(plan.moments))]
     moments = [
@@ -337,8 +337,8 @@ _PANEL = 290.0
 def located_figure(located: Located) -> str:
     """Draw the ranges as SVG: a circle around each ship position, at the depth of the transponder.
 
-    Left the whole survey, right the position with its 95 % ellipse. A range that is not used is
-    grey and dashed, and has the number of its line.
+    The left panel shows the whole survey, the right panel the position with its 95 % ellipse. An
+    unused range is grey and dashed, with the number of its line in the file.
     """
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(

@@ -199,8 +199,8 @@ def write_summary(result: Path, mooring: Design) -> Summary:
     Raises
     ------
     UsageError
-        The result cannot be read, a file cannot be written, or there is no room for a temporary
-        one as large as the result is without compression.
+        The result cannot be read, a file cannot be written, or the disk has no room for a temporary
+        file of the size of the uncompressed result.
     """
     with open_result(result) as stored:
         summary = statistics.summarize(stored, mooring, result.parent, result)

@@ -22,10 +22,10 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     """Return the JSON object of a summary, in SI units and degrees, with times in UTC, fractions of
     1, and null for unknown values.
 
-    It has `profiles`, how many and how they ended; `components` and `clamps` with their
-    distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which they
-    judge; `responses` of the line as a whole with their exceedance curves and return levels;
-    `worst` profiles of each response.
+    Keys: `profiles`, the number of profiles by status; `components` and `clamps`, with
+    distributions; `rules` and `limits`, with the frequency of violations; `limits_used`, the limits
+    that the rules apply; `responses` of the line as a whole, with exceedance curves and return
+    levels; `worst`, the worst profiles by each response.
     """
 
     def told(*, clamped: bool) -> list[dict[str, Any]]:

@@ -1,7 +1,7 @@
 """Building blocks of all CALM reports, rendered alike on a terminal, on a web page, in PDF and in a
 notebook.
 
-Every text is plain: a printer escapes it in its own way, and nothing in a text is markup.
+All texts are plain text without markup; each output format escapes them as required.
 """
 
 from __future__ import annotations

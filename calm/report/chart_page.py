@@ -4,7 +4,7 @@ The curve carries its graduations in the angle φ and the arc s′. Three famili
 P = (y′ of A, z′ of B) give length, distance and tension of the cable between two of its points A
 and B, A the lower: L/H, D/H and T_A/(wH) are constant along them.
 
-The cables that fit three quantities are a table and a document too.
+The module also reports the cables for three given quantities, as a table and as JSON.
 """
 
 from __future__ import annotations

@@ -73,11 +73,11 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
     Returns
     -------
     dict
-        `verdict`, what all findings come to, and `state`, the worst there is; how many findings are
-        `estimated`; what is `accepted`, and why; `findings`, and how many there are in all; of each
-        mooring by its name the `key_figures` of page one, `launch`, `recovery`, `backup`,
-        `inventory` and its `totals`, and its `document` where files give any; and `situations`,
-        what was solved of each mooring in each environment.
+        Keys: `verdict`, the conclusion from all findings, and `state`, the worst state; the number
+        of `estimated` findings; the `accepted` findings, with reasons; the listed `findings`, and
+        the number of all findings; for each mooring, by its name, the `key_figures` of page one,
+        `launch`, `recovery`, `backup`, `inventory` and its `totals`, and the `document` if a file
+        has any; and `situations`, the solved situations of each mooring in each environment.
     """
 
     def by_name(told: Callable[[Assessment], Any]) -> dict[str, Any]:

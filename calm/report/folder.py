@@ -1,6 +1,6 @@
 """Report files and folders: checked before any computation, and written completely or not at all.
 
-A report as PDF is set by typst.
+PDF files are typeset by typst.
 """
 
 import contextlib

@@ -28,7 +28,7 @@ Places = Mapping[str, Sequence[str]]
 def definition_places(paths: Iterable[Path]) -> Places:
     """Find the definitions under `components:` of mooring files.
 
-    InputError: a file cannot be read.
+    Raises InputError if a file cannot be read.
     """
     found: dict[str, list[str]] = {}
     for path in paths:

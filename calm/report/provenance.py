@@ -228,8 +228,8 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Report the inputs: environments, mooring file, currents, hash and versions.
 
-    The inputs are one mooring or tow, or each leg of a net, as read in each of its environments:
-    the name of that, the file, and its water.
+    `inputs` lists every environment of one mooring or tow, or of each leg of a net: name of the
+    environment, file as read, and water.
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

@@ -238,8 +238,8 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     """Tabulate the line from its first-listed end; clamped instruments are indented below their
     piece.
 
-    The legs of a net have heads. With `places` a clamp says where on its piece it sits, in place of
-    a length.
+    Each leg of a net has a heading. With `places`, a clamp shows its position on its piece instead
+    of a length.
     """
     output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height, offset", {}
     if result.towed:

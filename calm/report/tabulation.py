@@ -100,8 +100,8 @@ def by_speed(
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
     """Return the JSON object: `calm`, `name`, `type` and `speeds`, with one object per speed.
 
-    A row has `speed`, `status` and `FIGURES` (SI and degrees; `frequency` only where the
-    cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
+    A row has `speed`, `status` and `FIGURES` (SI and degrees; `frequency` only if the cable
+    strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
     """
     return {
         "calm": __version__,

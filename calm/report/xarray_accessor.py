@@ -33,7 +33,7 @@ class BatchAccessor:
     def depth(self, label: str) -> xr.DataArray:
         """Depth (time) of a clamp, or of the upper end of a component [m].
 
-        UsageError, here and below, if the line has no part of that label.
+        Like all methods of this class, raises UsageError if the line has no part with this label.
         """
         return self._of(label, "depth", "depth_top")
 
@@ -82,7 +82,8 @@ def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture
     """Draw the side view of the line in the profile nearest to a given time.
 
     The line goes straight from the upper end of one component to that of the next. The picture is
-    in the vertical plane of the anchor and the top. UsageError: the profile has no equilibrium.
+    in the vertical plane of the anchor and the top. Raises UsageError if the profile has no
+    equilibrium.
     """
     row = _nearest(dataset, time)
     names = ("depth_top", "x_top", "y_top")

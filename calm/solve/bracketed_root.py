@@ -8,8 +8,8 @@ def bracketed_root(
 ) -> float:
     """Find the root of a continuous function by Chandrupatla's method.
 
-    Inverse quadratic interpolation where it is sure to be better than halving (T. R. Chandrupatla
-    1997, Advances in Engineering Software 28, 145).
+    Uses inverse quadratic interpolation if this surely converges faster than bisection (T. R.
+    Chandrupatla 1997, Advances in Engineering Software 28, 145).
 
     Parameters
     ----------

@@ -257,8 +257,8 @@ def planned(search: Search, root: Root, step: float) -> Root:
     """Choose the segments at a given angle step, and find the root of the miss near a coarser root.
 
     A march that chooses its segments freely is not quite continuous, so this root is not final. On
-    the segments that it chose last it is continuous: that root is one step away, which the caller
-    marches.
+    the segments that it chose last, the march is continuous; the root on these segments is one step
+    away, which the caller marches.
     """
     limits = search.problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
@@ -283,7 +283,8 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
 def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
     """Close the line on fixed segments, starting from a root found on other segments.
 
-    Floats at the surface above the sought one are first brought back to the surface.
+    If the unknown belongs to a lower float, the floats above it are first brought back to the
+    surface.
     """
     unknown, shares = root.unknown, search.problem.work.shares
     if isnan(root.miss):

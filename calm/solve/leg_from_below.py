@@ -306,7 +306,7 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
     A part on the seabed under tension leads straight to the anchor. A slack part may be longer than
     this distance. One condition covers both. Let d be the vector from the touchdown to the anchor,
     r the length of line on the seabed, and h the pull. Either d has the length r and the direction
-    of h, or d is shorter than r and h is zero. So d is the projection of d + ρh on the disc of
+    of h, or d is shorter than r and h is zero. Hence d is the projection of d + ρh on the disc of
     radius r, for any ρ > 0 (the form of contact conditions by Alart and Curnier).
 
     `loose` is as in `Marching`.

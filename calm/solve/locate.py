@@ -300,8 +300,8 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
     """Find the highest root with a float at the surface, for a float that could also be immersed.
 
-    At the surface its drag is less, or the wind acts against the current. `immersed` ≥ 0 is the
-    miss with all buoyancy in use. A miss of NaN in a root that is `found` marks a march that
+    Such a float has less drag at the surface, or the wind acts against the current. `immersed` ≥ 0
+    is the miss with all buoyancy in use. A miss of NaN in a root that is `found` marks a march that
     stopped.
     """
     problem = search.problem
@@ -386,7 +386,7 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
 def turns_back(sea: Sea) -> bool:
     """Return whether the direction of the current turns by more than 90° with depth.
 
-    Then a line at the surface may have several equilibria. Weak currents are ignored.
+    In such a current, a line at the surface may have several equilibria. Weak currents are ignored.
     """
     last = len(sea.intervals)
     greatest = 0.0

@@ -62,7 +62,8 @@ SLACK_LINE_CURRENT = 1e-3
 def stirred(water: Water) -> Water | None:
     """Return the water with a weak current added at its still levels, or None if no level is still.
 
-    A slack line in a still layer of a current hangs in a vertical fold, as in the weakest current.
+    A slack line that ends in a still layer hangs there in a vertical fold, as in the weakest
+    current.
     """
     still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
     return replace(water, u=np.where(still, SLACK_LINE_CURRENT, water.u)) if still.any() else None

@@ -377,8 +377,6 @@ class NearbyNet:
 
         Two steps with the slopes of the original net leave an error of third order in the change.
 
-        Two steps by the slopes of the net itself leave an error of the third order in the change.
-
         Raises
         ------
         NoEquilibrium

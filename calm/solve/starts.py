@@ -35,7 +35,7 @@ def fill_starts(search: Search) -> int:
 
     The rows of `Problem.starts` are, first for a line clear of the seabed and then for a line lying
     on it: the unknown, which is the depth of the free end [m] or, below 0, the share in use minus
-    one; the slope of the miss; and the fall [m]. The last row is `lean_of`.
+    one; the slope of the miss; and the knockdown [m]. The last row is `lean_of`.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts
@@ -94,8 +94,9 @@ def start_of(search: Search, lands: bool) -> Root:
 def is_highest(problem: LineProblem, root: Root) -> bool:
     """Return whether the equilibrium found from its start is certainly the highest.
 
-    This is certain if the current does not grow significantly with depth. Otherwise the fall in the
-    currents higher up is estimated from `lean_of`, relative to its value at the position found.
+    This is certain if the current does not grow significantly with depth. Otherwise the knockdown
+    in the currents at shallower depths is estimated from `lean_of`, relative to its value at the
+    position found.
     """
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:

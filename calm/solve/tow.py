@@ -87,13 +87,15 @@ def solve_tow(
     ----------
     line : the line from the ship to the towed body
     water : current over the ground; its depth is inf if the seabed is ignored
-    settings : angle step, and tolerance as a share of the line out; 1° and 1e-7 by default
+    settings : angle step, and tolerance as a fraction of the paid-out length; 1° and 1e-7 by
+        default
 
     Returns
     -------
     Solution : listed from the free end: its piece 0 is the last of `line`; x and y are relative to
-        the tow point. Of several equilibria, the deepest, which an accelerating ship reaches first.
-        At 1° positions are within 5e-5 of the line out, tensions within 2e-4.
+        the tow point. Of several equilibria, the solution is the deepest, which an accelerating
+        ship reaches first. At 1° positions are within 5e-5 of the paid-out length, tensions within
+        2e-4.
 
     Raises
     ------

@@ -1,9 +1,10 @@
 """The two speeds of the solver: interpreted, or compiled by numba. Both give the same digits.
 
-Compiled code is loaded from the cache once that saves more time than it takes. If the cache has
-none, a child process compiles it as soon as that pays, this process goes on with the interpreted
-solver, and it changes over when the child has finished. `CALM_COMPILED=never` and `always`, and the
-`compiled` of a `Settings`, settle the question instead; then this process compiles by itself.
+Compiled code is loaded from the cache as soon as this saves time. If the cache has none, a child
+process compiles the solver as soon as compilation pays. Meanwhile this process continues with the
+interpreted solver, and switches when the child has finished. `CALM_COMPILED=never` and `always`,
+and the `compiled` of a `Settings`, override this choice; with `always`, this process compiles by
+itself.
 """
 
 import os
@@ -43,7 +44,7 @@ class CompiledPart(Enum):
 class _Pace:
     """The number of lines that one part of the solver has solved, and its speed.
 
-    `announced` and `solved` are numbers of lines, `work` is that of ordinary lines.
+    `announced` and `solved` are numbers of lines; `work` is the computing time, in ordinary lines.
     """
 
     def __init__(self, solver: CompiledPart) -> None:
@@ -117,7 +118,7 @@ def _has_numba() -> bool:
 def _compile_ahead(solver: CompiledPart) -> "Popen[bytes] | None":
     """Start a child process that compiles a part of the solver into the cache.
 
-    The child may outlive this process, so it shares no stream with it.
+    The child process may outlive this process, so the two share no stream.
     """
     if cache_folder() is None or not sys.executable:
         return None

@@ -71,7 +71,7 @@ class WaveAnalysis:
     fatigue : fatigue of each piece, with the seas weighted by their shares of time; a single sea
         lasts all year
     warnings : warnings about assumptions
-    pitch_unknown : why the pitch of the float is not computed; None if it is computed
+    pitch_unknown : reason why the pitch of the float is not computed; None if it is computed
     """
 
     name: str
@@ -127,7 +127,7 @@ class _Setting:
         """Compute the responses for half and for twice the cut-off frequency, with the linearised
         drag of a given response.
 
-        The spacing of the additional frequencies is that of the response.
+        Additional frequencies have the spacing of the frequencies in the response.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
@@ -150,8 +150,7 @@ class _Setting:
         """Compute the standard deviations of tension (seas, pieces) [N], 0 on the seabed, and the
         flows.
 
-        Next to the tensions are the standard deviations of the float's pitch (seas, 1), 0 if
-        unknown.
+        The last column is the standard deviation of the float's pitch, 0 if unknown.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])

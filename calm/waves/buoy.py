@@ -142,9 +142,9 @@ class Buoy:
         """Return the dynamic stiffness in surge and pitch, and the exciting forces per metre of
         wave elevation.
 
-        Both refer to the point of the axis at the surface; pitch is positive if it moves the part
-        above forward. Stiffness (3, f): surge [N/m], surge with pitch [N] and pitch [N m]; forces
-        (2, f).
+        Stiffness and forces refer to the point of the axis at the surface. Pitch is positive if the
+        part above the surface moves forward. Stiffness (3, f): surge [N/m], surge with pitch [N]
+        and pitch [N m]; forces (2, f).
 
         Parameters
         ----------
@@ -234,9 +234,9 @@ class Buoy:
 def bessel(order: int, x: Floats) -> Floats:
     """Evaluate the Bessel function of the first kind, of an integer order ≥ 0.
 
-    Its power series below 4 (Abramowitz and Stegun 9.1.10), which keeps its relative accuracy at
-    small x. Above, the mean of cos(nθ − x sin θ) over a circle (9.1.21), in equal steps: exact to
-    rounding once there are well over |x| + n of them.
+    Below 4, the power series is used (Abramowitz and Stegun 9.1.10), which is accurate at small x.
+    Above, the function is the mean of cos(nθ − x sin θ) over a circle (9.1.21) in equal steps,
+    which is exact to rounding if there are many more steps than |x| + n.
     """
     small = np.minimum(np.abs(x), 4.0) * np.sign(x)
     term = (0.5 * small) ** order / factorial(order)
@@ -262,7 +262,7 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
     Raises
     ------
     UsageError
-        Its hull is unknown, or it would capsize.
+        The hull of the float is unknown, or the float would capsize.
     """
     if not solution.afloat:
         return None

@@ -65,7 +65,7 @@ class FatigueCurve:
     slope : m of the curve
     logarithm : log10 of K
     by_mean : decrease of log10 K per mean tension over breaking load
-    range : meaning of R: stress in the steel [MPa], or share of the breaking load
+    range : meaning of the range R: stress in the steel [MPa], or fraction of the breaking load
     source : publication
     """
 

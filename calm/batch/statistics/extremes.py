@@ -63,8 +63,8 @@ class Level:
     ----------
     period : T [years]; by GEV one year in T has a maximum above the level, by POT there is a peak
         above it once in T years on average
-    level : the estimate
-    low, high : ends of its interval; None if the data do not determine it
+    level : estimated return level
+    low, high : ends of the confidence interval; None if the data do not determine it
     """
 
     period: int
@@ -111,8 +111,9 @@ def return_levels(
     """Compute return levels by GEV and by POT; each method returns 95 % intervals, or the reason
     why there are no levels.
 
-    They are also refused if profiles with a current were not solved: solutions are most often
-    missing in the strongest currents, and levels from the remaining profiles would be too low.
+    No levels are computed either if profiles with a current were not solved: solutions are most
+    often missing in the strongest currents, and levels from the remaining profiles would be too
+    low.
 
     Parameters
     ----------
