@@ -139,19 +139,19 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
 def about(mooring: Design) -> Attributes:
     """Return archive attributes from `document:` and `deployed:` of a mooring file."""
     file = mooring.file
-    said: Attributes = {}
+    attributes: Attributes = {}
     if file.document is not None:
         known = file.document.to_dict()
-        said = {name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known}
+        attributes = {name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known}
     for part in ("name", "email", "url"):  # the creator also publishes the file
-        if f"creator_{part}" in said:
-            said[f"publisher_{part}"] = said[f"creator_{part}"]
-    if "institution" in said:
-        said["creator_institution"] = said["institution"]
+        if f"creator_{part}" in attributes:
+            attributes[f"publisher_{part}"] = attributes[f"creator_{part}"]
+    if "institution" in attributes:
+        attributes["creator_institution"] = attributes["institution"]
     if file.deployed is not None and file.deployed.date is not None:
-        said["platform_deployment_date"] = str(file.deployed.date)
-    said["water_depth"] = float(mooring.water.depth)
-    return said
+        attributes["platform_deployment_date"] = str(file.deployed.date)
+    attributes["water_depth"] = float(mooring.water.depth)
+    return attributes
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:

@@ -275,9 +275,9 @@ class Diagnosis:
         if last is not None:
             column = (self.white @ last.column[:, :, None])[:, :, 0]
             pulls = weight * (column * (left - seen @ value)).sum(axis=1)
-            told = float((weight * (column**2).sum(axis=1)).sum()) / alike
+            information = float((weight * (column**2).sum(axis=1)).sum()) / alike
             size = float(value[-1]) if last.wide else 0.0
-            spread = np.linalg.inv(normal)[-1, -1] if last.wide else 1.0 / max(told, 1e-12)
+            spread = np.linalg.inv(normal)[-1, -1] if last.wide else 1.0 / max(information, 1e-12)
             deviation = float(np.sqrt(spread))
         rest = (
             raw - self.law.fixed @ value[: len(self.spread)] - columns @ value[len(self.spread) :]

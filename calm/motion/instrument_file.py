@@ -90,12 +90,12 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     found = [_read(path, seabed) for _, path in files_given([str(given)])]
     everyone = [one for file in found for one in file.who]
     try:
-        points, said = points_of(everyone, line)
+        points, notes = points_of(everyone, line)
     except UsageError as error:
         raise UsageError(f"--onto: no instrument of {given} is found: {error}") from None
     each = iter(range(len(everyone)))
     return [replace(file, point=tuple(points.get(next(each)) for _ in file.who)) for file in found
-            ], said  # fmt: skip
+            ], notes  # fmt: skip
 
 
 def _read(path: Path, seabed: float) -> Instruments:
@@ -281,10 +281,10 @@ def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
         copy = copy.isel(DEPTH=0, drop=True)
     copy = copy.drop_vars([name for name in (*ONE, *_OF_OLD) if name in copy.variables])
     if nominal is not None and NOMINAL not in copy.variables:
-        told = {key: value for key, value in nominal.attrs.items() if key != "axis"}
+        attributes = {key: value for key, value in nominal.attrs.items() if key != "axis"}
         copy[NOMINAL] = nominal.copy(deep=False)
         metres = {"units": "m", "positive": "down", "standard_name": "depth"}
-        copy[NOMINAL].attrs = {**metres, **told, "long_name": "nominal depth"}
+        copy[NOMINAL].attrs = {**metres, **attributes, "long_name": "nominal depth"}
     return copy
 
 

@@ -154,14 +154,14 @@ def hung_currents(
     if len(who) != levels or not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
         return one, []
     try:
-        points, said = points_of(who, line)
+        points, sentences = points_of(who, line)
     except UsageError:
         return one, []
     label = tuple(line.label[points[i]] if i in points else "" for i in range(levels))
     hung = np.array([bool(each) for each in label])
     moved = replace(one, label=label, depth=np.where(hung, np.nan, one.depth))
     named = ", ".join(each for each in label if each)
-    return moved, [*said, f"{one.source}: the currents of {named} move with the line"]
+    return moved, [*sentences, f"{one.source}: the currents of {named} move with the line"]
 
 
 CERTAIN = 2.0
@@ -238,7 +238,7 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
-    found, said, lost, placed = dict[int, int](), list[str](), list[str](), list[int]()
+    found, sentences, lost, placed = dict[int, int](), list[str](), list[str](), list[int]()
     for i in sorted(set(first)):
         at = named_point(series[i], line)
         if at is not None:
@@ -259,13 +259,13 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
             for i in left
         ]
         each = (f"{series[i].named} is `{line.label[at]}`" for i, at in sorted(order.items()))
-        said.append(f"by nominal depths, in their order: {'; '.join(each)}")
+        sentences.append(f"by nominal depths, in their order: {'; '.join(each)}")
     if not found:
         raise UsageError(
             "no instrument is a part of the line: " + "; ".join(lost[:8])
             + "; name a file of one instrument by LABEL=FILE"
         )  # fmt: skip
-    return {i: found[one] for i, one in enumerate(first) if one in found}, said + lost
+    return {i: found[one] for i, one in enumerate(first) if one in found}, sentences + lost
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:

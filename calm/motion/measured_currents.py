@@ -108,17 +108,17 @@ class Knots:
     ----------
     depth : (K,) depths in still water, rising [m]
     level : (k, K) weights of the knots in the current of a level
-    hung : levels that are knots, and the indices of these knots
+    measured : levels that are knots, and the indices of these knots
     """
 
     depth: Floats
     level: Floats
-    hung: tuple[NDArray[np.int64], NDArray[np.int64]]
+    measured: tuple[NDArray[np.int64], NDArray[np.int64]]
     seabed: float
 
     def at(self, levels: Floats) -> Floats:
         """Return (n, K) depths of the knots for levels (n, k), interpolated between levels."""
-        level, knot = self.hung
+        level, knot = self.measured
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
         after = np.clip(np.searchsorted(place, self.depth), 1, len(place) - 1)
@@ -563,7 +563,7 @@ class CurrentSmoother:
         now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
         self.state = now
         there = self.depths(now[:, at.current], self.factor, slice(None))
-        self.levels = self._hung(there)
+        self.levels = self._levels_at(there)
         self.knot_depth = self.knots.at(self.levels)
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
@@ -576,7 +576,7 @@ class CurrentSmoother:
         )
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
 
-    def _hung(self, there: Floats) -> Floats:
+    def _levels_at(self, there: Floats) -> Floats:
         levels = self.levels.copy()
         for k, point in enumerate(self.measured.level_point.tolist()):
             if point != FREE:

@@ -72,7 +72,7 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     several, some = int((count >= 2).sum()), int((count >= 1).sum())
     if several >= RARE * some:
         return []
-    said = f"{several} of {some} times have the pressures of two sensors or more"
+    shared = f"{several} of {some} times have the pressures of two sensors or more"
     if not several and not currents:
         spans = [
             f"{label} {' to '.join(np.datetime_as_string(measured.time[there][[0, -1]], 'D'))}"
@@ -80,10 +80,10 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
             if there.any()
         ]
         raise UsageError(
-            f"--pressures: {said}: the records share no time ({'; '.join(spans)}). Give currents, "
-            "records of one deployment, or a longer --gap"
+            f"--pressures: {shared}: the records share no time ({'; '.join(spans)}). Give "
+            "currents, records of one deployment, or a longer --gap"
         )
-    return [said]
+    return [shared]
 
 
 def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
@@ -180,8 +180,8 @@ class RecoveredMooring:
         )  # fmt: skip
         for i, text in enumerate(self.currents):
             path = split_label(text)[1]
-            read[i], said = matching.hung_currents(read[i], path, line, seabed)
-            notes += said
+            read[i], more = matching.hung_currents(read[i], path, line, seabed)
+            notes += more
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
         self.cards = [*(card for one in read for card in one.cards), *of_files.values()]
         points = self._without(points, line.label)
@@ -198,9 +198,9 @@ class RecoveredMooring:
                 if fault.label in (ALL, one.label) and fault.kind != "moved":
                     time, depth = fault.taken_off(one.time, one.value)
                     one = replace(one, time=time, value=depth)
-            one, said = sensors.plausible(one, float(line.still[at]), seabed)
+            one, more = sensors.plausible(one, float(line.still[at]), seabed)
             used.append(one)
-            notes += said
+            notes += more
             if one.dropped:
                 notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
         notes += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
@@ -220,8 +220,8 @@ class RecoveredMooring:
         if not measured.label:
             raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
         notes += shared_times(without(measured, self.hidden), bool(self.currents))
-        self.measured, said = torn(measured, distances_of(mooring))
-        self.notes = notes + said
+        self.measured, more = torn(measured, distances_of(mooring))
+        self.notes = notes + more
         self.source = {
             "currents": ", ".join(hashed(split_label(one)[1]) for one in self.currents),
             "pressures": ", ".join(hashed(split_label(one)[1]) for one in self.pressures),

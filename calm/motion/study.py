@@ -237,21 +237,23 @@ def judged(
     for label in hidden:
         point = int(measured.point[measured.label.index(label)])
         held[label] = judge_hidden(measured, used, label, *depths_at(result, point), still)
-    said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
+    remarks = [
+        f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis
+    ]
     false: Mapping[str, NDArray[np.datetime64]] = {}
     unfit = alone_remarks(task.common) if alone else []
-    said += unfit
+    remarks += unfit
     if plain is not None:
         names = level_names(used, labels_of(task.mooring))
         false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
-        said += [*current_remarks(false, len(used.time)), *meter_remarks(used, names)]
+        remarks += [*current_remarks(false, len(used.time)), *meter_remarks(used, names)]
     if not any(one.label == ALL and one.kind == "gain" for one in diagnosis):
-        said += datum_remarks(task.common, float(task.mooring.water.depth))
+        remarks += datum_remarks(task.common, float(task.mooring.water.depth))
     of_line = any(one.kind in OF_LINE for one in diagnosis)
     fits = not (of_line or unfit)
     return MotionEstimate(
-        task, result, intervals(task), fit_of, plain_of, held, tuple(diagnosis), fits, tuple(said),
-        false,
+        task, result, intervals(task), fit_of, plain_of, held, tuple(diagnosis), fits,
+        tuple(remarks), false,
     )  # fmt: skip
 
 

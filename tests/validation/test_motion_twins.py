@@ -120,6 +120,13 @@ def test_a_twin_is_recovered(mooring):
     assert inside.mean() > 0.9 and not said
 
 
+def test_tide_and_correlation_time_of_the_currents_are_learnt(mooring):
+    """A tide of 0.64 m (root mean square); currents with a memory of 0.9 an hour, 9.5 h."""
+    scales = prepare(mooring, twin(mooring, 14)[0], NAMES, ()).smoother.scales
+    assert scales.tide == pytest.approx(0.64, rel=0.25)
+    assert 6.0 < scales.hours < 14.0
+
+
 SLIPS = (12.0, -9.0, 20.0, -15.0)  # down the line [m]
 
 

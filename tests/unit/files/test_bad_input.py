@@ -281,7 +281,7 @@ ONE_MISTAKE = {
             12,
             17,
             "`mass` cannot be set on an assembly; allowed: breaking_load, count, depth_rating, "
-            "grip, label, max_tilt, opening_load, source, sources, use, working_load",
+            "grip, label, max_tilt, opening_load, serial, source, sources, use, working_load",
         ),
     ),
     "drag misspelt": (
