@@ -10,17 +10,15 @@ Mistake = tuple[int, int, str]
 """Line and column, from 1, and the message."""
 
 _KEY = re.compile(r"\s*(?:- +)*(?:[{\[] *)?[\w-]+:(?= |$)")
-_GLUED = re.compile(r"([\w-]+):(\S.*)")
 _OPENING = {"mapping": "{", "sequence": "["}
 
 
 def without_colon(text: str) -> str:
     """Return the message about a key without a colon, or without a blank after it."""
-    if glued := _GLUED.fullmatch(text):
-        return f"`{text}` has no blank after its colon; did you mean `{glued[1]}: {glued[2]}`?"
-    key, _, value = text.partition(" ")
-    meant = f"{key}: {value.strip()}".strip()
-    return f"`{text}` has no colon; did you mean `{meant}`?"
+    key, colon, value = text.partition(":") if ":" in text else text.partition(" ")
+    lacking = "blank after its colon" if colon == ":" else "colon"
+    meant = f"{key.strip()}: {value.strip()}".strip()
+    return f"`{text}` has no {lacking}; did you mean `{meant}`?"
 
 
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:

@@ -102,7 +102,7 @@ LAYOUTS = {
     ),
     "a document begins": "# c\n--- # here\nline:\n  - {use: rope, length: 5 m}\n  - use: dead\n",
     "keys far from their values": (
-        "line   :\n  - use :    rope\n    length   :     5 m\n  - {use :dead, label   :   x}\n"
+        "line   :\n  - use :    rope\n    length   :     5 m\n  - {use : dead, label   :   x}\n"
     ),
     "keys without values": (
         "name:\nposition: ~\nline:\n  - {use: rope, label: , length: 5 m, note}\n"
