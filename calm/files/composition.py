@@ -19,7 +19,9 @@ from yaml.events import CollectionEndEvent
 from calm.files.yaml_mistakes import syntax_mistakes, without_colon
 
 _DEEPEST = 100
-"""Maximum depth of nested collections. The time to read brackets increases with its square."""
+"""Maximum depth of nested collections. Parsing time for brackets increases with the square of this
+depth.
+"""
 
 # These are no line breaks in YAML 1.2, but they are in YAML 1.1, which PyYAML reads.
 _NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
@@ -237,13 +239,13 @@ def _shown(value: str) -> str:
 
 
 Refusal = tuple[int, int, str]
-"""Line and column, from 1, and a message about invalid YAML, or YAML not allowed in these files."""
+"""Line and column, counted from 1, and a message about YAML that is invalid or not allowed."""
 
 Kind = Literal["mapping", "sequence", "scalar"]
 
 
 class Node(NamedTuple):
-    """A value in a text, with its place.
+    """A value in a text, with its position.
 
     Attributes
     ----------
@@ -267,7 +269,7 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
     def entry(self, step: str | int) -> tuple[Node | None, Node | None]:
-        """Return the key and value of a mapping's key, or None and the item of an index; (None,
+        """Return (key node, value node) of a mapping key, or (None, item) of a list index; (None,
         None) if missing.
         """
         if self.kind == "mapping":
@@ -279,9 +281,7 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """The nodes of a text, and its refused parts; `root` is None for an empty or invalid
-    text.
-    """
+    """Parsed nodes of a text and its rejected parts; `root` is None for an empty or invalid text."""
 
     root: Node | None
     refusals: tuple[Refusal, ...] = ()

@@ -24,7 +24,7 @@ from calm.errors import CalmError, InputError
 from calm.whole_file import GRAIN, decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
-"""Content of an existing file that cannot be read; no text file contains it."""
+"""Stand-in for the content of an existing but unreadable file; no text file contains it."""
 
 Stamp = tuple[int, int, int]
 
@@ -128,7 +128,8 @@ class WorkingFile:
         return self._differs
 
     def keep(self) -> Path | None:
-        """Update the copy to `unsaved`, and return its path; may be called from any thread.
+        """Write `unsaved` text to the backup copy, and return the copy's path; may be called from
+        any thread.
 
         The copy of this builder is removed if the text is saved. NotWritten: the copy can be
         written neither next to the file nor in the state folder.
@@ -140,7 +141,7 @@ class WorkingFile:
             return self._keep(self.unsaved)
 
     def forget(self) -> None:
-        """Remove the copy and any adopted one, after the work was saved or discarded."""
+        """Delete the backup copy and any adopted copy, after the work was saved or discarded."""
         with self._lock:
             self.unsaved = None
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
@@ -169,11 +170,11 @@ class WorkingFile:
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
     def is_of_another(self, kept: KeptWork) -> bool:
-        """Return whether the file has changed since the kept work began."""
+        """Return whether the file has changed since the recovered work began."""
         return self.path is not None and kept.base != _digest(self._content())
 
     def adopt(self, kept: KeptWork) -> None:
-        """Continue with kept work; its copy is removed when the work is saved or discarded.
+        """Continue with recovered work; its copy is deleted when the work is saved or discarded.
 
         If the file has changed since that work began, it is reported by `changed_on_disk`.
         """
@@ -182,7 +183,7 @@ class WorkingFile:
             self._remember(_UNREADABLE)
 
     def discard(self, kept: KeptWork) -> None:
-        """Remove a copy whose work is not wanted."""
+        """Delete a copy of unwanted work."""
         self._drop(kept.place)
 
     def _remember(self, content: bytes) -> None:
@@ -231,7 +232,7 @@ class WorkingFile:
 
 
 def state_folder() -> Path:
-    """Return the folder in which CALM keeps the state of a user."""
+    """Return the per-user state folder of CALM."""
     state = os.environ.get("XDG_STATE_HOME") or os.path.expanduser("~/.local/state")
     return Path(state) / "calm"
 
@@ -268,7 +269,7 @@ _TOKEN = re.compile(r"\.[0-9a-f]{8}" + re.escape(SUFFIX))
 
 @dataclass(frozen=True)
 class Keeper:
-    """The process that keeps a copy.
+    """Process that writes a backup copy.
 
     Attributes
     ----------
