@@ -23,7 +23,7 @@ _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count", "serial"})
 _NUMBERED = (("instrument", "release"), ("float",))
-"""Roles of the parts of an assembly that its serial numbers are for, the first that it has."""
+"""Assembly parts that serial numbers refer to, by role: the first role present in the assembly."""
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -31,7 +31,8 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Expand the items of a line; mistakes are added to those of the file, remarks to `notices`.
+    """Expands line items to pieces; mistakes are added to the mistakes of the file, remarks to
+    `notices`.
 
     `towed` and `in_air` determine the keys and figures allowed.
     """
@@ -66,7 +67,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the items of the list under a key; items with mistakes are left out."""
+        """Read the list of items under a key; items with mistakes are skipped."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):

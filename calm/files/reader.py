@@ -1,6 +1,4 @@
-"""Read a mooring file in one of its environments: either every mistake is reported, or a
-`MooringFile` is returned.
-"""
+"""Read a mooring file in one of its environments; all mistakes are reported together."""
 
 import math
 import os.path
@@ -40,7 +38,7 @@ def _given(value: object) -> object:
 
 
 class MooringKeys(Model):
-    """The keys at the top level of a mooring file."""
+    """Keys at the top level of a mooring file."""
 
     name: Text | None = optional("name of the mooring or tow", "Shelf edge 2026")
     description: Text | None = optional("purpose of the mooring", "Slope currents, first year")
@@ -163,8 +161,7 @@ class MooringReader:
         self._catalogue = catalogue
 
     def in_environment(self, environment: str | Path | None = None) -> MooringFile:
-        """Return the file in one of its variants, in an environment file, or by default in its own
-        environment.
+        """Read the file in a named variant, an environment file, or by default its own environment.
 
         InputError: the file has mistakes; all are listed, each with its place.
         """
@@ -329,7 +326,7 @@ def _check_slides(
 
 
 class EnvironmentFileKeys(Model):
-    """The keys at the top level of an environment file."""
+    """Keys at the top level of an environment file."""
 
     name: Text | None = None
     environment: dict[str, Any]
@@ -338,8 +335,8 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Return the `environment` of a file, or the chosen one with that as base, and its name; not
-    yet validated.
+    """Select the environment of a file or a variant based on it; return the unvalidated section and
+    its name.
 
     Variants that are not chosen are checked here, and so is the file's own environment if another
     one is chosen, so that all mistakes are reported. Returns None if there is no environment.

@@ -1,4 +1,4 @@
-"""The JSON Schema of the mooring file, with which editors complete and check keys during typing.
+"""JSON Schema of the mooring file, for completion and checks in text editors.
 
 It is made from the models that read the file. It contains the keys, the kinds, and the fact that a
 quantity has a unit. Conditions that involve the catalogue or several keys are checked only by the
@@ -21,7 +21,7 @@ from calm.files.reader import MooringKeys
 Schema = dict[str, Any]
 
 _NO_FORM = ("description", "examples", "default", "title")
-"""Entries in the schema of a field that do not restrict its value."""
+"""Schema entries of a field that do not restrict its value."""
 
 
 def mooring_schema() -> Schema:

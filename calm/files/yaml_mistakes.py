@@ -1,4 +1,4 @@
-"""Messages about invalid YAML: the mistake that people made, instead of the state of the parser."""
+"""Messages about invalid YAML that name the mistake of the writer instead of the parser state."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from yaml.error import Mark, MarkedYAMLError
 
 Mistake = tuple[int, int, str]
-"""Line and column, from 1, and the message."""
+"""Line and column, counted from 1, and the message."""
 
 _KEY = re.compile(r"\s*(?:- +)*(?:[{\[] *)?[\w-]+:(?= |$)")
 _GLUED = re.compile(r"([\w-]+):(\S.*)")
@@ -15,7 +15,7 @@ _OPENING = {"mapping": "{", "sequence": "["}
 
 
 def without_colon(text: str) -> str:
-    """Return the message about a key without a colon, or without a blank after it."""
+    """Return the message about a key that lacks its colon, or the blank after the colon."""
     if glued := _GLUED.fullmatch(text):
         return f"`{text}` has no blank after its colon; did you mean `{glued[1]}: {glued[2]}`?"
     key, _, value = text.partition(" ")
@@ -24,7 +24,7 @@ def without_colon(text: str) -> str:
 
 
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
-    """Return the mistake behind an error of the parser, every tab in the indentation being one.
+    """Find the mistake behind a parser error; every tab in the indentation is reported.
 
     An error of an unknown kind is reported in the words of the parser.
     """

@@ -284,17 +284,17 @@ class Keeper:
 
     @classmethod
     def this(cls) -> Keeper:
-        """Return this process."""
+        """Return the current process."""
         return cls(socket.gethostname(), os.getpid(), _started(os.getpid()))
 
     @property
     def is_here(self) -> bool:
-        """Return whether the process belongs to this machine."""
+        """Whether the process runs, or ran, on this machine."""
         return self.host == socket.gethostname()
 
     @property
     def is_running(self) -> bool:
-        """Return whether the process is known to be running; False for one on another machine.
+        """Whether the process is known to be running; False for a process on another machine.
 
         A web page has one process for successive sessions.
         """
