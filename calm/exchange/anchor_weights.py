@@ -17,7 +17,7 @@ _LEAST = 100.0  # smallest guessed weight in N
 
 
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
-    """Set the weight of each anchor that has none in the file, or that the line would lift.
+    """Set the weight of each anchor that has no weight in the file, or that the line would lift.
 
     The shape of the line does not depend on this weight, which is the weight required by `calm
     check` in this current. A line without an equilibrium is left unchanged; `calm run` reports it.

@@ -45,7 +45,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Return the text of the mooring file of a design, and the guesses in it."""
+    """Write the mooring file of a design; return its text and the guesses in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
     for note in design.notes:

@@ -1,4 +1,4 @@
-"""Run the readers of foreign binary files in a process of their own.
+"""Run readers of foreign binary files in a separate process.
 
 The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
 may end the process, panic, or request all memory. Here only the child process ends, which is
@@ -17,9 +17,7 @@ _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 
 MOST_MEMORY = 3_000_000_000
-"""Memory that a reader may use in addition to that of the program [bytes]; limited on Linux
-only.
-"""
+"""Additional memory allowed for a reader [bytes]; limited on Linux only."""
 
 MOST_SECONDS = 120.0
 """Time after which a reader is stopped [s]."""

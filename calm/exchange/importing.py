@@ -31,7 +31,7 @@ _OWN_KEYS = (rb"^environment:", rb"^(line|legs):")
 
 @dataclass(frozen=True)
 class Imported:
-    """A mooring file made from a file of another program.
+    """A mooring file converted from a file of another program.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Read the variables of a `.mat` file of any program and version.
+"""Read variables from a `.mat` file written by any version of MATLAB or Octave.
 
 No content of such a file is executed or unpickled. MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB
 7.3 and Octave) by h5py, and the text format of Octave, compressed or not, by this module.
@@ -21,7 +21,7 @@ from calm.exchange.foreign_process import read_apart
 from calm.whole_file import read_content
 
 LARGEST = 200_000_000
-"""Largest size of a file, also after decompression [bytes]."""
+"""Maximum size of a file, also after decompression [bytes]."""
 
 _GZIP = b"\x1f\x8b"
 _OCTAVE_BINARY = b"Octave-1-"
@@ -31,16 +31,16 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _TEXTS = ("char", "string", "sq_string")
 _DEEPEST = 4  # cells in cells
 MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
-"""A variable: numbers or characters, a text, or the elements of a cell array."""
+"""Value of a variable: numbers or characters, a text, or the elements of a cell array."""
 
 _MOST = 20_000_000
-"""Most elements of a variable."""
+"""Maximum number of elements in a variable."""
 
 RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
-    """Return the wanted variables, as far as a file has them.
+    """Read the wanted variables; missing variables are omitted.
 
     InputError: the file is not a `.mat` file, or is damaged.
     """
@@ -66,7 +66,7 @@ def _variables(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def is_mat(content: bytes) -> bool:
-    """Return whether a file looks like one of MATLAB or Octave, by its first bytes."""
+    """Return whether the first bytes of a file are those of a MATLAB or Octave file."""
     content = _inflated(content, _HEAD)
     if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
@@ -113,7 +113,7 @@ def _is_octave_text(content: bytes) -> bool:
 
 
 def read_octave_text(text: str) -> dict[str, MatValue]:
-    """Return every variable of a text file of Octave that can be read; the others are left out.
+    """Read an Octave text file; variables that cannot be read are omitted.
 
     ValueError: a matrix has fewer numbers than its header says, or a header cannot be read.
     """
@@ -280,10 +280,10 @@ def _text_of(value: object) -> str:
 
 
 class MatVariables(dict[str, MatValue]):
-    """The variables of a file by name."""
+    """Variables of a `.mat` file, by name."""
 
     def reals(self, name: str) -> RealArray:
-        """Return a variable as numbers; an empty array if there is no such variable.
+        """Return a variable as real numbers; an empty array if the variable is missing.
 
         ValueError: the variable does not hold real numbers.
         """
@@ -295,7 +295,7 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array; an empty one if it does not hold real
+        """Return a variable as a one-dimensional array; an empty array if it does not hold real
         numbers.
         """
         try:
@@ -304,7 +304,7 @@ class MatVariables(dict[str, MatValue]):
             return np.zeros(0)
 
     def first(self, name: str) -> float:
-        """Return the first number of a variable; 0 if it has none."""
+        """Return the first number of a variable, or 0."""
         row = self.row(name)
         return float(row[0]) if row.size else 0.0
 
@@ -317,7 +317,7 @@ def _fits(name: str, shape: tuple[int, ...]) -> bool:
 
 
 def names(value: MatValue | None) -> list[str]:
-    """Return a variable as texts, from a character matrix, a cell array or character codes."""
+    """Convert a variable to texts, from a character matrix, a cell array or character codes."""
     if value is None:
         return []
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Read the configuration of a mooring in oceanarray, a file `NAME.mooring.yaml`.
+"""Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
 `inline` lists the pieces of the line, and `clamp` the instruments clamped on it, both with heights
 above the seabed. Most have no other figures, which are looked up in a library of elements or in the
@@ -29,7 +29,7 @@ from calm.files.yaml_document import Document, read_document
 from calm.positions import plain_degrees
 
 ROPE = "rope"
-"""The name of the rope that is inserted between pieces."""
+"""Name of the rope inserted between pieces."""
 # keys that may name a component
 _NAMES = ("component_id", "label", "hardware_type", "category", "instrument")
 _CLOSE = 0.05  # m between pieces that touch
@@ -42,7 +42,7 @@ _MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
 
 
 def is_oceanarray(content: bytes) -> bool:
-    """Return whether a file is a configuration of oceanarray, by its keys."""
+    """Return whether the keys of a file are those of an oceanarray configuration."""
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
@@ -101,10 +101,10 @@ def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
 
 
 _Location = tuple[str | int, ...]
-"""The place of an item in the file: keys, and indices in lists."""
+"""Location of an item in the file: keys, and list indices."""
 
 _Found = tuple[model.ImportedComponent, str]
-"""The component that a name means, and what about it is guessed."""
+"""Component found for a name, and a note on what was guessed."""
 
 
 @dataclass(frozen=True)

@@ -340,7 +340,9 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 
 
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
-    """Return the entries in a mapping from ids to definitions; `family` is None in a mooring file."""
+    """Return the entries in a mapping from ids to definitions; `family` is None in a mooring
+    file.
+    """
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):

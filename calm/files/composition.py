@@ -281,7 +281,9 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """Parsed nodes of a text and its rejected parts; `root` is None for an empty or invalid text."""
+    """Parsed nodes of a text and its rejected parts; `root` is None for an empty or invalid
+    text.
+    """
 
     root: Node | None
     refusals: tuple[Refusal, ...] = ()

@@ -234,6 +234,8 @@ def refuse_tow(file: MooringFile) -> None:
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError for tows and for files with legs, for functions that need a single mooring."""
+    """Raise UsageError for tows and for files with legs, for functions that need a single
+    mooring.
+    """
     refuse_several(file)
     refuse_tow(file)

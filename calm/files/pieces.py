@@ -221,7 +221,9 @@ def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
 
 
 def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
-    """Return the clamps of a line in the order of the file, which is also the order of the solver."""
+    """Return the clamps of a line in the order of the file, which is also the order of the
+    solver.
+    """
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 

@@ -82,7 +82,9 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Return the planned depth found in the label of a piece or a clamp [m]; None if there is none."""
+    """Return the planned depth found in the label of a piece or a clamp [m]; None if there is
+    none.
+    """
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

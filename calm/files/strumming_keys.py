@@ -40,7 +40,9 @@ class StrummingFactor(Model):
 
 
 class ConstantCn(Model):
-    """A fixed Cn for every cable, in place of its own value; 1.8 to 1.9 is usual for towed cables."""
+    """A fixed Cn for every cable, in place of its own value; 1.8 to 1.9 is usual for towed
+    cables.
+    """
 
     cn: Annotated[float, COEFFICIENT] = described("drag coefficient across the axis", 1.2)
 

@@ -26,7 +26,7 @@ _SLIGHT = 1e-9
 
 @dataclass
 class ComponentMaker:
-    """Converter of components in the water of the problem; unsupported keys are added to
+    """Converter of components for the water of the problem; unsupported keys are added to
     `dropped`.
     """
 
@@ -37,8 +37,8 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """Convert a material to a cable of a length [m], with its drag at a depth [m] and a speed
-        [m/s].
+        """Convert a material to a cable of given length [m], with its drag at a given depth [m] and
+        speed [m/s].
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class ComponentMaker:
             component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """Convert a connector to a sphere with its drag, with the length in the file."""
+        """Convert a connector to a sphere with the drag and length of the connector."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         across, drag = values.number("d", "diam"), values.number("cdn")
@@ -114,7 +114,7 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """Convert an anchor; it has no weight if the file has none.
+        """Convert an anchor; its weight is undefined if the file has none.
 
         Parameters
         ----------
@@ -204,7 +204,9 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """Whether a drag depends on depth; a table limited to realistic speeds depends on speed."""
+    """Whether a drag coefficient depends on depth. A table that ends at a realistic speed depends
+    on speed instead.
+    """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
@@ -213,7 +215,7 @@ def _drag(value: KeyValue | None, depth: float, speed: float) -> float:
 
 
 def varies(definition: CableDefinition) -> bool:
-    """Whether a drag of a material is a function of depth."""
+    """Whether a drag coefficient of a material depends on depth."""
     given = [definition.values[key] for key in ("cdn", "cdt") if key in definition.values]
     deep = [value for value in given if counts_on_depth(value)]
     return any(value.rows or (value.formula and value.formula.names) for value in deep)

@@ -16,7 +16,7 @@ _PARTS = 12  # number of lengths of a segment whose drag changes with depth
 _CHANGE = 0.02  # relative change of a drag coefficient above which a segment is divided
 _MOST_NODES = 1_000_000
 _ON_THE_BED = 0.05
-"""Share of the depth: an anchor closer to the seabed stands on the seabed."""
+"""Height of an anchor, relative to the water depth, below which the anchor stands on the seabed."""
 
 
 _End = grammar.CableTerminal | str
@@ -25,7 +25,7 @@ _End = grammar.CableTerminal | str
 
 @dataclass
 class CableLayout:
-    """Converter of the line of a problem.
+    """Converter of the layout of a problem.
 
     Attributes
     ----------
@@ -67,8 +67,8 @@ class CableLayout:
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
 
     def lay_tow(self) -> None:
-        """Convert the line from the ship down; a ship at rest in a current is replaced by a moving
-        ship.
+        """Convert the line from the ship down. A ship at rest in a current becomes a moving ship in
+        still water.
         """
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals

@@ -1,4 +1,4 @@
-"""Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
+"""Write a mooring or a tow as a WHOI Cable problem, for static and dynamic analysis."""
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -74,7 +74,7 @@ class _Problem:
 
 
 def write_cbl(exported: ExportedDesign) -> Exported:
-    """Write a line as a problem."""
+    """Write the only leg of a design as a problem file for WHOI Cable."""
     (design,) = exported.legs
     lost: list[str] = []
     if design.tow is not None:

@@ -1,4 +1,6 @@
-"""Convert elements of Mooring Design & Dynamics to components, with the drag of that program."""
+"""Convert elements of Mooring Design & Dynamics (MDD) to components, with the drag computed by
+MDD.
+"""
 
 from __future__ import annotations
 
@@ -21,23 +23,23 @@ _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
 _ROWS = ("B", "Cd", "ME", "Wt")
 GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
-"""The variables of a library that hold elements."""
+"""Library variables that hold elements."""
 
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Moduli of elasticity of the materials that the program numbers from 1: steel, nylon, Dacron,
-polypropylene, polyethylene, Kevlar, aluminium, Dyneema [Pa].
+"""Elastic moduli of the materials numbered from 1 in the files [Pa]: steel, nylon, Dacron,
+polypropylene, polyethylene, Kevlar, aluminium, Dyneema.
 """
 
 
 def piece_of(element: MddElement) -> model.ImportedPiece:
-    """Return the piece of an element other than the anchor."""
+    """Convert an element other than the anchor to a piece."""
     if element.is_line:
         return model.ImportedPiece(_flexible(element), element.length)
     return model.ImportedPiece(rigid(element))
 
 
 def rigid(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of a rigid element, or of an element clamped on.
+    """Convert a rigid or clamped element to a component.
 
     Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
     whatever its length. It treats one with only a width as a cylinder whose Cd is for flow across
@@ -72,8 +74,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
 
 
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
-    """Give a surface float the draft and the drag that Mooring Design & Dynamics computes: both in
-    proportion to the share of its buoyancy that is used.
+    """Set the hull of a surface float so that draft and drag are proportional to the used share of
+    its buoyancy, as in Mooring Design & Dynamics.
 
     Its hull displaces only as much as its net buoyancy requires, in proportion to the draft.
     """
@@ -128,9 +130,7 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of the anchor, the lowest element; its weight has either sign in
-    files.
-    """
+    """Convert the lowest element to an anchor; files give its weight with either sign."""
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -140,7 +140,7 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """An element: a column of ``H``, and the other figures of that element.
+    """An element: a column of ``H`` and the corresponding values of other variables.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ class MddElement:
 
 
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
-    """Return the elements of a line in the order of the file, and messages about mistakes.
+    """Read the elements of a line in file order; also return messages about mistakes.
 
     `suffix` is ``t`` for the matrices of a tow, ``CO`` for clamped elements, and empty for a
     mooring.
@@ -221,7 +221,7 @@ def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement
 
 
 def mistakes_of(element: MddElement, where: str) -> list[str]:
-    """Return a message for each figure of an element that is out of range."""
+    """Return a message for each value of an element that is out of range."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,

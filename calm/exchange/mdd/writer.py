@@ -17,7 +17,7 @@ _LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used
 
 
 def write_mdd(exported: ExportedDesign) -> Exported:
-    """Write a line as a file of MATLAB 5."""
+    """Write a line as a `.mat` file of MATLAB version 5."""
     (design,) = exported.legs
     from scipy.io import savemat
 

@@ -19,8 +19,8 @@ _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
 _STEADY = ("1", "3")  # of `Currents`; the others vary in time
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
-"""An upper end nearer the surface than this share of the depth, or this distance [m], is taken as
-one below a float.
+"""Maximum depth of an upper end that is treated as attached to a float, relative to the water
+depth, and in metres if that is more.
 """
 
 _ABOVE = 0.01  # m: a point higher than this is held above the water
@@ -351,7 +351,9 @@ def _heading(word: str, section: str) -> str:
 
 
 _ON_THE_BED = 0.05
-"""Share of the depth: a fixed point no higher above the seabed is an anchor."""
+"""Maximum height of a fixed point above the seabed, relative to the water depth, at which the point
+is an anchor.
+"""
 
 
 def _lay_net(file: _File, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Write a mooring as an input file of MoorDyn 2, with its points at their places in equilibrium."""
+"""Write a mooring as an input file of MoorDyn 2, with its points at their equilibrium positions."""
 
 from dataclasses import dataclass, field, replace
 from itertools import groupby
@@ -20,7 +20,7 @@ from calm.files.legs import EndKeys
 from calm.physics.line import Floats
 
 _CURRENTS = "current_profile.txt"
-"""The name of the file in the folder of the input from which MoorDyn reads the current."""
+"""Name of the current file, which MoorDyn reads from the folder of the input file."""
 
 _RIGID = 1e7  # N: EA of parts that do not stretch; stiffer lines need shorter time steps
 _SHORT = 0.5  # m: a shorter rigid part has a lower EA in proportion, for the same reason
@@ -123,7 +123,7 @@ class _System:
 
 
 def write_moordyn(exported: ExportedDesign) -> Exported:
-    """Write a line, or the legs of a net, and the current as a second file.
+    """Write a line or the legs of a net, and the current in a second file.
 
     Raises
     ------

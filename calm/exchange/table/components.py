@@ -1,4 +1,4 @@
-"""Convert rows of a list to components, and note how missing figures were guessed."""
+"""Convert list rows to components, and note guesses for missing values."""
 
 import math
 
@@ -16,9 +16,7 @@ _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
-    """Return the definition of a row in SI units; add what is wrong in the row to its
-    `problems`.
-    """
+    """Convert a row to a component in SI units; mistakes are added to the `problems` of the row."""
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figure(what) < 0.0:
             row.refuse(f"its {what.replace('_', ' ')} is negative")
@@ -28,7 +26,7 @@ def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
 
 
 _Definition = tuple[str, dict[str, model.FigureOrWord]]
-"""The kind of a component, and its figures."""
+"""Kind of a component, and its values."""
 
 
 def _anchor(row: ListRow) -> _Definition:

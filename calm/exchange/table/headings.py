@@ -17,10 +17,10 @@ COLUMNS = (
     "cd", "area", "drag_area", "tangential_area", "material", "stiffness", "breaking_load", "count",
     "at", "height", "depth",
 )  # fmt: skip
-"""The names of columns, as in `--columns`."""
+"""Column names, as in `--columns`."""
 
 WORDS = ("name", "label", "kind", "role")
-"""Columns that hold words."""
+"""Columns with words instead of numbers."""
 
 _WEIGHT = r"(weight|poids|gewicht|vekt|\bpeso|mass(e|a)?\b|\bmasa\b)"
 _WET = (
@@ -87,7 +87,7 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """Describe a column: its index, its heading, and the factor of its numbers to SI.
+    """A column: its index, heading, and the factor from its numbers to SI.
 
     `by_mass`: forces are in kilograms; `per_metre`: figures of lines are per metre; `known`: the
     heading has a unit; `whole`: the heading says that figures are those of whole pieces; `twin`: a
@@ -106,8 +106,8 @@ class ListColumn:
     twin: ListColumn | None = None
 
     def of(self, row: list[str], *, line: bool) -> tuple[ListColumn, str]:
-        """Return this column or its twin, whichever has a row's figure (of a line per metre), and
-        the cell.
+        """Choose this column or its twin (per metre or per piece) for a row, preferring a value per
+        metre for lines; also return the cell.
         """
         both = [each for each in (self, self.twin) if each and cell_of(row, each)]
         column = min(both, key=lambda each: each.per_metre != line, default=self)
@@ -116,7 +116,7 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """The headings of a sheet: their row, the columns recognised, and the other headings.
+    """Headings of a sheet: their row, recognised columns, and other headings.
 
     `problems` are messages about headings that are not understood and cannot be ignored.
     """
@@ -127,9 +127,7 @@ class ListHeadings:
 
     @property
     def problems(self) -> list[str]:
-        """Messages about headings that are not understood and cannot be ignored, each with its
-        place.
-        """
+        """Messages about unknown headings that cannot be ignored, with their positions."""
         beside = "has lines beside other pieces; a line needs a row of its own"
         from_an_end = "counts lengths from an end of the line; give each piece its own length"
         return [
@@ -152,7 +150,7 @@ class ListHeadings:
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """Return the headings of a sheet; None if no row has a name and a length or a force.
+    """Find the headings of a sheet; None if no row has a name and a length or a force.
 
     Columns in `given` take precedence over those that are recognised.
     """
@@ -176,7 +174,7 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
-    """Check that `--columns` names columns that CALM knows, and headings of the list.
+    """Check that `--columns` refers to known columns and to headings of the list.
 
     Parameters
     ----------
@@ -349,7 +347,7 @@ def cell_of(row: list[str], column: ListColumn | None) -> str:
 
 
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
-    """Return the decimal sign of the columns of numbers, and a remark about commas."""
+    """Find the decimal sign of the number columns; also return a remark about commas."""
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:
         return decimal_sign(

@@ -1,4 +1,4 @@
-"""Read the rows of a list in SI units, and note how each was interpreted."""
+"""Read list rows in SI units, and note how each row was interpreted."""
 
 import math
 import re
@@ -36,7 +36,7 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 
 @dataclass(eq=False)
 class ListRow:
-    """A row of a list: its name, its figures and count, and the guesses made in it.
+    """A list row: name, values, count, and guesses.
 
     `metre` names the figures of a line that are per metre, `line` is whether it is a cable or chain
     (None: by its name), `hint` is a hint for missing figures, and `problems` are messages about
@@ -58,15 +58,15 @@ class ListRow:
 
     @property
     def where(self) -> str:
-        """The place and the name of the row, for messages."""
+        """Row number and name, for messages."""
         return f"row {self.place}, {self.name}"
 
     def refuse(self, problem: str) -> None:
-        """Add a problem of this row."""
+        """Add a problem about this row."""
         self.problems.append(f"{self.where}: {problem}")
 
     def figure(self, what: str) -> float:
-        """Return a figure; 0 if the list has none."""
+        """Return a value; 0 if the list has none."""
         return self.figures.get(what, 0.0)
 
     @property
@@ -76,13 +76,13 @@ class ListRow:
 
     @property
     def sinks(self) -> bool:
-        """True for a line, an anchor, or a part that sinks according to its name."""
+        """Whether the row is a line, an anchor, or a part that sinks according to its name."""
         named = is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
     @property
     def is_line(self) -> bool:
-        """True for a cable or a chain."""
+        """Whether the row is a cable or a chain."""
         if self.line is not None:
             return self.line
         if self.role in ROLES or is_called(self.kind, "rigid"):
@@ -101,7 +101,7 @@ def rows_of(
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
-    """Return the rows below the headings; sums and rows without figures are added to `dropped`.
+    """Read the rows below the headings; sums and rows without values are added to `dropped`.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 
 
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
-    """Return messages about lengths that are not the lengths of pieces.
+    """Return messages about cumulative or implausibly large lengths.
 
     Lengths that grow from piece to piece, up to an end of the line, are distances from its other
     end.
@@ -226,7 +226,7 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 
 
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
-    """Give every row its net force as buoyancy, positive up.
+    """Convert weights to net buoyancy, positive up.
 
     Weights are positive down, or positive up if those of sinking parts are negative. If sinking
     parts have positive buoyancies and all others negative ones, the column holds weights.
@@ -256,7 +256,7 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) ->
 
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
-    """Divide figures of lines by their length if the list gives them for whole lines."""
+    """Convert values of lines to values per metre if the list gives values for the whole line."""
     lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
