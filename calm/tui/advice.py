@@ -1,4 +1,4 @@
-"""Changes of the file that correct findings of the design check.
+"""Suggest changes to the file that correct findings of the design check.
 
 This module does not depend on the screen. Targets are met by the search of `calm size`.
 """
@@ -27,7 +27,7 @@ _GRAVE = (State.FAIL, State.WARN)
 
 @dataclass(frozen=True)
 class Offer:
-    """A change that is offered.
+    """A suggested change.
 
     Attributes
     ----------
@@ -42,13 +42,13 @@ class Offer:
 
 
 def single(view: View) -> LegResult | None:
-    """Return the line of a mooring with an equilibrium; None for a tow or several legs."""
+    """Return the solved line of a mooring; None for a tow, several legs, or no equilibrium."""
     result = view.result
     return None if result is None or result.several or result.towed else result.leg
 
 
 def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
-    """Return remedies for the failures and warnings of a line, the most severe first."""
+    """Return suggested changes for the failures and warnings of a line, the most severe first."""
     result = single(view)
     if view.result is None or result is None:
         return [*_against_lifting(view, catalogue)]
@@ -76,7 +76,8 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
 
 
 def sized(mooring: Design, target: str, change: str) -> Offer:
-    """Offer the smallest change that meets a target, both in the syntax of `calm size`.
+    """Suggest the smallest change of a quantity that meets a target; both are in the syntax of
+    `calm size`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Rows of the line, from the file and its results; editing of single values and columns."""
+"""Rows of the line table, from the file and its results, and editing of values and columns."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ _MOST_USE = 9.99
 def table_rows(
     draft: Draft, view: View | None, index: Index | None, added: Collection[Place] = ()
 ) -> list[TableRow]:
-    """Return a row for each item and clamp, with the governing values of the pieces of an item.
+    """Return a row for each item and clamp; an item with several pieces shows their governing
+    values.
 
     If the view is of an earlier text, its values go to the rows of the same name, except the rows
     that were `added`.
@@ -155,17 +156,17 @@ class LineCell:
     workspace: Workspace
     spot: Place
     column: str
-    """An editable column of the table, or `serial`."""
+    """Name of an editable table column, or `serial`."""
 
     @property
     def listed(self) -> Listed | None:
-        """Component of the row, if the loaded catalogue has it."""
+        """Component of the row, if it is in the loaded catalogue."""
         index = self.workspace.index
         return None if index is None else index.get(self._values.get("use", ""))
 
     @property
     def refused(self) -> str:
-        """Reason why the value cannot be edited, or ""."""
+        """Reason why the value cannot be edited; "" if it can."""
         listed = self.listed
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
@@ -175,7 +176,7 @@ class LineCell:
 
     @property
     def text(self) -> str:
-        """Text to edit."""
+        """Text shown when editing starts."""
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":
@@ -184,7 +185,7 @@ class LineCell:
 
     @property
     def check(self) -> Check:
-        """Check of a new text."""
+        """Check applied to a new text."""
         if self.column != "length":
             return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
@@ -192,7 +193,7 @@ class LineCell:
         return length(self._values.get("length", ""), towed=self._is_towed)
 
     def put(self, text: str) -> None:
-        """Write a valid text; an unchanged text has no effect.
+        """Write a valid text to the file; an unchanged text has no effect.
 
         Raises
         ------
@@ -203,7 +204,7 @@ class LineCell:
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """Return the keys of the file that a text changes; None deletes a key."""
+        """Return the keys that a text changes, with their values; None deletes a key."""
         written = self._values
         if text == self.text:
             return {}
@@ -262,7 +263,7 @@ class ColumnSheet(InputSheet):
 
 
 class ColumnFilling:
-    """Values of a column in several rows, edited on one sheet."""
+    """Values of one column in several rows, edited on a sheet."""
 
     def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
         self._session, self._column = workspace.session, column
@@ -274,13 +275,13 @@ class ColumnFilling:
 
     @property
     def sheet(self) -> ColumnSheet | None:
-        """Sheet for the values, or None if no row can have such a value."""
+        """Sheet for editing the values; None if no row can have a value in this column."""
         return (
             ColumnSheet(_TITLES[self._column], "", self._form_fields) if self._form_fields else None
         )
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write the changed values in one step."""
+        """Write all changed values as one step of the history."""
         begun, draft = {each.key: each.text for each in self._form_fields}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"
