@@ -1,4 +1,4 @@
-"""Saving, with questions on missing names, existing files and changes on the disk."""
+"""Save the file, with questions about missing names, existing files and external changes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saves the file of a workspace, asks before overwriting, and watches the disk.
+    """Saves the file of a workspace, asks before overwriting, and watches for external changes.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Saving:
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
-        """Ask for another name (default `begin`) and save."""
+        """Ask for a new file name (default `begin`) and save."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
@@ -136,7 +136,9 @@ class Saving:
     # the file on the disk
 
     def check_external_change(self) -> None:
-        """Reload the file if another program changed it; warn if that would lose unsaved work."""
+        """Reload the file if another program changed it; warn if that would discard unsaved
+        work.
+        """
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
             return  # try again later: a question is open, or the application is ending
@@ -169,7 +171,7 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work, with its time and whether the file is newer.
+        """Offer to recover unsaved work, stating its time and whether the file is newer.
 
         Discarding needs a confirmation, because it cannot be undone.
         """
@@ -215,7 +217,7 @@ class Saving:
     # the way out
 
     def quit(self) -> None:
-        """Leave; unsaved work is asked about."""
+        """Quit the builder, after a question if there is unsaved work."""
         self.check_external_change()
         if not self._session.changed:
             self._leave()
@@ -238,7 +240,7 @@ class Saving:
 
 
 def chosen_path(text: str) -> Path:
-    """Return the path of a typed name, with the suffix `.yaml` if it has none."""
+    """Convert a typed name to a path, with the default suffix `.yaml`."""
     path = Path(os.path.expanduser(text.strip()))
     is_named = path.name not in ("", "..") and not text.rstrip().endswith(("/", os.sep))
     bare = is_named and not path.suffix and not path.is_dir()
@@ -274,5 +276,5 @@ def _is_writable(text: str) -> Reading:
 
 
 def moment(seconds: float) -> str:
-    """Format a time [s since 1970] as local date and time, to the minute."""
+    """Format a time [s since 1970] as local date and time in minutes."""
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))

@@ -1,4 +1,4 @@
-"""Text of the verdict: values and findings, or missing parts."""
+"""Text of the verdict: values and findings, or the missing parts of a line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MOST_PROBLEMS = 6
 
 @dataclass(frozen=True)
 class VerdictLine:
-    """A line of the verdict with its sign, heading, text and state.
+    """A line of the verdict: sign, heading, text and state.
 
     `pending` marks a state that may still change; `places` are the rows concerned.
     """
@@ -37,7 +37,7 @@ class VerdictLine:
 
     @property
     def sign(self) -> str:
-        """Sign in front of the line."""
+        """Sign before the line."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else self.state.sign
@@ -275,7 +275,7 @@ def _used(finding: Finding) -> str:
 
 
 def why(view: View, row: Place) -> list[VerdictLine]:
-    """Return all findings of a row with their remedies, the most severe first."""
+    """Return all findings for a row with their remedies, the most severe first."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if row in _places([each])]
     return [_finding_line(each) for each in sorted(own, key=lambda each: each.rank)]
