@@ -49,9 +49,7 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
 def _pulls(
     design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
-    """Return each anchor with the vertical load of the line on it, and the weight that holds it
-    [N].
-    """
+    """Return each anchor with its vertical line load and its required weight [N]."""
     before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
         anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}

@@ -86,8 +86,8 @@ def _likeness(name: str, id: str, other: str) -> float:
 
 
 def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
-    """Whether two components agree in their values; only net buoyancy is compared if one is
-    `sizeless` in the file.
+    """Return whether two components have equal values; for `sizeless` components only net buoyancy
+    is compared.
     """
     pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
     if sizeless:

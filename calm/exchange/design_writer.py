@@ -145,7 +145,7 @@ def _keyed(page: _Page, key: str, value: str, water: model.ImportedWater) -> Non
 
 
 def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
-    """Combine equal successive items to one item with a count."""
+    """Combine consecutive equal items to one item with a count."""
 
     def what(item: model.ImportedPiece) -> object:
         if item.clamps or item.guess or _called(item):

@@ -58,7 +58,7 @@ def read_apart(
 def _read(
     pipe: Connection, reader: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any]
 ) -> None:
-    """Send the result of a reader, or its error message; its printed output is discarded."""
+    """Run a reader; send its result or error message, and discard its printed output."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     _limit_memory()
     try:

@@ -74,7 +74,7 @@ def is_mat(content: bytes) -> bool:
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """Return the first `most` bytes of gzip content that can be decompressed, or other content
+    """Decompress gzip content as far as possible, up to `most` bytes; return other content
     unchanged.
     """
     if not content.startswith(_GZIP):
@@ -86,8 +86,8 @@ def _inflated(content: bytes, most: int) -> bytes:
 
 
 def _is_version_4(content: bytes) -> bool:
-    """Return whether the first header of a file is one of MATLAB 4: a type, rows, columns and the
-    length of a name.
+    """Return whether a file begins with a MATLAB 4 header: type, rows, columns and length of a
+    name.
     """
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
@@ -107,7 +107,7 @@ def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _is_octave_text(content: bytes) -> bool:
-    """Return whether a file begins as Octave writes its text files."""
+    """Return whether the beginning of a file is that of an Octave text file."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 
@@ -152,7 +152,7 @@ def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]
 
 
 def _header(line: str) -> tuple[str, str]:
-    """Return the key and the value of a line such as ``# rows: 3``, with or without its colon."""
+    """Parse a line such as ``# rows: 3``, with or without its colon, to key and value."""
     if not line.lstrip().startswith("#"):
         return "", ""
     body = line.lstrip()[1:].strip()
@@ -203,7 +203,7 @@ def _shaped(name: str, array: RealArray, shape: list[int], *, order: str) -> Mat
 
 
 def _texts(rows: list[str]) -> list[MatValue]:
-    """Return the rows of a character matrix: each line after its length."""
+    """Read the rows of a character matrix; each row follows a line with its length."""
     texts: list[MatValue] = []
     for i, row in enumerate(rows):
         if _header(row)[0] == "length":
@@ -213,12 +213,12 @@ def _texts(rows: list[str]) -> list[MatValue]:
 
 
 def _is_hdf5(content: bytes) -> bool:
-    """Return whether a file is HDF5, by its first bytes or by those after MATLAB's header."""
+    """Return whether a file is HDF5, by the signature at its start or after a MATLAB header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
 def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """Return the wanted variables of an HDF5 file; links to other files are not followed."""
+    """Read the wanted variables of an HDF5 file; links to other files are not followed."""
     import h5py
 
     with h5py.File(io.BytesIO(content), "r") as file:
@@ -228,7 +228,7 @@ def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """Return a dataset as written by MATLAB, or a group as written by Octave; cells are read
+    """Read a dataset as written by MATLAB, or a group as written by Octave; cells are read
     recursively.
     """
     import h5py
@@ -251,7 +251,7 @@ def _variable(file: Any, node: Any, depth: int) -> MatValue:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
-    """Return the values of a dataset, whose dimensions HDF5 stores in reverse order."""
+    """Read the values of a dataset, whose dimensions HDF5 stores in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
@@ -310,7 +310,7 @@ class MatVariables(dict[str, MatValue]):
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Return True; raise ValueError if a variable of this shape is too large to be read."""
+    """Raise ValueError if a variable of this shape is too large; otherwise return True."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True

@@ -109,7 +109,7 @@ _Found = tuple[model.ImportedComponent, str]
 
 @dataclass(frozen=True)
 class _Entry:
-    """An item of the file; heights are above the seabed [m].
+    """An item in the file; heights are above the seabed [m].
 
     `place` is its location in the file, `names` are its names, the most exact first, and
     `instrument` is oceanarray's word for the kind of instrument. At most one of `middle`, `bottom`
@@ -129,7 +129,7 @@ class _Entry:
 
     @property
     def height(self) -> float | None:
-        """Return the height of its middle, bottom or top, whichever is given [m]."""
+        """Height of the middle, bottom or top of the item, as specified in the file [m]."""
         given = (self.middle, self.bottom, self.top)
         return next((one for one in given if one is not None), None)
 
@@ -138,7 +138,7 @@ class _Entry:
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
-        """Return the height of its lower end [m], for a piece of length `extent`."""
+        """Return the height of the item's lower end [m], for a piece of length `extent`."""
         if self.is_anchor:
             return 0.0
         if self.bottom is not None:
@@ -157,7 +157,7 @@ class _Reading:
     depth: float | None = None
 
     def refuse(self, place: _Location, message: str) -> None:
-        """Add a problem at a place of the file."""
+        """Add a problem at a position of the file."""
         self.problems.append(self.document.problem(place, message))
 
     def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
@@ -219,7 +219,7 @@ class _Parts:
     _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
 
     def of(self, entry: _Entry) -> _Found | None:
-        """Return the component of an item, and what about it is guessed; None if nothing is
+        """Find the component for an item; also return what was guessed. None if nothing is
         known.
         """
         message = f"neither the library nor the catalogue has `{entry.names[0]}`"
@@ -279,8 +279,8 @@ class _Parts:
 
 @dataclass(frozen=True)
 class _Strung:
-    """The pieces of a line and the heights of their lower ends [m]: `nominal` ones as in the
-    file, and `height` from the lengths.
+    """Pieces of a line, with heights of their lower ends [m]: `nominal` as in the file, `height`
+    from the lengths.
     """
 
     items: list[model.ImportedPiece]

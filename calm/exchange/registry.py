@@ -142,7 +142,7 @@ def file_formats() -> tuple[FileFormat, ...]:
 
 
 def _added() -> dict[str, str]:
-    """The formats of other packages and their modules."""
+    """Return the formats of other packages, with their modules."""
     added = {entry.name: entry.module for entry in entry_points(group=ENTRY_POINTS)}
     if taken := sorted(added.keys() & _OWN.keys()):
         raise CalmError(

@@ -95,8 +95,8 @@ class Catalogue:
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Return an entry without the keys that have no value; one without `kind` completes the
-        definition of the same id in this catalogue.
+        """Merge an entry without `kind` with the definition of the same id in this catalogue; keys
+        without a value are dropped.
 
         Assemblies have no figures to complete.
         """
@@ -359,7 +359,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 
 
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
-    """Yield the id and the text of each definition; the id is None if it cannot be recognised.
+    """Yield id and text of each definition; the id is None if it cannot be recognised.
 
     Empty lines are put above the text, so that its line numbers are those of the file.
     """

@@ -139,7 +139,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: events.NodeEvent, depth: int) -> Node:
-        """Return the node that begins with an event, with all nodes below it."""
+        """Build the node that begins with an event, including all nodes below."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
@@ -179,15 +179,15 @@ class _Reader:
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 
     def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the items of a sequence, and the event that ends it."""
+        """Return the items of a sequence, and the event that ends the sequence."""
         items = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             items.append(self._node(event, depth))
         return items, event
 
     def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the values of a mapping and the event that ends it; the keys are appended to
-        `keys`.
+        """Return the values of a mapping and the event that ends the mapping; the keys are appended
+        to `keys`.
         """
         lines: dict[str, int] = {}
         values = []
@@ -221,7 +221,7 @@ class _Reader:
         return values, event
 
     def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
-        """Skip a node and the problems within it; report `message` if it is given."""
+        """Skip a node without reporting problems inside; report `message` instead, if given."""
         before = len(self._refusals)
         node = self._node(event, depth)
         self._refusals[before:] = [_refusal(event, message)] if message else []

@@ -323,7 +323,9 @@ STRONGEST_WIND = 75.0
 
 
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
-    """Return remarks about a current given in the file; none for a current from a record."""
+    """Return remarks about implausible currents in a table of the file; none for a current from a
+    record.
+    """
     if current.record is not None:
         return []
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
@@ -356,7 +358,7 @@ def _seabed(
     section: SourceMapping,
     notices: list[str],
 ) -> Seabed | None:
-    """Return the seabed; a grid covers the area that the mooring may reach.
+    """Read the seabed; a grid is read over the area that the mooring may reach.
 
     Parameters
     ----------

@@ -174,7 +174,7 @@ def _of_part(
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
-    """Return the values that the line gives for a part, without its definition."""
+    """Return the values of a part set in the line, without its component definition."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -206,7 +206,7 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 
 
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
-    """Return the fields of a model; those of models inside it have dotted names."""
+    """Return the fields of a model; fields of nested models have dotted names."""
     found: dict[str, ComparedValue] = {}
     model = type(part).model_fields if isinstance(part, BaseModel) else {}
     for name, value in _fields(part).items():

@@ -152,7 +152,9 @@ def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
 
 
 def _numbers_twice(serials: Sequence[object]) -> str:
-    """Return the first number that a list has twice; "" if none, as in a list of question marks."""
+    """Return the first serial number that occurs twice in a list, or ""; texts without digits, such
+    as question marks, may be repeated.
+    """
     texts = [str(one) for one in serials]
     numbers = (one for one in texts if any(digit.isdigit() for digit in one))
     return next((one for one in numbers if texts.count(one) > 1), "")

@@ -98,7 +98,7 @@ FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
-    """Return the keys of an end; `free` has none."""
+    """Return the keys that define an end; a `free` end has none."""
     if value == "free":
         return {}
     if not isinstance(value, dict):
@@ -214,7 +214,7 @@ def read_legs(
 
 
 def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:
-    """Return the ends of a leg; the lower end is anchored if the last piece is an anchor."""
+    """Read the ends of a leg; the lower end is anchored if the last piece is an anchor."""
 
     def refuse(place: tuple[str | int, ...], message: str) -> None:
         own.refuse(place, message, key=bool(place))

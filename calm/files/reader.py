@@ -111,7 +111,7 @@ def read_mooring(
 
 
 class _ReadLine(NamedTuple):
-    """The line of a file with the keys that refer to its pieces, and their mistakes."""
+    """Pieces of the line and the keys that refer to them, with their mistakes."""
 
     pieces: tuple[Piece, ...]
     legs: tuple[FileLeg, ...]
@@ -212,7 +212,7 @@ class MooringReader:
         )
 
     def _line(self, in_air: bool) -> _ReadLine:
-        """Read the line, for air or for water, and the keys that refer to its pieces."""
+        """Read the line, for air or for water, and the keys that refer to pieces."""
         problems: list[Problem] = []
         notices: list[str] = []
         top, keys, towed = self._top.into(problems), self._keys, self._towed
@@ -250,7 +250,7 @@ def _child(section: SourceMapping, key: str) -> SourceMapping | None:
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Return each problem once: those of the mooring file first, in the order of the file."""
+    """Remove repeated problems, and sort: problems in the mooring file first, in file order."""
     once = dict.fromkeys(problems)
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
@@ -263,7 +263,7 @@ def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
 
 
 def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that the line of a mooring ends with its only anchor."""
+    """Check that a mooring line ends with an anchor and contains no other anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
@@ -291,8 +291,8 @@ def _check_slides(
     top: SourceMapping,
     depth: float | None,
 ) -> None:
-    """Check that no anchor slides down the seabed by its own weight, is off the depth grid, or is
-    above the water.
+    """Check that no anchor slides down the slope, lies outside the depth grid, or is above the
+    water.
 
     `depth` is the water depth at the origin [m].
     """
@@ -380,7 +380,9 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check the keys of an environment that may have a base or be one, with any depth."""
+    """Check the keys of an environment that may have a base or serve as one, for any water
+    depth.
+    """
     section = section.over(section.holding({"depth": "1 m"}))
     read_environment(section, None, [], open_files=False, towed=towed)
 

@@ -89,7 +89,9 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Return all fields that can be overridden; if kinds differ, all their forms are allowed."""
+    """Return the schema of all fields that can be overridden; a field that differs between kinds
+    allows all its forms.
+    """
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}
     for kind in kinds:

@@ -96,13 +96,13 @@ _FORMS: Mapping[str, type[Model]] = {
 
 
 def _forms_in(value: dict[str, object]) -> list[str]:
-    """Return the keys of `_FORMS` in a mapping, also if they are misspelt."""
+    """Return the keys of `_FORMS` in a mapping, including misspelt keys."""
     exact = [form for form in _FORMS if form in value]
     return exact or [form for key in value if (form := nearest(key, _FORMS))]
 
 
 def _written_out(value: object, info: ValidationInfo) -> object:
-    """Replace the name of a law by its keys; a mapping must be one of the forms."""
+    """Expand the name of a model to keys; check that a mapping is one of the forms."""
     if value is None:
         raise QuantityError("has no value")
     law = value.get("model") if isinstance(value, dict) else value
@@ -141,8 +141,8 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
 
 
 def _form(value: object) -> str:
-    """Return the name of the class as which a value is read; messages find its keys by this
-    name.
+    """Return the name of the class for validation of a value; messages use this name to find the
+    keys.
     """
     if isinstance(value, dict):
         return _FORMS[_forms_in(value)[0]].__name__

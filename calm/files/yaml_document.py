@@ -245,7 +245,9 @@ def _explain(
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """Return the part of a pydantic location that exists in the data; tags of unions do not."""
+    """Return the part of a pydantic location that exists in the data, without the tags of
+    unions.
+    """
     location: list[str | int] = []
     for part in loc:
         if isinstance(data, dict):
@@ -326,7 +328,7 @@ _SHAPES: Mapping[str, str] = {
 
 
 def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Return an example of the value of a key, if it is a mapping or a list and has an example."""
+    """Return an example for a key whose value is a mapping or list, if its schema has one."""
     field = model.model_fields.get(str(loc[0])) if loc else None
     inside = {key for one in _models_in(field and field.annotation) for key in one.model_fields}
     if loc[1:] and (len(loc) > 2 or loc[1] in inside or isinstance(loc[1], int)):

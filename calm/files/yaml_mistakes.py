@@ -84,8 +84,8 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
 
 
 def _colon(lines: list[str], mark: Mark) -> Mistake | None:
-    """Return the mistake at a colon where none is allowed: the second of its line, one after a
-    line without any, or one in a line that is indented too far.
+    """Explain a misplaced colon: second on its line, after a line without a colon, or on a line
+    with too much indentation.
     """
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
@@ -115,7 +115,7 @@ def _indent(line: str) -> int:
 
 
 def _content(line: str) -> str:
-    """Return a line without its comment, indentation and the dash of a list."""
+    """Return the content of a line, without indentation, list dash and comment."""
     return re.sub(r"(?:^|\s)#.*", "", line).strip().removeprefix("- ").strip()
 
 

@@ -185,7 +185,8 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight to that in CALM's reference water; the mass is 0 if it is impossible.
+        """Convert a weight to CALM's reference water; the mass is 0 if the specified mass is
+        impossible.
 
         The displaced volume follows from both, so that the weight in the file's own water is
         unchanged.
@@ -251,7 +252,7 @@ def _displacement(
 
 
 def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Rows of a hull given by its diameters at levels above its keel."""
+    """Convert diameters at heights above the keel to the displacement table of the hull."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")

@@ -223,7 +223,7 @@ def _section_name(words: TokenStream) -> str | None:
 
 
 def _values(words: TokenStream) -> KeyValues:
-    """Parse successive keys and their values; the last value of a key counts."""
+    """Parse successive keys and values; the last value of a repeated key counts."""
     values = KeyValues()
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
@@ -257,7 +257,9 @@ def _word(words: TokenStream, key: Token) -> str:
 
 
 def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
-    """Parse rows such as ``(0, 0.5) (100, 0.2)``; empty if the parenthesis belongs to a formula."""
+    """Parse rows such as ``(0, 0.5) (100, 0.2)``; return none if the parenthesis belongs to a
+    formula.
+    """
     rows: list[tuple[Expression, ...]] = []
     while True:
         back = words.at

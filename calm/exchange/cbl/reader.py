@@ -314,7 +314,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Value of the grid at 0 of its first axis, or at its closest end."""
+    """Interpolate the grid at 0 along its first axis, or return the value at the closest end."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])

@@ -94,7 +94,7 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """Return whether a float of this size displaces too little water for its buoyancy."""
+    """Return whether a float of this size displaces too little water for its stated buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -103,7 +103,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of a wire, rope or chain; its Cd refers to its width."""
+    """Convert a wire, rope or chain to a component; its Cd refers to its width."""
     figures: dict[str, model.FigureOrWord] = {
         "diameter": element.across,
         "cn": element.cd,
@@ -237,9 +237,7 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
 
 
 def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
-    """Return the matrix ``H``, shape (4, elements); the row of flags is 0 if the file has only
-    three rows.
-    """
+    """Return the matrix ``H``, shape (4, elements); a missing row of flags is filled with 0."""
     try:
         size = variables.reals(name)
     except ValueError as error:
@@ -258,7 +256,7 @@ def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArra
 
 
 def _densities(variables: MatVariables, length: RealArray) -> RealArray:
-    """Return the density of the water at each element of a vertical line [kg/m³]."""
+    """Return the water density at each element of a vertical line [kg/m³]."""
     levels, density = variables.row("z"), variables.row("rho")
     if not density.size == levels.size > 0 or not density.min() > 0.0:
         return np.full(length.size, CATALOGUE_DENSITY)
@@ -278,7 +276,7 @@ def _names(variables: MatVariables, name: str, count: int) -> list[str]:
 
 
 def _modulus(value: float) -> float | None:
-    """Return a modulus of elasticity [Pa]; small whole numbers are the numbers of materials."""
+    """Return the elastic modulus [Pa]; a small whole number is a material number."""
     if not value > 0.0:
         return None
     return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value

@@ -86,9 +86,7 @@ def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path:
 def _lay_tow(
     design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Add the elements of a tow; the file lists them from the body up, and ends with a mark for the
-    ship.
-    """
+    """Add the elements of a tow, which the file lists from the body up to a marker for the ship."""
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
@@ -107,8 +105,8 @@ def _lay_tow(
 def _clamp(
     design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Clamp the clamped elements on their pieces, each at a share of the piece's length from its
-    lower end.
+    """Clamp each clamped element on its piece, at a share of the piece length from the lower
+    end.
     """
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
@@ -131,8 +129,8 @@ def _clamp(
 
 
 def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
-    """Return the index of the piece that an element became, and the distance below its upper end
-    [m] of a share of its length.
+    """Map (element, share of its length) to the piece index and the distance below the upper end of
+    the piece [m].
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:

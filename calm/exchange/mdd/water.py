@@ -69,7 +69,9 @@ def read_water(
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
-    """Return speeds, shape (levels, times); in the file either dimension may come first."""
+    """Read current components, shape (levels, times); in the file either dimension may come
+    first.
+    """
     values = variables.reals(name)
     if values.size == 0:
         return None

@@ -110,8 +110,8 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
 
 
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
-    """Return the variables of clamped parts, from the top down: the element and the share of its
-    length from the lower end.
+    """Return the variables of clamped parts, from the top down: element number and share of the
+    element's length from the lower end.
     """
     rows, names, places = [], [], []
     count = len(design.parts)
@@ -143,8 +143,8 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
 
 
 def _name(part: ExportedPart) -> str:
-    """Return the name of an element: the id of the part, with "chain" added to that of a chain, by
-    which the program recognises chains.
+    """Return the element name: the component id, plus "chain" for chains, which the program
+    recognises by this word.
     """
     bare = isinstance(part.component, Chain) and "chain" not in part.use
     return (f"chain {part.use}" if bare else part.use)[:_LONGEST]

@@ -150,9 +150,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Return the unit that a whole text names; None if it is not a unit of what the column
-    holds.
-    """
+    """Return the unit that a text names; None if the text is no unit of the column's quantity."""
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),
@@ -172,7 +170,7 @@ def _unit(text: str, what: str) -> ColumnUnit | None:
 
 
 def _factor(text: str, dimension: str) -> float | None:
-    """Return the factor of a unit to SI, in any language and with any capitals; None if it is
+    """Return the factor from a unit, in any language and capitalisation, to SI; None if the unit is
     unknown.
     """
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
@@ -401,7 +399,7 @@ def _hidden_within(content: bytes) -> dict[str, str]:
 
 
 def _tags(text: bytes, name: str) -> list[dict[str, str]]:
-    """Return the attributes of every element of a name in an XML file."""
+    """Return the attributes of all XML elements with a given name."""
     found = re.findall(rf"<(?:\w+:)?{name}\s([^<>]*)>", text.decode("utf-8", "replace"))
     return [dict(re.findall(r'([\w:]+)="([^"]*)"', each)) for each in found]
 

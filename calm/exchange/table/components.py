@@ -85,7 +85,7 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
-    """Return the kind of a rigid piece by its size, and its diameter [m].
+    """Choose the kind of a rigid piece from its size; also return its diameter [m].
 
     In a list with both widths and diameters, a diameter is that of a sphere. In other lists, a
     float that is hardly longer than wide is a sphere.
@@ -135,14 +135,16 @@ def _line(row: ListRow) -> _Definition:
 
 
 def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
-    """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
+    """Return the drag coefficient in the list, or a typical value for the kind as a guess."""
     key, guess = "cx" if kind == "sphere" else "cn", f"the usual one of a {kind}"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
 def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
-    """Return the mass and other named figures; a mass less than the weight in water is left out."""
+    """Return mass and other optional values; a mass that is too small for the weight in water is
+    omitted.
+    """
     mass = row.figure("mass")
     heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)
     named = {name: row.figure(name) for name in names if row.figure(name) > 0.0}

@@ -196,7 +196,9 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
 
 def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
-    """Return the columns of a row of headings; the column of names must have words below it."""
+    """Find the columns in a row of headings; the column of names must have words below its
+    heading.
+    """
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     if any(_SPANISH.search(cell) for cell in plain):
@@ -231,9 +233,7 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
 
 
 def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -> ListColumn:
-    """Return a column with its twin: a column of the same heading, but one of the two is per
-    metre.
-    """
+    """Pair a column with its twin: two columns with the same heading, of which one is per metre."""
     taken.add(column.index)
     stem = _UNIT.sub("", _plain(column.heading, keep="/"))
     for i, heading in enumerate(row if what in _MEASURES else ()):
@@ -265,7 +265,7 @@ def _resolve(found: dict[str, ListColumn]) -> None:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """Return a row of headings, each with the unit in the row below it.
+    """Append to each heading the unit in the row below.
 
     A row without numbers is a row of units if at least half of its cells are units.
     """
@@ -295,7 +295,7 @@ def _is_unit(cell: str) -> bool:
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """Return the first column without a heading whose cells are words."""
+    """Return the first column that has no heading and contains words."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
@@ -331,7 +331,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """Return a heading without accents and capitals, and with blanks in place of most signs."""
+    """Return a heading in lower case without accents, with blanks in place of most signs."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))

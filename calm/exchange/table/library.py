@@ -109,8 +109,8 @@ def _of_matrices(path: Path) -> list[ListRow]:
 
 
 def _width(variables: MatVariables) -> int:
-    """Return the number of bytes of a name; the variable `format` gives the columns of each
-    figure.
+    """Return the width of the name column in bytes; the variable `format` gives the columns of all
+    values.
     """
     try:
         columns = variables.reals("format")
@@ -163,7 +163,7 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
 
 
 def _is_line(row: ListRow, title: str) -> bool:
-    """Return whether an element is a line, with figures per metre."""
+    """Return whether an element is a line, with values per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False

@@ -145,7 +145,7 @@ def rows_of(
 
 
 def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
-    """Return a row with the words and figures of its cells."""
+    """Convert the cells of a row to words and values."""
     row.label, row.kind, row.role = (
         cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
     )
@@ -188,7 +188,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
 
 
 def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide the figures of a row that are totals, by their headings, by its count."""
+    """Divide totals in a row by its count; the headings show which values are totals."""
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
@@ -282,8 +282,8 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """Return whether lines of the same name have the same figure at different lengths, which
-    means that the figure is per metre.
+    """Return whether equally named lines of different length have equal values, which must then be
+    per metre.
     """
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:

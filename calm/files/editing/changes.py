@@ -81,7 +81,7 @@ class Page:
         return [items.patch()]
 
     def _add_entry(self, mapping: Node, name: str, value: Value, *, open: bool) -> Patch:
-        """Add a key and its value to a mapping, at its place in the order of the format."""
+        """Add a key with a value to a mapping, in the key order of the format."""
         inside = f"{written(name, flow=True)}: {inline(value)}"
         if not mapping.keys:
             return Patch(mapping.start, mapping.end, f"{{{inside}}}")
@@ -176,9 +176,7 @@ class Page:
 
 
 def _opens(location: Location, node: Node) -> bool:
-    """Return whether definitions of a section are written with one key per line, as the others
-    there.
-    """
+    """Return whether a new definition in a section is written with one key per line."""
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
@@ -293,8 +291,8 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return for each new line the index of the old line that it is or replaces; None for an added
-    line.
+    """Match new lines to old lines; return the index of the equal or replaced old line, or None for
+    an added line.
     """
     # Comparing is slow, and most often only a line differs.
     head = _alike(old, new)

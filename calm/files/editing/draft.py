@@ -294,9 +294,7 @@ class Draft:
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
-        """Return the draft with the patched text, after checking that it differs only at the
-        location.
-        """
+        """Apply patches, and check that the data have changed only at the location."""
         data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break

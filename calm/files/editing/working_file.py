@@ -198,7 +198,9 @@ class WorkingFile:
             return _UNREADABLE if _status(self.path) else None
 
     def _folders(self) -> list[tuple[Path, str]]:
-        """Return the folders for the copy and the beginning of its name, the best first."""
+        """Return candidate folders for the backup copy, the best first, with the beginning of the
+        copy's name.
+        """
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
@@ -244,7 +246,7 @@ def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
 
 
 def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
-    """Return a message about attributes that a file did not take over from the one it replaced."""
+    """Return a message about file attributes that were lost when the file was replaced."""
     if before is None or after is None:
         return ""
     losses = []
@@ -335,7 +337,7 @@ def _digest(content: bytes | None) -> str:
 
 
 def _kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
-    """Yield the copies of a file in a folder; other files are ignored."""
+    """Yield the backup copies of a file in a folder."""
     with contextlib.suppress(OSError):
         for place in sorted(folder.iterdir()):
             ends = place.name.removeprefix(stem)
@@ -357,7 +359,7 @@ def _read(place: Path) -> KeptWork:
 
 
 def _started(process: int) -> str:
-    """Return the starting time of a process in ticks since the machine started; empty if unknown.
+    """Return the start time of a process in ticks since the machine was booted; empty if unknown.
 
     It is unknown for a process that has ended, even if its parent has not yet collected its status.
     """

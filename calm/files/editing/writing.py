@@ -386,6 +386,8 @@ def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
 
 
 def _colon(text: str, place: int) -> int | None:
-    """Return the index after the colon of a key that ends at a place; None if there is no colon."""
+    """Return the index after the colon of a key that ends at a given index; None if there is no
+    colon.
+    """
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None
