@@ -190,19 +190,19 @@ def nearest(text: str, known: Iterable[str]) -> str | None:
 
 
 def _parts(name: str) -> list[str]:
-    """Words and figures of a name; a size in millimetres is its figure."""
+    """Split a name into words and numbers; a size in millimetres counts as a number."""
     parts = re.split(r"[\W_]+", name.casefold())
     return [re.sub(r"(?<=\d)mm$", "", part) for part in parts if part]
 
 
 def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
-    """Mean likeness of the parts wanted to those of a name, 1 if all are equal."""
+    """Mean similarity between the wanted parts and the parts of a name; 1 if all are equal."""
     best = [max((_alike(one, other) for other in parts), default=0.0) for one in wanted]
     return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
 
 
 def _alike(one: str, other: str) -> float:
-    """Likeness of two words by their letters, of two figures by their ratio."""
+    """Similarity of two words by their letters, or of two numbers by their ratio."""
     if one.isdecimal() and other.isdecimal():
         least, greatest = sorted((float(one), float(other)))
         return least / greatest if greatest else 1.0

@@ -212,7 +212,7 @@ _shown: dict[str, str] = {}
 
 @cache
 def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
-    """Return the unit of display, the factor to it from the unit of results, and the number of
+    """Return display unit, factor from the unit of results to the display unit, and number of
     decimals.
 
     A quantity with a small usual unit, such as mm, keeps it. The number of decimals is chosen so

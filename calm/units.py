@@ -329,7 +329,7 @@ _SCALES = {
 
 
 def _split(text: str, wanted: Dimension) -> tuple[float, str]:
-    """Return the number at the beginning of a text, and the rest, which is its unit."""
+    """Split a text into the number at its beginning and the unit after the number."""
     fraction = _FRACTION.match(text)
     if fraction:
         sign, whole, numerator, denominator = fraction.groups()

@@ -124,7 +124,7 @@ def write_netcdf(
 
 
 def _take_room(handle: int, size: int) -> None:
-    """Extend a file to at least this size, and reserve its disk space."""
+    """Extend a file to a minimum size, and reserve the disk space."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(handle, 0, size)
         return
@@ -172,7 +172,7 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
 
 
 def _text(value: str | float) -> str | float | np.bytes_:
-    """Return a text as characters, which every tool reads, or as a string if it is long or not
+    """Store a text as characters, which every tool can read, or as a string if it is long or not
     ASCII.
     """
     if isinstance(value, float):

@@ -164,7 +164,7 @@ def from_the_side(
 
 
 def _beds(result: AnyResult) -> Iterator[Polyline]:
-    """Yield the seabed about each anchor, if it slopes there or is shallower than at the deepest
+    """Yield the seabed near each anchor, if it is sloping or shallower than at the deepest
     anchor.
     """
     plane, legs = plane_of(result), result.legs
@@ -182,7 +182,7 @@ def _beds(result: AnyResult) -> Iterator[Polyline]:
 
 
 def _band(uncertain: Uncertain) -> Polyline:
-    """Outline of the line between the 5 and 95 % values of its offset and depth."""
+    """Return the outline of the line between the 5 and 95 % values of offset and depth."""
     (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
     return Polyline(
         LineKind.BAND,

@@ -62,7 +62,7 @@ def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
 
 
 def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """Offer a heavier anchor for a line that lifts its anchor.
+    """Suggest a heavier anchor for a line that lifts its anchor.
 
     The weight is found with an anchor that holds any load.
     """
@@ -137,7 +137,9 @@ def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
 
 
 def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """Offer the lightest anchor of the catalogue that is heavy enough, or a heavier one."""
+    """Suggest the lightest sufficient anchor in the catalogue, and a heavier version of the present
+    anchor.
+    """
     item = last.place.item
     heavy = [] if catalogue is None else [*_heavy_enough(catalogue, needed)]
     if heavy:
@@ -175,7 +177,9 @@ def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Return a change that writes a value; a new component deletes the `weight` of the row."""
+    """Return a change that writes a value; with a new component, the `weight` of the row is
+    deleted.
+    """
 
     def make(draft: Draft) -> Draft:
         made = draft.put(item, key, value)

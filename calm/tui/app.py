@@ -120,7 +120,8 @@ class BuildApp(App[int]):
             self._wait_for_listeners(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """Return the widgets that a key may affect: the focused widget, its ancestors, the screen.
+        """Return the widgets that a key press may affect: focused widget, its ancestors, and the
+        screen.
 
         Screens below are excluded: each message would repaint the whole screen. Lists are included:
         they post their selection without having the focus.

@@ -86,7 +86,7 @@ class EditableTable(Vertical):
         return reading.is_good
 
     def _take_typed(self) -> str | None:
-        """Write the typed, valid text, if any, into its cell."""
+        """Write the typed text to its cell, if it is valid."""
         text = self.editor.text
         self.leave_cell()
         if text is not None:

@@ -168,7 +168,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
 
 
 def _joined(long: Reading, load: Reading) -> Reading:
-    """Combine the readings of a length and of the load at which it is measured."""
+    """Combine the readings of a length and of the load at which the length is measured."""
     offers = [each.offer or each.text for each in (long, load)]
     offer = " at ".join(offers) if long.offer or load.offer else None
     complaint = long.complaint or load.complaint

@@ -68,7 +68,7 @@ class ComparingScreen(line_screen.LineScreen):
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _effects(self, before: View, after: View) -> list[str]:
-        """Return the differences between two lines, both judged fully; for a thread."""
+        """Compare two lines after a full check of both; runs in a thread."""
         from calm.tui.advice import differences
         from calm.tui.live import judge_fully
 
@@ -122,7 +122,7 @@ class ComparingScreen(line_screen.LineScreen):
         enter(self.app, "A target to meet", text, fields, take)
 
     def _try(self, offer: Offer, before: View) -> None:
-        """Compute a change in a thread, and ask for confirmation, showing its effects."""
+        """Compute a suggested change in a thread, show its effects, and ask for confirmation."""
         session, draft = self.session, self.session.draft
 
         def work() -> None:
@@ -190,7 +190,7 @@ class ComparingScreen(line_screen.LineScreen):
         enter(self.app, "Output folder", "", fields, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
-        """Run the command in a thread, and show its last message."""
+        """Run a document command in a thread, and show its last message."""
         folder, (command, option) = Path(texts["folder"]).expanduser(), _DOCUMENTS[what]
         words = [sys.executable, "-m", "calm", command, str(path), option, str(folder)]
         words += [word for each in self.session.catalogs for word in ("--catalog", str(each))]

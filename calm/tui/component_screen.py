@@ -119,7 +119,7 @@ class ComponentScreen(dialogs.Form[Defined]):
     @on(Field.Judged)
     @on(events.DescendantFocus)
     def _judge(self) -> None:
-        """Show the component that results from the values, and its errors."""
+        """Show the component that results from the entered values, with errors."""
         from rich.console import Group, RenderableType
         from rich.text import Text
 

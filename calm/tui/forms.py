@@ -111,7 +111,7 @@ def _form_field(model: type[BaseModel], name: str, at: str, *, needed: bool) -> 
 
 
 def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Reading:
-    """Check a text by the model, which accepts or rejects its value."""
+    """Check a text by validating its value with the model."""
     tidy = " ".join(text.split())
     if not tidy:
         return Reading("", "a value is needed" if needed else "")
@@ -119,7 +119,7 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the columns of a list of models or of fixed-length rows, else ()."""
+    """Return the table columns for a list of models or of fixed-length rows, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]

@@ -257,7 +257,8 @@ class LinePane(LineSearch):
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """Return the chosen rows, or () with a message if pieces and clamps of others are mixed.
+        """Return the selected rows; if pieces are mixed with clamps of other pieces, show a message
+        and return ().
 
         Such clamps have no position among pieces that are pasted or moved.
         """

@@ -62,7 +62,7 @@ def table_rows(
 
 
 def _wrong_items(draft: Draft, view: View | None) -> set[int]:
-    """Return the numbers of items with mistakes in their lines of text."""
+    """Return the numbers of items whose lines of text contain mistakes."""
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
@@ -98,7 +98,9 @@ def _figures(
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return the identity of a row in the file: component, label, and whether it is clamped."""
+    """Return a key that identifies a row in the file: component, label, and whether it is
+    clamped.
+    """
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")
@@ -130,7 +132,7 @@ def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
 
 
 def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
-    """Return the texts of an item: the governing value of its pieces in each column."""
+    """Return the text in each column for an item: the governing value of its pieces."""
     texts = {}
     for one in table_columns(Output.BUILDER):
         known = [row.figures[one.name] for row in found if one.name in row.figures]

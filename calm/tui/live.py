@@ -125,7 +125,7 @@ def judge(
 
 
 def _placed(path: str | Path | None) -> Path:
-    """Return the path of a text, to which file names in it are relative."""
+    """Return the path relative to which file names in a text are resolved."""
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 

@@ -117,7 +117,7 @@ class _Changes(CompositorUpdate):
 
 
 def _parts(update: LayoutUpdate | ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
-    """Yield (row, column, cells) of an update of the whole screen or of spans."""
+    """Yield (row, column, cells) for an update of the whole screen or of spans."""
     if isinstance(update, LayoutUpdate):
         for y, line in enumerate(update.strips, update.region.y):
             yield y, update.region.x, [*_cells(chain.from_iterable(line))]
@@ -152,7 +152,7 @@ def _ground(style: Style | None) -> Style | None:
 
 
 def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
-    """Yield begin and end of each run of changed cells; runs with small gaps are merged.
+    """Yield start and end of each run of changed cells; runs with small gaps are merged.
 
     A run never begins or ends within a wide character, because half of it cannot be written.
     """
@@ -209,7 +209,7 @@ class _Pen:
 
 @lru_cache(4096)
 def _style_codes(style: Style | None, system: ColorSystem | None) -> str:
-    """Return the numbers of the escape sequence of a style."""
+    """Return the numbers of the terminal escape sequence for a style."""
     if style is None or system is None:
         return ""
     return style._make_ansi_codes(system)

@@ -76,7 +76,9 @@ class Saving:
             then()
 
     def _mistake(self) -> str:
-        """Return the first mistake of the saved file, or ""; missing parts are not mistakes."""
+        """Return the first mistake in the saved file, or "". Missing parts do not count as
+        mistakes.
+        """
         session = self._session
         path = session.file.path or Path(session.name)
         try:
@@ -248,7 +250,7 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """Return an unused name similar to that of a file."""
+    """Return an unused file name similar to a given name."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1
@@ -256,7 +258,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _is_writable(text: str) -> Reading:
-    """Check of a name of a file to write."""
+    """Check that a file name can be written to."""
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")

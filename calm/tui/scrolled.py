@@ -106,7 +106,7 @@ class ScrolledText(DrawnRows):
         return [row for _, row in wrapped]
 
     def _wrapped(self, width: int) -> list[tuple[int, Row]]:
-        """Return the wrapped rows, each with the number of its text."""
+        """Return the wrapped rows, each with the index of its text."""
         console = self.app.console
         options = console.options.update(width=width, height=None)
         return [

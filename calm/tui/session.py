@@ -108,7 +108,7 @@ class Session:
     def _edit(
         self, draft: Draft, label: str, *, removed: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
-        """Make a draft the current state, given its `gone` and `new` rows; update references."""
+        """Make a draft current, and update references from `gone` rows to `new` rows."""
         removed, new, then = list(removed), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
             [spot for spot in self.spots() if spot not in removed],
@@ -204,7 +204,7 @@ class Session:
         return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
 
     def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
-        """Add clamps to the piece of a row from index `first`; return their rows."""
+        """Insert clamps on the piece of a row at index `first`; return their rows."""
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
         return new

@@ -54,7 +54,9 @@ def open_session(
 
 
 def _refuse_other_files(session: Session) -> None:
-    """Reject mistakes in other files, which cannot be corrected in the builder."""
+    """Reject mistakes in files other than the edited file, since the builder cannot correct
+    them.
+    """
     Catalogue.load(session.catalogs)
     here, names = session.standing.environment, session.standing.environments
     if (lost := session.standing.lost_environment) is not None:

@@ -186,7 +186,7 @@ class Grid(cell_editor.EditableTable):
             self._edit()
 
     def _edit(self, begun: str | None = None) -> None:
-        """Edit the cell under the cursor, starting with its text or with `begun`."""
+        """Edit the cell under the cursor, starting with its text or with the typed text `begun`."""
         cells = self.cells
         if not super().settle():  # only the cell: the row may be incomplete
             return

@@ -110,7 +110,7 @@ class TextScreen(screen.DraftScreen):
 
     @property
     def _here(self) -> list[Problem]:
-        """Mistakes in this text, not in other files."""
+        """Mistakes in the edited file, without those in other files."""
         return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
@@ -197,6 +197,8 @@ class TextScreen(screen.DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Return the row of a line of the file in the editor, which knows more line breaks."""
+    """Convert a line number of the file to an editor row; the editor splits at additional line
+    breaks.
+    """
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

@@ -202,7 +202,7 @@ class WaterForm:
 
 
 def _read(kind: QuantityRange, text: str) -> float | None:
-    """Return a quantity in SI units, or None if it is invalid."""
+    """Parse a quantity to SI units; None if it is invalid."""
     try:
         return kind.read(text) if text else None
     except QuantityError:

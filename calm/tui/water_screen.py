@@ -157,7 +157,7 @@ class WaterScreen(screen.DraftScreen):
             grid.show_profile(*water.table(*place), water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Return whether a part of the form applies to the current forms of the water."""
+        """Return whether a part of the form applies to the current input forms."""
         water, key = self.water, place[0]
         if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
             return False
@@ -403,7 +403,7 @@ class WaterScreen(screen.DraftScreen):
             self.app.push_screen(import_sheet(self._folder), take)
 
     def _read(self, water: WaterForm, path: str, time: str) -> None:
-        """Read a current file in a thread, and put its profile into the form."""
+        """Read a current file in a thread, and write its profile to the form."""
         tell = self.workspace.tell
 
         def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

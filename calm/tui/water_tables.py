@@ -104,7 +104,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
 
 def _written(value: float) -> str:
-    """Format a value with all its digits, as a 32-bit number if it was one, without noise."""
+    """Format a value with all significant digits; a 32-bit number is not extended by rounding
+    noise.
+    """
     short = float32(value)
     if isclose(short, value, rel_tol=_NOISE):
         return f"{float(str(short)) + 0.0:.12g}"
@@ -240,7 +242,7 @@ def _by_name(
 
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
-    """Return the values of a column in its unit, or with units if the column has none."""
+    """Return column values in the unit of the heading, or with units if the heading has none."""
     name, unit = heading(column)
     dimension = _KINDS[name].dimension
     usual = DIMENSIONS[dimension].unit

@@ -226,7 +226,7 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Put label and name on one line if they fit, else wrap them one below the other."""
+    """Place label and name on one line if they fit, otherwise below each other with wrapping."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
@@ -313,7 +313,7 @@ def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
 
 
 def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> None:
-    """Write the texts of a part, with dots that lead from its symbol to its values."""
+    """Write the texts of a part, with a dotted line from its symbol to its values."""
     start = left + column.text[0] + (_INDENT if one.part.clamped else 0.0)
     levels = [
         one.middle + LEADING * (number - (len(one.lines) - 1) / 2)

@@ -49,7 +49,7 @@ def parts_of(
 
     Parameters
     ----------
-    every : all of the line, among which a label is a person's own or not
+    every : all items of the line, to find labels that were chosen by the user
     cells : values next to the items of a part
     """
     own = _own_labels(every)
@@ -134,7 +134,9 @@ def _piece(
 
 
 def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
-    """Codes of a release, or of each release of a pair after its serial number."""
+    """Return the codes of a release; for a pair, the codes of each release after its serial
+    number.
+    """
     known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
     if len(one.serials) < 2:
         return "".join(known.values())

@@ -125,7 +125,7 @@ Cells = Callable[[str, float], tuple[str, ...]]
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield the parts from the top; pieces that are drawn together form one part."""
+    """Yield the parts from the top; pieces drawn with one symbol form one part."""
     run: list[Piece] = []
     for piece in pieces:
         if run and not _goes_with(run, piece, levels):

@@ -130,7 +130,7 @@ def _sphere(diameter: float) -> Symbol:
 
 
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
-    """First symbol whose pattern matches the words, or `other`."""
+    """Return the first symbol whose pattern matches the words, or `other`."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
 
 
@@ -171,7 +171,7 @@ def figure_of(sign: Sign) -> SymbolFigure:
 
 
 def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
-    """Add the ADCP to a figure: sound that goes up or down, or its transducers alone."""
+    """Add an ADCP to a symbol: acoustic beams upward or downward, or only the transducers."""
     shift = _BEAM / 2 * (sign.up - sign.down)
 
     def draw(pen: Pen) -> None:
@@ -233,7 +233,7 @@ _BARE: dict[str, Any] = {"fill": "none"}
 
 
 def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
-    """Build a figure of a height from parts about its origin, from back to front."""
+    """Create a symbol of given height from SVG shapes about its origin, from back to front."""
 
     def draw(pen: Pen) -> None:
         for part in parts:

@@ -116,7 +116,7 @@ def _distance(result: AnyResult) -> str:
 
 
 def _span(side: LinePicture) -> tuple[float, float]:
-    """Return the distances at the edges; an almost vertical line is centred."""
+    """Return the horizontal range of the picture; an almost vertical line is centred."""
     low, high = side.span()
     spare = max(_LEAST_SPAN * (side.bottom - side.top) - (high - low), 0.0)
     margin = 0.04 * (high - low + spare) + spare / 2.0
@@ -124,7 +124,7 @@ def _span(side: LinePicture) -> tuple[float, float]:
 
 
 def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
-    """Choose rows for the names of parts, each close to its part."""
+    """Choose the rows of part names, each close to its part."""
     height = (side.bottom - side.top) / rows
     found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
@@ -142,7 +142,7 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
 
 
 def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
-    """Index of the most dispensable name in a crowd: an instrument, the farthest from the
+    """Return the index of the name to omit among crowded names: an instrument, farthest from the
     others.
     """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]

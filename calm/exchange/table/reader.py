@@ -109,7 +109,8 @@ def _headed(
     """Return name, cells and headings of the only sheet with headings; None if there is none.
     Hidden sheets count only if no visible sheet has headings.
 
-    Remarks about hidden sheets and parts are added to `remarks`. InputError: several visible sheets have headings.
+    Remarks about hidden sheets and parts are added to `remarks`. InputError: several visible sheets
+    have headings.
     """
     found = [
         (name, cells, headings)
