@@ -115,7 +115,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
     """Return a line that names a missing library and the command that installs it.
 
-    None if the missing module is one of CALM's own, or has no name: a fault of the program.
+    Returns None if the missing module belongs to CALM or has no name, which is a program error.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):
@@ -180,8 +180,8 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
-    Letters decide which names are alike, and their words and figures which of these comes first:
-    for ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
+    Names are selected by similar letters, and then ranked by their words and numbers: for
+    ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
     """
     given = text[:LONGEST_TEXT]
     alike = difflib.get_close_matches(given, list(known), 50)

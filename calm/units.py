@@ -297,7 +297,7 @@ def unit_line(text: str, wanted: str) -> tuple[float, float]:
     """Return factor and offset between two units: a value x becomes ``factor * x + offset`` in the
     other.
 
-    Both are those of pint, which knows the zeros of temperature scales.
+    Factor and offset come from pint, which knows the zeros of temperature scales.
 
     Parameters
     ----------

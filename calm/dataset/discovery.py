@@ -1,7 +1,7 @@
 """Attributes that data archives require in addition to CF: ACDD 1.3 and OceanSITES 1.4.
 
-Names and tables are those of the OceanSITES Data Format Reference Manual 1.4 (2020) and of the
-Attribute Convention for Data Discovery 1.3.
+Names and tables follow the OceanSITES Data Format Reference Manual 1.4 (2020) and the Attribute
+Convention for Data Discovery 1.3.
 """
 
 import hashlib

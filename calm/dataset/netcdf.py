@@ -318,7 +318,7 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
     """Create the coordinates that number parts, nodes and sensors from the top down.
 
     They are dimensionless vertical coordinates in the sense of CF, because depths vary in time and
-    those of neighbours may be equal.
+    neighbours may have equal depths.
     """
     return [
         Variable(
@@ -369,7 +369,7 @@ def source_date() -> datetime | None:
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
     """Return global attributes about the source of a result; unknown attributes are empty.
 
-    The only date is that of `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    No date is written except `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
     Parameters
     ----------

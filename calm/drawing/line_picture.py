@@ -1,8 +1,8 @@
 """Side view and plan of a solved line [m], independent of the output format.
 
-`calm.drawing.line_drawing` draws it for files and pages, `calm.drawing.check_figures` with other
-figures of a check, `calm.drawing.sketch` in a terminal and `calm.drawing.plot` on axes of
-matplotlib.
+The picture is drawn by `calm.drawing.line_drawing` for files and pages, by
+`calm.drawing.check_figures` with other figures of a check, by `calm.drawing.sketch` in a terminal,
+and by `calm.drawing.plot` on matplotlib axes.
 """
 
 from collections.abc import Iterator, Sequence

@@ -257,9 +257,9 @@ class ExportedLine:
     def float_as_point(self, density: float) -> tuple[float, float]:
         """Net force [N] and drag area [m²] of a float below the surface, represented as a point.
 
-        It is for programs in which a float is a point at the line's end, in water of a density
-        [kg/m³]: its drag is computed there, not at its midpoint, and without an axis. Force and
-        area give the same pull as in CALM; without an equilibrium they are those of the float.
+        In some programs a float is a point at the end of the line, and its drag is computed there,
+        without an axis, in water of uniform `density` [kg/m³]. Force and area give the same load on
+        the line as in CALM; without an equilibrium, the float's own values are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)

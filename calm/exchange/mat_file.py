@@ -66,7 +66,7 @@ def _variables(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def is_mat(content: bytes) -> bool:
-    """Return whether the first bytes of a file are those of a MATLAB or Octave file."""
+    """Return whether a file begins like a MATLAB or Octave file."""
     content = _inflated(content, _HEAD)
     if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
@@ -107,7 +107,7 @@ def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _is_octave_text(content: bytes) -> bool:
-    """Return whether the beginning of a file is that of an Octave text file."""
+    """Return whether a file begins like an Octave text file."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 

@@ -1,6 +1,7 @@
 """Common design model of all importers, in the terms of a mooring file.
 
-Figures are in SI units and degrees, under the names of the mooring file; depths are positive down.
+Values are in SI units and degrees, under the key names of the mooring file; depths are positive
+down.
 """
 
 from __future__ import annotations

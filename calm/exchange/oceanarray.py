@@ -1,9 +1,9 @@
 """Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
 `inline` lists the pieces of the line, and `clamp` the instruments clamped on it, both with heights
-above the seabed. Most have no other figures, which are looked up in a library of elements or in the
-catalogue. If no rope is listed between two pieces, one is inserted with the length that their
-heights require.
+above the seabed. Other values are mostly missing, and are read from an element library or the
+catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length required by
+their heights.
 """
 
 import re
@@ -42,7 +42,7 @@ _MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
 
 
 def is_oceanarray(content: bytes) -> bool:
-    """Return whether the keys of a file are those of an oceanarray configuration."""
+    """Return whether a file has the keys of an oceanarray configuration."""
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 

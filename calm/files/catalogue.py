@@ -98,7 +98,7 @@ class Catalogue:
         """Merge an entry without `kind` with the definition of the same id in this catalogue; keys
         without a value are dropped.
 
-        Assemblies have no figures to complete.
+        Assemblies have no values to complete.
         """
         below = self.entry(entry.id)
         given = {key: value for key, value in entry.section.data.items() if value is not None}
@@ -167,7 +167,7 @@ class Catalogue:
     def all(self) -> dict[str, Defined]:
         """Return all definitions of the catalogue, validated.
 
-        InputError: definitions have mistakes; those of all definitions are listed.
+        InputError: definitions have mistakes; all mistakes are listed.
         """
         problems: list[Problem] = []
         found = {
@@ -182,7 +182,7 @@ class Catalogue:
     def same_thing(self, id: str) -> list[str]:
         """Return the ids of all definitions of the same product, the preferred one first.
 
-        These are the id that this one prefers, and all ids that prefer the same.
+        The product has several ids if definitions name the same preferred id under `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -361,7 +361,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
     """Yield id and text of each definition; the id is None if it cannot be recognised.
 
-    Empty lines are put above the text, so that its line numbers are those of the file.
+    Empty lines are put above the text, so that line numbers agree with the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0

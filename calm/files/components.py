@@ -1,8 +1,8 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
-Some figures are alternatives: a body has its drag as `kn`, or as `drag_area` and `cd`; a net force
+Some values are alternatives: a body has its drag as `kn`, or as `drag_area` and `cd`; a net force
 is given, or is computed from mass and volume. An override with one alternative removes the others,
-and keeps all figures that it does not contradict. Lengths, masses and forces of cables and chains
+and keeps all values that it does not contradict. Lengths, masses and forces of cables and chains
 are per metre.
 """
 

@@ -1,8 +1,8 @@
 """Parse YAML text to a tree of nodes, each with its place in the text, from the events of PyYAML.
 
-libyaml, if PyYAML has it, is about thirty times as fast as the parser in Python. Both must give the
-same result: text that they read differently, and text that libyaml refuses, is read by the parser
-in Python.
+libyaml, if PyYAML has it, is about thirty times as fast as the parser in Python. Both parsers must
+give the same result: text that they parse differently, and text that libyaml rejects, is parsed in
+Python.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Keys that every component may have, and the conventions for their values.
 
 In a file a field is text with a unit; here it is an SI float, with angles in degrees, or None if it
-is not given. Net forces are those in sea water of `CATALOGUE_DENSITY` under standard gravity.
+is not given. Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
 """
 
 from __future__ import annotations
@@ -194,8 +194,8 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 class EstimatedFigure(Model):
     """Estimate of a value that no source publishes, with a lower bound `low`.
 
-    `low_in_waves` is a lesser bound for a line moved by waves, for a figure that is published for
-    steady loads only.
+    `low_in_waves` is a smaller lower bound for lines in waves, if published values apply only to
+    steady loads.
     """
 
     quantity: Literal[
@@ -277,9 +277,9 @@ class FatigueKeys(Model):
 class Definition(Model):
     """Keys common to all kinds of components.
 
-    `source` applies to every figure, except those for which `sources` names another, field by
-    field. `searched` lists the fields that were searched for and that no source gives. `prefer` is
-    the id of another definition of the same product, which should be used instead.
+    `source` applies to every value, unless `sources` names another source for the field. `searched`
+    lists fields for which a search found no published value. `prefer` is the id of another
+    definition of the same product, which should be used instead.
     """
 
     role: Role = "instrument"

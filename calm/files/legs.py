@@ -305,7 +305,7 @@ def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
 def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
     """Check that every leg is connected to an anchor or a held end.
 
-    Two anchors may be at the same place only if both places are given in the file.
+    Two anchors may share a position only if the file specifies the positions of both.
     """
     held: set[str] = set()
     reached: set[str | None] = set()

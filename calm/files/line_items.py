@@ -125,9 +125,8 @@ class LineReader:
     def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
         """Check the keys of an item with an unknown component.
 
-        A length is checked. Of the other keys, those that are quantities of the same dimension in
-        all kinds are checked, and those of no kind are refused; with `judged` they are checked
-        elsewhere.
+        The length is checked, and so are keys with the same dimension in all kinds of components.
+        Keys that no kind has are rejected. With `judged`, the keys are checked elsewhere.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -291,8 +290,8 @@ class LineReader:
     ) -> tuple[Piece, ...]:
         """Assign the serial numbers of an item to the pieces of its assembly.
 
-        They are those of its instruments and releases, or else of its floats, in order: one for
-        each item of a component, assembly by assembly.
+        Serial numbers belong to the instruments and releases of the assembly, or else to its
+        floats, in order: one number per item of a component, assembly by assembly.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:

@@ -84,7 +84,7 @@ class MooringFile:
 
     `notices` are remarks for the user, such as a catalogue entry hidden by a nearer one or levels
     left out of a measured current. `variants` are the unvalidated further environments by name.
-    `accepts` are the accepted findings of the design check, `uncertainty` is that of the inputs,
+    `accepts` are the accepted findings of the design check, `uncertainty` applies to the inputs,
     and `looser` are limits that the line sets less strictly than the definitions of its components.
     `document` is the title block, `releases` are the codes of the releases, `deployed` is the
     deployment, and `units` are the units of display.
@@ -204,7 +204,7 @@ def check_fit(
 def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
     """Return the legs of a file; without the key `legs`, the whole line is one leg.
 
-    The leg of a mooring has a free upper end and an anchored lower end; that of a tow is held at
+    The leg of a mooring has a free upper end and an anchored lower end; the leg of a tow is held at
     the ship.
     """
     if file.legs:

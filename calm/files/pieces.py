@@ -69,8 +69,8 @@ class Clamp:
     the piece.
 
     A profiler moves over `travel`, the distances of its upper and lower stop from the piece's top;
-    inf is the lower end of the piece. Its place `at` is that of the upper stop. `named` is its
-    label in the file, empty if there is none.
+    inf is the lower end of the piece. Its position `at` is the position of the upper stop. `named`
+    is its label in the file, empty if there is none.
     """
 
     use: str

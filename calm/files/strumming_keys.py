@@ -51,7 +51,7 @@ class BourgetMarichalKeys(Model):
     """Towed-cable model of Bourget & Marichal: a/D = a1 + b1 φ + c1 φ² (φ in degrees); Cn at rest
     is c0.
 
-    The figures left out are those of `calm.physics.strumming.BourgetMarichal`.
+    Missing coefficients have the defaults of `calm.physics.strumming.BourgetMarichal`.
     """
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})

@@ -43,8 +43,8 @@ def table_rows(
     """Return a row for each item and clamp; an item with several pieces shows their governing
     values.
 
-    If the view is of an earlier text, its values go to the rows of the same name, except the rows
-    that were `added`.
+    If the view belongs to an earlier text, its values are shown in rows with the same names, except
+    in rows that were `added`.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)

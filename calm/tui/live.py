@@ -192,7 +192,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 
 def _missing_parts(file: MooringFile) -> Iterator[str]:
-    """Yield missing parts without which a mooring has no equilibrium; none for a tow."""
+    """Yield missing parts that a mooring needs for an equilibrium; a tow needs none."""
     if file.tow is not None or file.legs:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]

@@ -216,7 +216,7 @@ class TableCells(Scrolled, inherit_bindings=False):
     def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
         """Replace the rows; the cursor stays in its row if possible.
 
-        If the numbers of `changed` rows are given, only those are drawn.
+        If the numbers of `changed` rows are given, only these rows are redrawn.
         """
         self.rows = rows
         self.virtual_size = Size(0, len(rows) + self.HEADING)

@@ -212,7 +212,7 @@ class Session:
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move pieces or a single clamp up (-1) or down (1); return their new rows.
 
-        At the end of the line, or of the list of clamps, they do not move.
+        Rows at the end of the line or of the list of clamps do not move.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen

@@ -48,8 +48,8 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
 
     The picture has no external references, identifiers or style sheets, so that it can be placed on
     a page with others. Long texts wrap and are never cut. The same line gives the same text. With a
-    result, depths are under load and in the current; without, they are those of the upright,
-    unstretched line, and unknown for a tow and for a float at the surface.
+    result, depths are under load and in the current; without a result, they refer to the upright,
+    unstretched line, and are unknown for a tow and for a float at the surface.
     """
     shown = schematic_of(file, result)
     rows = [row for part in shown.parts for row in part.rows]

@@ -142,7 +142,8 @@ class ComponentMaker:
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
         """Convert the float at the upper end, or a towed body.
 
-        The hull is that of the file. If it does not float, the body is a point, as in WHOI Cable.
+        The hull is taken from the file. If the buoy does not float, the body is a point, as in WHOI
+        Cable.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"

@@ -35,8 +35,8 @@ _NOTE = (
 def read_mdd(path: Path) -> model.ImportedDesign:
     """Read a mooring or a tow.
 
-    InputError: the file is damaged, is not one of Mooring Design & Dynamics, or holds something
-    that CALM cannot represent.
+    InputError: the file is damaged, is no Mooring Design & Dynamics file, or has features that CALM
+    cannot represent.
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if variables.row(name).size]

@@ -53,8 +53,8 @@ class _File:
     """The tables of a file: points and line types by name, the lines, and the lines `at` each
     point.
 
-    `depth` [m] and `gravity` [m/s²] are those of the water; `design` is the design to which pieces
-    are added.
+    `depth` [m] and `gravity` [m/s²] apply to the water; `design` is the design to which pieces are
+    added.
     """
 
     points: dict[str, _Row]
@@ -265,7 +265,7 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
 
 
 def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
-    """Create an anchor whose height is that of its point above the seabed."""
+    """Create an anchor as high as its point is above the seabed."""
     height = depth + point.number("z")
     return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 

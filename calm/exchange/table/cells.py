@@ -100,8 +100,8 @@ class ColumnUnit:
 def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Parse a unit, ignoring words such as *wet*; return None if the text contains no unit.
 
-    The text comes from brackets, from a row of units, or from behind a number; `what` is what its
-    column holds. ValueError: it is not a unit of `what`.
+    The text comes from brackets, a row of units, or a cell with a number; `what` is the quantity of
+    the column. ValueError: the unit does not fit this quantity.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:

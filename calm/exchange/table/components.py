@@ -87,7 +87,7 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 def _shape(row: ListRow) -> tuple[str, float]:
     """Choose the kind of a rigid piece from its size; also return its diameter [m].
 
-    In a list with both widths and diameters, a diameter is that of a sphere. In other lists, a
+    In a list with both widths and diameters, a piece with a diameter is a sphere. In other lists, a
     float that is hardly longer than wide is a sphere.
     """
     width, diameter, length, lift = map(row.figure, ("width", "diameter", "length", "buoyancy"))

@@ -89,10 +89,10 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 class ListColumn:
     """A column: its index, heading, and the factor from its numbers to SI.
 
-    `by_mass`: forces are in kilograms; `per_metre`: figures of lines are per metre; `known`: the
-    heading has a unit; `whole`: the heading says that figures are those of whole pieces; `twin`: a
-    second column of the same figure, one of the two per metre and the other of whole pieces;
-    `wrong`: what is wrong with the heading.
+    `by_mass`: forces are in kilograms; `per_metre`: values of lines are per metre; `known`: the
+    heading has a unit; `whole`: according to the heading, values apply to whole pieces; `twin`: a
+    second column of the same quantity (one of the two is per metre, the other per piece); `wrong`:
+    mistake in the heading.
     """
 
     index: int

@@ -38,9 +38,8 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 class ListRow:
     """A list row: name, values, count, and guesses.
 
-    `metre` names the figures of a line that are per metre, `line` is whether it is a cable or chain
-    (None: by its name), `hint` is a hint for missing figures, and `problems` are messages about
-    what is wrong.
+    `metre`: names of values per metre; `line`: whether the row is a cable or chain (None: to be
+    decided by its name); `hint`: advice on missing values; `problems`: messages about mistakes.
     """
 
     place: int
@@ -228,8 +227,9 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Convert weights to net buoyancy, positive up.
 
-    Weights are positive down, or positive up if those of sinking parts are negative. If sinking
-    parts have positive buoyancies and all others negative ones, the column holds weights.
+    Weights are positive down, or positive up if sinking parts have negative weights. If sinking
+    parts have positive buoyancies and all other parts negative buoyancies, the column holds
+    weights.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]

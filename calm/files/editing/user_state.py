@@ -12,7 +12,7 @@ from calm.files.editing.working_file import Keeper, state_folder
 
 
 class Presence:
-    """Record, in the state folder, of the file that this process has open."""
+    """Entry in the state folder for the file that this process has open."""
 
     def __init__(self) -> None:
         self._place: Path | None = None
