@@ -314,7 +314,7 @@ def unit_line(text: str, wanted: str) -> tuple[float, float]:
     plain = _SCALES.get(re.sub(r"[\W_]", "", plain.lower()), _tidy(plain))
     try:
         ends = [float(registry.Quantity(x, plain).to(wanted).magnitude) for x in (0.0, 1.0)]
-    except Exception:  # of many kinds, for what is no unit and for units of other kinds
+    except Exception:  # pint raises many types for bad units
         raise QuantityError(f"is not {wanted}, or a unit of that kind") from None
     return ends[1] - ends[0], ends[0]
 

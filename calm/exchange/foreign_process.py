@@ -65,7 +65,7 @@ def _read(
         pipe.send((reader(*given, **named), ""))
     except MemoryError:
         pipe.send((None, f"it needs more than {MOST_MEMORY / 1e9:g} GB"))
-    except BaseException as error:  # a panic of Rust is none of `Exception`
+    except BaseException as error:  # a Rust panic is not an `Exception`
         pipe.send((None, " ".join(str(error).split()) or type(error).__name__))
 
 

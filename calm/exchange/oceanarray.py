@@ -293,7 +293,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
     design.
     """
     items: list[model.ImportedPiece] = []
-    nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come
+    nominal, height = [0.0], [0.0]  # lower ends; the last is for the next piece
     if not line[-1].is_anchor:
         items.append(
             model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))

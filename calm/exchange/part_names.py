@@ -33,7 +33,7 @@ _NAMES = {
 }
 """Patterns for part names in several languages, by kind."""
 
-_HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
+_HEAVY = 20.0  # N: maximum weight of connecting hardware, whatever its name
 _LONG, _SLENDER = 3.0, 60.0
 """Minimum length [m] and minimum number of diameters: any piece above both is a line, whatever its
 name.

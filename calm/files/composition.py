@@ -84,7 +84,7 @@ def compose(text: str) -> Composition:
             try:
                 return _Reader(text, start, yaml.CSafeLoader(plain).get_event).read()
             except (YAMLError, ValueError):
-                pass  # which the parser in Python says better
+                pass  # the parser in Python has a clearer message
         return _composed_by_python(text, start, plain)
     except _TooDeep:
         return Composition(None, ((0, 0, "is nested too deeply"),))
@@ -126,12 +126,12 @@ class _Reader:
 
     def read(self) -> Composition:
         """Return the nodes of the only document."""
-        self._next()  # the stream begins
+        self._next()  # start of the stream
         if isinstance(self._next(), events.StreamEndEvent):
             return Composition(None)
         event = self._next()
         root = self._node(event, 0)
-        self._next()  # the document ends
+        self._next()  # end of the document
         behind = self._next()
         if not isinstance(behind, events.StreamEndEvent):
             what = "expected a single document in the stream", "but found another document"
@@ -174,7 +174,7 @@ class _Reader:
             data = {key.data: child.data for key, child in zip(keys, children, strict=True)}
         style, end = "flow", ending.end_mark.index + self._start
         if not event.flow_style:
-            # It is over where the next thing begins, below comments that are not its own.
+            # libyaml ends a block at the next token, below comments that belong to that token.
             style, end = "block", children[-1].end if children else start
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 

@@ -41,7 +41,7 @@ def mooring_schema() -> Schema:
     own = schemas["Item"]["properties"]
     own["length"] = fields["length"] | {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
     own["clamps"]["items"] = {"$ref": "#/$defs/Clamp"}
-    for part in ("Clamp", "Item"):  # other fields override those of the component
+    for part in ("Clamp", "Item"):  # other fields override the component
         schemas[part]["properties"] = fields | schemas[part]["properties"]
         del schemas[part]["title"]
     schemas["Item"]["required"] = ["use"]

@@ -52,7 +52,7 @@ def table_rows(
     before, legs = "", draft.lists.legs
     for number, item in enumerate(draft.items):
         row = _row(Place(number), item, found.get(Place(number), ()), index)
-        if legs[number] != before:  # the first row of a leg has its name
+        if legs[number] != before:  # the first row of a leg shows the name of the leg
             before = row.texts["leg"] = legs[number]
         rows.append(replace(row, state=State.FAIL) if number in wrong else row)
         for below, clamp in enumerate(item.clamps):

@@ -175,7 +175,7 @@ class TableCells(Scrolled, inherit_bindings=False):
     class Pressed(Message):
         """The cell under the cursor was pressed with the mouse."""
 
-    # what is made of it tells
+    # defined by subclasses
 
     @property
     def columns(self) -> Sequence[TableColumn]:

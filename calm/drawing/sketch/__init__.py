@@ -280,7 +280,7 @@ def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] =
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
     gutter = 1
-    for _ in range(2):  # the numbers next to it take room, which changes the numbers
+    for _ in range(2):  # the width of the numbers affects the scale and the numbers
         columns = width - gutter - 1
         metres = max((east - west) / (columns * DOTS_ACROSS), (north - south) / (rows * DOTS_DOWN))
         bottom, top = _centred(south, north, metres * rows * DOTS_DOWN)

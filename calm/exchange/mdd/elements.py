@@ -16,9 +16,9 @@ from calm.exchange.part_names import role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
+_SLIGHT = 1e-6  # relative excess of hull volume over net buoyancy
 _FLAT = 1e-3  # m: height assumed for a float without one
-_SOFT = 1e10  # Pa: the modulus of a rope is lower, that of a wire higher
+_SOFT = 1e10  # Pa: ropes have a lower modulus, wires a higher one
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
 _ROWS = ("B", "Cd", "ME", "Wt")

@@ -137,7 +137,7 @@ def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[
         number = count - 1 - number
     if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
-    # in a tow the program counts from the body up, and a share from the lower end, too
+    # a tow is counted from the body up, and shares from the lower end
     length = design.items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 

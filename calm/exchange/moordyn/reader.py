@@ -17,7 +17,7 @@ from calm.whole_file import read_text
 
 _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
-_STEADY = ("1", "3")  # of `Currents`; the others vary in time
+_STEADY = ("1", "3")  # values of `Currents` for a steady current
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Maximum depth of an upper end that is treated as attached to a float, relative to the water
 depth, and in metres if that is more.

@@ -42,7 +42,7 @@ _NAMES_OF_UNITS = {
     "in^2": "in² in2",
 }
 _SPELLED = {name: unit for unit, names in _NAMES_OF_UNITS.items() for name in names.split()}
-_AMBIGUOUS = ("ton", "tons")  # of 907, 1000 or 1016 kg
+_AMBIGUOUS = ("ton", "tons")  # may mean 907, 1000 or 1016 kg
 _SUBSTANCES = r"(?:sea ?|salt ?|fresh ?)?(?:water|air|wasser|luft|l'?eau|eau|agua|aire|mer|mar)"
 _IN_WATER = re.compile(
     rf"\b(?:in|im|an|dans|unter|en|el|l['’])(?: the| el| der| la)? {_SUBSTANCES}\b"

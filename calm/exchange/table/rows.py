@@ -18,7 +18,7 @@ _DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?
 _COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x glass, 6 x 17 in
 _LENGTHS = re.compile(r"^\(?\d+\s?[x\u00d7]\s?\d+([.,]\d+)?\s?m\b", re.I)  # 2 x 200 m wire
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
-_ENOUGH = {"length", "buoyancy", "weight"}  # a row with one of these is a piece
+_ENOUGH = {"length", "buoyancy", "weight"}  # a row with any of these keys is a piece
 _MOST = 1000  # largest count of a row
 # m: largest diameter of a piece, and of a line, in a column without a unit
 _WIDEST, _WIDEST_LINE = 10.0, 0.5
