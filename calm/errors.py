@@ -24,12 +24,12 @@ T = TypeVar("T")
 
 
 class CalmError(Exception):
-    """Base class of CALM's errors, whose messages are written for users."""
+    """Base class of all errors raised intentionally by CALM; messages are written for users."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A mistake at one place of a file.
+    """A mistake at one position of a file.
 
     `line` and `column` count from 1; 0 means the file as a whole. `lacks` describes an incomplete
     file, if nothing is wrong but something is missing: ``no length on wire 2``.
@@ -47,7 +47,7 @@ class Problem:
 
 
 class InputError(CalmError):
-    """A file cannot be used; `problems` are all mistakes found in it."""
+    """A file cannot be used; `problems` lists all mistakes found in it."""
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(problems)
@@ -55,7 +55,7 @@ class InputError(CalmError):
 
 
 def refused(path: object, *messages: str, line: int = 0, column: int = 1) -> InputError:
-    """Return the error for a file that cannot be used, one problem for each message; `line` 0 means
+    """Create the error for a file that cannot be used, with one problem per message; `line` 0 means
     the whole file.
     """
     place = str(path), line, column if line else 0
@@ -63,7 +63,7 @@ def refused(path: object, *messages: str, line: int = 0, column: int = 1) -> Inp
 
 
 class UsageError(CalmError):
-    """A command line or a call is not valid."""
+    """A command line or a function call is not valid."""
 
 
 class NoEquilibrium(CalmError):
@@ -88,16 +88,16 @@ class NoEquilibrium(CalmError):
         super().__init__(f"{status}: {self.message} {advice}")
 
     def naming(self, piece: str) -> NoEquilibrium:
-        """Return the same exception with a name for the piece."""
+        """Return this exception with the name of the affected piece added."""
         return NoEquilibrium(self.status, self.wording.format(piece=piece), self.advice)
 
     def to_dict(self) -> dict[str, str]:
-        """Return `status`, `message` and `advice`, which replace a result in JSON."""
+        """Return `status`, `message` and `advice` as JSON data, in place of a result."""
         return {"status": self.status, "message": self.message, "advice": self.advice}
 
 
 def or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | NoEquilibrium:
-    """Return the result of a call, or the NoEquilibrium that it raises."""
+    """Call a function; return its result, or the NoEquilibrium exception if one is raised."""
     try:
         return solve(*given, **named)
     except NoEquilibrium as failure:
@@ -109,13 +109,13 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "cluster": ("distributed", "dask", "zarr"),
     "plot": ("matplotlib",),
 }
-"""Libraries that a default installation lacks, by the extra of the package that brings them."""
+"""Optional libraries, by the package extra that installs them."""
 
 
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
-    """One line that names a missing library and the command that installs it.
+    """Return a line that names a missing library and the command that installs it.
 
-    None if the missing module is one of CALM's own, or has no name: a fault of the program.
+    Returns None if the missing module belongs to CALM or has no name, which is a program error.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):
@@ -127,14 +127,14 @@ def how_to_install(missing: ModuleNotFoundError) -> str | None:
 
 
 def unexpected(error: Exception) -> str:
-    """Reason for an exception that CALM did not raise itself, in one line."""
+    """Describe an exception from outside CALM in one line."""
     advice = how_to_install(error) if isinstance(error, ModuleNotFoundError) else None
     return advice or f"{type(error).__name__}: {error}"
 
 
 def internal_failure(error: Exception) -> NoEquilibrium:
-    """Return an internal error of CALM, or a missing library, as an unsolved line, so that other
-    lines are still solved.
+    """Convert an internal error or a missing library to a failed result, so that the other lines
+    are solved.
     """
     if isinstance(error, ModuleNotFoundError) and (advice := how_to_install(error)):
         need, _, command = advice.partition(": ")
@@ -150,12 +150,14 @@ LONGEST_TEXT = 60
 
 
 def one_line(text: str) -> str:
-    """Return a text in one line, without control characters."""
+    """Convert a text to a single line without control characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def unknown(what: str, text: str, known: Iterable[str]) -> str:
-    """Return the message `what` with the nearest known name, or with all names if they are few."""
+    """Return the message `what` with the most similar known name, or with all names if they are
+    few.
+    """
     names = list(known)
     near = nearest(text, names)
     if near:
@@ -166,7 +168,7 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
 
 
 def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
-    """Return the message for a value that is not allowed, with the nearest one allowed or else
+    """Return the message for a value that is not allowed, with the most similar allowed value, else
     `offer`.
     """
     choices = list(allowed)
@@ -176,10 +178,10 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 
 
 def nearest(text: str, known: Iterable[str]) -> str | None:
-    """The name most like a text, None when none is like it.
+    """Return the name most similar to a text, or None if no name is similar.
 
-    Letters decide which names are alike, and their words and figures which of these comes first:
-    for ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
+    Names are selected by similar letters, and then ranked by their words and numbers: for
+    ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
     """
     given = text[:LONGEST_TEXT]
     alike = difflib.get_close_matches(given, list(known), 50)
@@ -188,19 +190,19 @@ def nearest(text: str, known: Iterable[str]) -> str | None:
 
 
 def _parts(name: str) -> list[str]:
-    """Words and figures of a name; a size in millimetres is its figure."""
+    """Split a name into words and numbers; a size in millimetres counts as a number."""
     parts = re.split(r"[\W_]+", name.casefold())
     return [re.sub(r"(?<=\d)mm$", "", part) for part in parts if part]
 
 
 def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
-    """Mean likeness of the parts wanted to those of a name, 1 if all are equal."""
+    """Mean similarity between the wanted parts and the parts of a name; 1 if all are equal."""
     best = [max((_alike(one, other) for other in parts), default=0.0) for one in wanted]
     return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
 
 
 def _alike(one: str, other: str) -> float:
-    """Likeness of two words by their letters, of two figures by their ratio."""
+    """Similarity of two words by their letters, or of two numbers by their ratio."""
     if one.isdecimal() and other.isdecimal():
         least, greatest = sorted((float(one), float(other)))
         return least / greatest if greatest else 1.0
@@ -208,7 +210,7 @@ def _alike(one: str, other: str) -> float:
 
 
 def shown(value: object) -> str:
-    """Return an invalid value as shown in messages, shortened."""
+    """Shorten an invalid value for a message."""
     text = value if isinstance(value, str) else "…" if isinstance(value, (dict, list)) else ""
     text = " ".join(text.split())
     return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"

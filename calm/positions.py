@@ -1,4 +1,4 @@
-"""Positions on the earth: the notations of latitude and longitude, and the WGS 84 ellipsoid."""
+"""Geographic positions: notations of latitude and longitude, and the WGS 84 ellipsoid."""
 
 import re
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ _POSITION = re.compile(
 
 
 def degrees_of(text: str, what: str) -> float | None:
-    """Return a latitude or longitude [degrees], south and west negative.
+    """Parse a latitude or longitude [degrees], negative for south and west.
 
     Accepted are texts such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2
     W``. Returns None for a text with neither minutes nor a hemisphere, such as a plain number.
@@ -61,7 +61,7 @@ def degrees_of(text: str, what: str) -> float | None:
 
 
 def plain_degrees(text: str, what: str) -> float:
-    """Return a latitude or longitude [degrees], also from a plain number of degrees.
+    """Parse a latitude or longitude [degrees]; a plain number is in degrees.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def plain_degrees(text: str, what: str) -> float:
 
 
 def read_as_minutes(degrees: float) -> float:
-    """Return the angle of degrees and minutes separated by a point: 48.18 is read as 48°18'."""
+    """Convert degrees and minutes with a point between them to degrees: 48.18 is read as 48°18'."""
     size = abs(degrees)
     whole = int(size)
     minutes = (size - whole) * 100.0
@@ -93,7 +93,7 @@ _ROUNDS = 10
 
 @dataclass(frozen=True)
 class Frame:
-    """Local axes east, north and up, with their origin at a point of the ellipsoid [degrees]."""
+    """Local axes east, north and up, whose origin [degrees] lies on the ellipsoid."""
 
     latitude: float
     longitude: float
@@ -112,16 +112,16 @@ class Frame:
         )
 
     def place(self, latitude: Floats, longitude: Floats, depth: Floats) -> Floats:
-        """Return the east, north and up coordinates [m] of positions [degrees] at depths [m], shape
-        (n, 3).
+        """Convert positions [degrees] at depths [m] to local coordinates east, north and up [m],
+        shape (n, 3).
         """
         origin = _from_centre(np.array(self.latitude), np.array(self.longitude), np.array(0.0))
         found: Floats = (_from_centre(latitude, longitude, depth) - origin) @ self._axes.T
         return found
 
     def position(self, place: Floats) -> tuple[float, float, float]:
-        """Return the latitude and longitude [degrees] and the depth [m] of local coordinates, shape
-        (3,) [m].
+        """Convert local coordinates [m], shape (3,), to latitude and longitude [degrees] and depth
+        [m].
         """
         origin = _from_centre(np.array(self.latitude), np.array(self.longitude), np.array(0.0))
         x, y, z = (origin + place @ self._axes).tolist()

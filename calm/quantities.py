@@ -14,7 +14,7 @@ from calm.errors import UsageError, unknown
 
 @dataclass(frozen=True)
 class Quantity:
-    """One reported quantity.
+    """A reported quantity.
 
     Parameters
     ----------
@@ -44,12 +44,12 @@ class Quantity:
 
     @property
     def display_unit(self) -> str:
-        """Unit of display: the one chosen by `show_in`, or the usual one."""
+        """Display unit: as set by `show_in`, else the usual unit."""
         return _layout(self.unit, self.display, self.decimals)[0]
 
     @property
     def usual_unit(self) -> str:
-        """Unit of display if none is chosen; pictures always use it."""
+        """Default display unit, which pictures always use."""
         return self.display or self.unit
 
     @property
@@ -73,7 +73,8 @@ class Quantity:
         return f"{self.heading} [{self.usual_unit}]" if self.usual_unit else self.heading
 
     def format(self, value: float | None) -> str:
-        """Format a value [`unit`] as a number in the displayed unit; an unknown value as a dash.
+        """Format a value [`unit`] in the display unit, without the unit; an unknown value becomes a
+        dash.
 
         A value that rounds to zero has no minus sign.
         """
@@ -83,7 +84,7 @@ class Quantity:
         return f"{value * scale:z.{places}f}"
 
     def say(self, value: float | None, *beside: float | None) -> str:
-        """Format a value [`unit`] with its unit, for a sentence, such as ``113.2 m``.
+        """Format a value [`unit`] in the display unit, with the unit, such as ``113.2 m``.
 
         A force whose usual unit is kN is in N if it is below 1 kN, and so are all values `beside`
         it.
@@ -94,14 +95,14 @@ class Quantity:
         return _with_unit(number, unit)
 
     def number_and_unit(self, value: float, *beside: float | None) -> tuple[str, str]:
-        """Format a value [`unit`] as by `say`, with number and unit apart."""
+        """Return number and unit separately, in the display unit, for a value [`unit`]."""
         largest = max(abs(one) for one in (value, *beside) if one is not None)
         if self.display_unit == "kN" and largest < 999.5 and "force" not in _shown:
             return f"{value:z.{2 if largest < 9.95 else 0}f}", "N"
         return self.format(value), self.display_unit
 
     def figure(self, value: float) -> str:
-        """Format a value [`unit`] to four significant digits with the displayed unit, for data
+        """Format a value [`unit`] to four significant digits with the display unit, for data
         sheets.
         """
         return _with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}", self.display_unit)
@@ -192,7 +193,7 @@ _TABLE = (
 )  # fmt: skip
 
 QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
-"""Every quantity by its name."""
+"""All quantities by name."""
 
 
 SHOWN_UNITS = {
@@ -201,8 +202,8 @@ SHOWN_UNITS = {
     "speed": {"m/s": 1.0, "cm/s": 0.01, "kn": 1852 / 3600},
     "mass": {"kg": 1.0, "lb": 0.45359237},
 }
-"""Units of display that may be chosen for each dimension, with their sizes in the unit of results,
-which is listed first.
+"""Allowed display units for each dimension, and their sizes relative to the unit of results, which
+is first.
 """
 
 _CHOICES = {next(iter(units)): dimension for dimension, units in SHOWN_UNITS.items()}
@@ -211,7 +212,7 @@ _shown: dict[str, str] = {}
 
 @cache
 def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
-    """Return the unit of display, the factor to it from the unit of results, and the number of
+    """Return display unit, factor from the unit of results to the display unit, and number of
     decimals.
 
     A quantity with a small usual unit, such as mm, keeps it. The number of decimals is chosen so
@@ -226,7 +227,7 @@ def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
 
 
 def show_in(units: Mapping[str, str]) -> None:
-    """Set the units in which quantities are displayed, for this process.
+    """Set the display units for this process.
 
     Data files remain in SI units. Quantities with a small usual unit (diameters in mm) keep it.
 
@@ -240,7 +241,7 @@ def show_in(units: Mapping[str, str]) -> None:
 
 
 def shown_units() -> dict[str, str]:
-    """Return the units chosen by `show_in`, by dimension."""
+    """Return the units set by `show_in`, by dimension."""
     return dict(_shown)
 
 
@@ -258,12 +259,12 @@ def rounded(value: float, digits: int, *, up: bool) -> float:
 
 
 def bearing_of(east: float, north: float) -> float:
-    """Return the direction of a vector, clockwise from north, 0 to 360 [degrees]."""
+    """Return the direction of a vector [degrees], clockwise from north, 0 to 360."""
     return degrees(atan2(east, north)) % 360.0
 
 
 def bearing_text(bearing: float) -> str:
-    """Format a direction [degrees] in three digits: ``068°``."""
+    """Format a direction [degrees] with three digits: ``068°``."""
     return f"{round(bearing) % 360:03d}°"
 
 
@@ -277,8 +278,7 @@ def duration(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class MeasuredQuantity:
-    """A quantity that instruments of a mooring measure, and that can be interpolated to fixed
-    levels.
+    """A quantity measured by moored instruments, which can be interpolated to fixed levels.
 
     Attributes
     ----------
@@ -319,13 +319,13 @@ QUANTITIES_MEASURED = {
         "speed", ("northward_sea_water_velocity",), (), 0.01,
     ),
 }  # fmt: skip
-"""The quantities measured, by their names in commands; `noise` is the accuracy that manufacturers
-state for common instruments.
+"""Measured quantities by their names in commands; `noise` is the usual accuracy stated by
+manufacturers.
 """
 
 
 def chosen_quantities(text: str | None) -> tuple[str, ...]:
-    """Return the names in a text such as ``temperature,salinity``; all names if the text is None.
+    """Split a text such as ``temperature,salinity`` into names; None selects all names.
 
     UsageError: a name is unknown; names in OceanSITES files are accepted, too.
     """

@@ -1,4 +1,4 @@
-"""Files that are installed with CALM: component catalogue, example lines, manual and templates.
+"""Locate files installed with CALM: component catalogue, example lines, manual and templates.
 
 In an installation the first three are inside the package; in a checkout they are next to it.
 """
@@ -33,7 +33,7 @@ TEMPLATES: dict[Template, str] = {
     "slack-surface": "marker buoy on chain and floating rope, 60 m",
     "tow": "body behind a ship, at the depth wanted",
 }
-"""Kinds of template moorings, each with its description.
+"""Kinds of template moorings, with descriptions.
 
 A template accepts no unknown figure, since that is a decision of whoever signs the design.
 

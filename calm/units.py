@@ -29,7 +29,7 @@ KNOT = 1852 / 3600
 
 @dataclass(frozen=True)
 class Dimension:
-    """A kind of quantity: its name in messages, its SI unit and its common units."""
+    """A dimension of quantities: its name in messages, its SI unit and its common units."""
 
     noun: str
     unit: str
@@ -72,7 +72,7 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "latitude": Dimension("a latitude", "deg", {"deg": 1.0}),
     "longitude": Dimension("a longitude", "deg", {"deg": 1.0}),
 }  # fmt: skip
-"""Every kind of quantity, by name.
+"""All dimensions by name.
 
 Angles are in degrees and temperatures in degrees Celsius, as in files and reports. Salinities are
 practical salinities. A mass fraction is converted to one as for sea water of the reference
@@ -111,7 +111,7 @@ _MISTAKEN: Mapping[str, tuple[str, str | None]] = {
     "mt": ("is in thousandths of a tonne; a metric ton is `t`", "t"),
     "Mt": ("is in millions of tonnes; a metric ton is `t`", "t"),
 }
-"""Units that pint knows but that are mistakes in a mooring file: the message, and the unit probably
+"""Units known to pint that are mistakes in a mooring file, with a message and the unit probably
 meant.
 """
 
@@ -136,11 +136,11 @@ _POINTS = (
 )
 _COMPASS = {name: 22.5 * number for number, name in enumerate(_POINTS)}
 _COMPASS |= {"NORTH": 0.0, "EAST": 90.0, "SOUTH": 180.0, "WEST": 270.0}
-"""Points of the compass [deg], which are suggested as angles."""
+"""Compass points and their angles [deg], suggested in messages."""
 
 
 class QuantityError(ValueError):
-    """A text that is not a valid quantity of the required dimension.
+    """A text is not a valid quantity of the required dimension.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ class QuantityError(ValueError):
 
 
 def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = None) -> float:
-    """Convert a number with its unit to SI (degrees, degC).
+    """Parse a number with its unit to SI (degrees, degC).
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
 
 @dataclass(frozen=True)
 class QuantityRange:
-    """The dimension and the limits of a quantity (SI, degrees)."""
+    """Dimension and limits of a quantity (SI, degrees)."""
 
     dimension: str
     usual_unit: str | None = None
@@ -231,7 +231,7 @@ class QuantityRange:
     at_most: float = math.inf
 
     def read(self, text: object) -> float:
-        """Return the SI value of a text with a unit.
+        """Parse a text with a unit to its SI value.
 
         Raises
         ------
@@ -252,13 +252,13 @@ class QuantityRange:
 
 
 def with_unit(value: float, unit: str) -> str:
-    """Format a value to six digits with its unit."""
+    """Format a value to six significant digits with its unit."""
     return f"{value:.6g} {unit}".rstrip()
 
 
 @functools.lru_cache(maxsize=1024)
 def unit_factor(text: str, dimension: str) -> float:
-    """Return the factor from a unit to SI (degrees, degC).
+    """Return the factor that converts a unit to SI (degrees, degC).
 
     Raises
     ------
@@ -294,9 +294,10 @@ def unit_factor(text: str, dimension: str) -> float:
 
 
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
-    """Return the factor and the zero of a unit: x in it is ``factor * x + zero`` in another.
+    """Return factor and offset between two units: a value x becomes ``factor * x + offset`` in the
+    other.
 
-    Both are those of pint, which knows the zeros of temperature scales.
+    Factor and offset come from pint, which knows the zeros of temperature scales.
 
     Parameters
     ----------
@@ -313,7 +314,7 @@ def unit_line(text: str, wanted: str) -> tuple[float, float]:
     plain = _SCALES.get(re.sub(r"[\W_]", "", plain.lower()), _tidy(plain))
     try:
         ends = [float(registry.Quantity(x, plain).to(wanted).magnitude) for x in (0.0, 1.0)]
-    except Exception:  # of many kinds, for what is no unit and for units of other kinds
+    except Exception:  # pint raises many types for bad units
         raise QuantityError(f"is not {wanted}, or a unit of that kind") from None
     return ends[1] - ends[0], ends[0]
 
@@ -324,11 +325,11 @@ _SCALES = {
     **dict.fromkeys(("degreekelvin", "degreeskelvin", "kelvin", "degk", "k"), "K"),
     **dict.fromkeys(("degreefahrenheit", "degreesfahrenheit", "fahrenheit", "degf", "f"), "degF"),
 }  # fmt: skip
-"""What scales of temperature are called, letters alone."""
+"""Names of temperature units, letters only, and their names in pint."""
 
 
 def _split(text: str, wanted: Dimension) -> tuple[float, str]:
-    """Return the number at the beginning of a text, and the rest, which is its unit."""
+    """Split a text into the number at its beginning and the unit after the number."""
     fraction = _FRACTION.match(text)
     if fraction:
         sign, whole, numerator, denominator = fraction.groups()

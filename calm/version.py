@@ -1,4 +1,4 @@
-"""The version of CALM, and the commit from which it was built."""
+"""Version of CALM, and the git commit from which it was built."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def built_from() -> str:
 
 
 def commit_of(checkout: Path) -> str:
-    """Return the commit of a git checkout; empty if there is no checkout or no git."""
+    """Return the commit of a git checkout; empty if git or the checkout is missing."""
     import subprocess
 
     if not (checkout / ".git").exists():

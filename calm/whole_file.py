@@ -1,4 +1,4 @@
-"""Read and write files as a whole: a reader sees either the old or the new content."""
+"""Read and write whole files, so that a reader sees either the old or the new content."""
 
 import contextlib
 import difflib
@@ -13,10 +13,10 @@ from typing import Generic, TypeVar
 from calm.errors import refused
 
 LARGEST_FILE = 1_000_000
-"""Largest text file that is read [bytes]."""
+"""Maximum size of a text file [bytes]."""
 
 UNFINISHED = ".calm-part"
-"""Ending of the names of temporary files that are still being written."""
+"""Suffix of temporary files that are still being written."""
 
 # characters of the target's name that the temporary name repeats, to limit its length
 _LONGEST = 40
@@ -24,10 +24,10 @@ _STALE = 600.0  # seconds: an older temporary file is not being written by any p
 _TOGETHER = 32  # number of files flushed at once, since waiting for each in turn is slow
 
 _ALIKE = 0.75
-"""Similarity of two names of files above which one may be meant by the other."""
+"""Minimum similarity between a missing file and an existing file that is suggested instead."""
 
 GRAIN = 2.0
-"""Resolution of file times: a file younger than this may change without a new time [s]."""
+"""Resolution of file times [s]; a change within this interval may not change the time of a file."""
 
 T = TypeVar("T")
 Stamp = tuple[tuple[str, int, int, int], ...]
@@ -57,7 +57,7 @@ def beside(target: Path) -> Iterator[Path]:
 def put(
     target: Path, content: bytes, *, like: os.stat_result | None = None, durable: bool = False
 ) -> None:
-    """Write a file as a whole; a symbolic link is replaced, so callers must resolve it first.
+    """Write a whole file. A symbolic link is replaced, so callers must resolve links first.
 
     Parameters
     ----------
@@ -81,7 +81,9 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Remove old temporary files from a folder, of the file `name` or, by default, of all files."""
+    """Delete old temporary files in a folder: those for the file `name`, by default those for all
+    files.
+    """
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
         for part in folder.glob(f"{begin}*{UNFINISHED}"):
@@ -90,7 +92,7 @@ def sweep(folder: Path, name: str = "") -> None:
 
 
 def flush_to_disk(paths: Iterable[Path]) -> None:
-    """Wait until files, and the names in folders, are stored on the disk.
+    """Flush files, and the directory entries of folders, to the disk.
 
     Raises
     ------
@@ -177,8 +179,8 @@ def _regular(path: Path) -> Iterator[None]:
 
 
 def no_such_file(path: Path) -> str:
-    """Return the message about a file that does not exist, with the file of its folder and suffix
-    that is most alike in name. Without a suffix, or with .yml, a .yaml file may be meant.
+    """Return the message about a missing file, with the most similar file name in its folder that
+    has the same suffix. Without a suffix, or with .yml, a .yaml file may be suggested.
     """
     with contextlib.suppress(OSError, ValueError):
         suffix = {"": ".yaml", ".yml": ".yaml"}.get(path.suffix, path.suffix)
@@ -193,7 +195,7 @@ def no_such_file(path: Path) -> str:
 
 
 def decoded(path: Path, content: bytes) -> str:
-    """Return the text of a UTF-8 file, including a byte-order mark.
+    """Decode the UTF-8 text of a file, with or without a byte-order mark.
 
     InputError: it cannot be decoded.
     """
@@ -207,13 +209,13 @@ def decoded(path: Path, content: bytes) -> str:
 
 
 class FileCache(Generic[T]):
-    """Cache the last value read from files; names, times and sizes of the files are the key."""
+    """Cache of the last value read from files, identified by their names, times and sizes."""
 
     def __init__(self) -> None:
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return the value of `read`, which is called only if the files are others or have
+        """Return the cached value, or call `read` if other files are given or a file has
         changed.
         """
         stamp = _stamp(paths)

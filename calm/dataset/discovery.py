@@ -1,7 +1,7 @@
 """Attributes that data archives require in addition to CF: ACDD 1.3 and OceanSITES 1.4.
 
-Names and tables are those of the OceanSITES Data Format Reference Manual 1.4 (2020) and of the
-Attribute Convention for Data Discovery 1.3.
+Names and tables follow the OceanSITES Data Format Reference Manual 1.4 (2020) and the Attribute
+Convention for Data Discovery 1.3.
 """
 
 import hashlib
@@ -22,7 +22,7 @@ FLAGS: Mapping[int, str] = {
     3: "potentially_correctable_bad_data", 4: "bad_data", 7: "nominal_value",
     8: "interpolated_value", 9: "missing_value",
 }  # fmt: skip
-"""Quality flags, table 2 of OceanSITES."""
+"""Meaning of each quality flag, from OceanSITES table 2."""
 OF_FLAGS: Attributes = {
     "flag_values": list(FLAGS),
     "flag_meanings": " ".join(FLAGS.values()),
@@ -35,12 +35,12 @@ _KEPT_BEGIN = ("creator_", "platform_", "site_", "principal_investigator", "publ
 
 
 def written() -> str:
-    """Return the time of writing, ISO 8601; if SOURCE_DATE_EPOCH is set, that time."""
+    """Return the time of writing in ISO 8601, or the time in SOURCE_DATE_EPOCH if set."""
     return f"{source_date() or datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def hashed(path: Path) -> str:
-    """Return the name of a file with its SHA-256, or the bare name of a folder."""
+    """Return the name of a file with its SHA-256 hash; for a folder, only the name."""
     if not path.is_file():
         return path.name
     with path.open("rb") as file:
@@ -48,8 +48,8 @@ def hashed(path: Path) -> str:
 
 
 def kept(attributes: Mapping[str, Any]) -> Attributes:
-    """Return the attributes of an input file that also apply to results, such as its platform, site
-    and creator.
+    """Return the input-file attributes that also apply to results, such as platform, site and
+    creator.
     """
     return {
         name: value
@@ -61,7 +61,7 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 def coverage(
     time: NDArray[np.datetime64], depth: Sequence[float], place: Sequence[float]
 ) -> Attributes:
-    """Return the attributes of the covered time, depth and position.
+    """Return the attributes for the coverage in time, depth and position.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def with_flags(
     names: Mapping[str, Sequence[str]],
     cell_methods: str = "time: point",
 ) -> tuple[Variable, ...]:
-    """Add a variable of quality flags behind each variable that has flags.
+    """Insert a variable of quality flags after each variable that has flags.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def with_flags(
 
 
 def in_capitals(layout: ResultLayout) -> ResultLayout:
-    """Return a layout with all names in capitals, as in the archives of OceanSITES."""
+    """Return a layout with all names in capitals, as in OceanSITES archives."""
     names = {one.name for one in layout.variables} | set(layout.sizes)
 
     def raised(attributes: Attributes) -> Attributes:

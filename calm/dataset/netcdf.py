@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     import h5netcdf
 
 LEVEL = 1
-"""Compression level: higher levels take twice the time for 3 % less space."""
+"""Compression level; higher levels take twice the time and save 3 % of the space."""
 
 Chunks = Mapping[str, bytes]
-"""Compressed bytes of one block, by the name of the time-dependent variable."""
+"""Compressed bytes of one block, by name of the time-dependent variable."""
 
 # bytes of metadata that HDF5 needs at most for a chunk and for a variable
 _OF_A_CHUNK, _OF_A_VARIABLE = 512, 65_536
@@ -38,8 +38,8 @@ _ZEROS = bytes(1 << 20)
 
 
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
-    """Return a file of a layout; time-dependent variables are defined in chunks of a block, without
-    data.
+    """Create a NetCDF file for a layout. Time-dependent variables are chunked by `block` and left
+    empty.
     """
     import h5netcdf
 
@@ -54,8 +54,7 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Return a block in the storage format of HDF5: one chunk for each variable, shuffled and
-    deflated.
+    """Convert a block to the storage format of HDF5: one shuffled and deflated chunk per variable.
 
     Parameters
     ----------
@@ -125,7 +124,7 @@ def write_netcdf(
 
 
 def _take_room(handle: int, size: int) -> None:
-    """Extend a file to at least this size, and reserve its disk space."""
+    """Extend a file to a minimum size, and reserve the disk space."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(handle, 0, size)
         return
@@ -134,7 +133,7 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the shape of the chunks of a time-dependent variable; the last chunk is full, too.
+    """Return the chunk shape of a time-dependent variable; the last chunk has the full size, too.
 
     Parameters
     ----------
@@ -173,7 +172,7 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
 
 
 def _text(value: str | float) -> str | float | np.bytes_:
-    """Return a text as characters, which every tool reads, or as a string if it is long or not
+    """Store a text as characters, which every tool can read, or as a string if it is long or not
     ASCII.
     """
     if isinstance(value, float):
@@ -184,11 +183,11 @@ def _text(value: str | float) -> str | float | np.bytes_:
 Attributes = dict[str, Any]
 
 PIECES, CLAMPS = "piece of the line, from its top", "clamped instrument, down the line"
-"""Meanings of the labels along `component` and `clamp`."""
+"""Descriptions of the labels along the dimensions `component` and `clamp`."""
 
 NUMBER = "<f4"
-"""Type of depths, offsets, forces and angles of many profiles; they are NaN without an
-equilibrium.
+"""Data type of depths, offsets, forces and angles for many profiles; without an equilibrium they
+are NaN.
 """
 
 _PLACE = {"latitude": "degrees_north", "longitude": "degrees_east"}
@@ -201,7 +200,8 @@ def of_net(
     clamps: Iterable[int],
     nodes: Iterable[int] = (),
 ) -> list[Variable]:
-    """Return the variables of a net: offsets from its origin, and the leg of each part.
+    """Adapt the variables of a single line to a net: offsets refer to the origin, and each part
+    gets the index of its leg.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def of_net(
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of a result; `values` is None for a time-dependent variable, which is written in
+    """A NetCDF variable; `values` is None for a time-dependent variable, which is written in
     blocks.
     """
 
@@ -240,7 +240,9 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes with `coverage_content_type` of ACDD; variables of names have none."""
+        """Attributes, with the ACDD attribute `coverage_content_type` if the variable is
+        numeric.
+        """
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
@@ -253,7 +255,8 @@ class Variable:
 
 @dataclass(frozen=True)
 class ResultLayout:
-    """A result whose time-dependent variables are still without values.
+    """Variables, dimensions and attributes of a result; time-dependent variables have no values
+    yet.
 
     Attributes
     ----------
@@ -268,7 +271,7 @@ class ResultLayout:
 
     @property
     def in_blocks(self) -> list[Variable]:
-        """The time-dependent variables."""
+        """Time-dependent variables, which are written in blocks."""
         return [variable for variable in self.variables if variable.values is None]
 
 
@@ -278,7 +281,7 @@ def numbers(
     coordinates: str,
     values: Mapping[str, NDArray[Any]] | None = None,
 ) -> list[Variable]:
-    """Return numeric variables; a coordinate is not listed among its own coordinates.
+    """Create numeric variables; a coordinate is not listed among its own coordinates.
 
     Parameters
     ----------
@@ -299,7 +302,7 @@ def numbers(
 
 
 def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Variable:
-    """Return a variable of names along a dimension.
+    """Create a variable of labels along a dimension.
 
     Parameters
     ----------
@@ -312,10 +315,10 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
 
 
 def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
-    """Return the coordinates that number parts, nodes and sensors down the line.
+    """Create the coordinates that number parts, nodes and sensors from the top down.
 
     They are dimensionless vertical coordinates in the sense of CF, because depths vary in time and
-    those of neighbours may be equal.
+    neighbours may have equal depths.
     """
     return [
         Variable(
@@ -330,8 +333,8 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Return the variables of a mooring as a station, and the text that they add to the attribute
-    `coordinates`.
+    """Create the variables of a mooring as a CF station; also return the names to append to the
+    attribute `coordinates`.
 
     Parameters
     ----------
@@ -364,9 +367,9 @@ def source_date() -> datetime | None:
 
 
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
-    """Return the global attributes about the source of a result; an unknown one is empty.
+    """Return global attributes about the source of a result; unknown attributes are empty.
 
-    The only date is that of `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    No date is written except `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The figures of a design check: the mooring to scale, its loads, and the line in rows of a table.
+"""Figures of a design check: mooring to scale, loads, and line symbols for table rows.
 
 They are black on white, so that no information depends on colour. Lengths are in points.
 """
@@ -29,7 +29,7 @@ from calm.quantities import QUANTITIES
 FONT = 8.0
 """Font size, also the smallest size."""
 ROW_WIDTH = 52.0
-"""Width of the drawing of the line in rows of a table."""
+"""Width of the line symbols in table rows."""
 INK, GREY, PALE = "black", "#6e6e6e", "#cdcdcd"
 
 _LEFT = 28.0  # width of the depth axis
@@ -64,7 +64,7 @@ class Label:
 
 
 def grey(svg: str) -> str:
-    """Return a drawing with its colours replaced by greys of the same luminance."""
+    """Replace the colours of a drawing by greys of equal luminance."""
 
     def of(match: re.Match[str]) -> str:
         red, green, blue = (int(match[1][at : at + 2], 16) for at in (0, 2, 4))
@@ -77,8 +77,8 @@ def grey(svg: str) -> str:
 def elevation(
     title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
 ) -> tuple[str, float]:
-    """Return the elevation of the mooring as SVG, to a single scale, and the scale in metres per
-    point.
+    """Draw the elevation of the mooring as SVG with equal scales; return it with the scale in
+    metres per point.
 
     The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
     other cases are thin lines. The current of the first case is drawn on the left. The labels and
@@ -163,13 +163,13 @@ _STROKES: dict[str, dict[str, float | str]] = {
     "s": {"stroke": INK, "stroke_width": 0.7, "stroke_dasharray": "1 1.6"},
     "0": {"stroke": GREY, "stroke_width": 0.7, "stroke_dasharray": "4 2"},
 }
-"""Strokes of the lines, by the last letter of a code."""
+"""Line styles of load cases, by the last letter of the case code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
 _FIGURES, _GAP = 26.0, 6.0
 _LEAST_LABELS = 138.0
-"""Width up to which labels have room, however wide the mooring is."""
+"""Width reserved for labels next to a wide mooring; less if all labels are shorter."""
 _REAL = 0.78
-"""Ratio of the actual width of a text to the upper bound given by `text_width`."""
+"""Actual text width relative to the upper bound from `text_width`."""
 _MOST_LEVELS = 7
 
 
@@ -233,7 +233,7 @@ def _draw_labels(
 
 
 class PieceBar(NamedTuple):
-    """A piece in the load chart: its tensions and capacities, in the unit of the chart.
+    """A piece in the load chart, with its tensions and capacities in the unit of the chart.
 
     Attributes
     ----------
@@ -252,7 +252,7 @@ class PieceBar(NamedTuple):
 
 
 def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float]) -> str:
-    """Return tension and capacity of every piece as SVG; the top of the line is on the left.
+    """Draw tension and capacity of every piece as SVG, with the top of the line on the left.
 
     `size` is its width and height.
     """
@@ -294,7 +294,7 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
 
 
 def beside_row(part: ShownPart, height: float, *, first: bool = False, last: bool = False) -> str:
-    """Return the line with the symbol of a part as SVG, for a row of a table.
+    """Draw the line and the symbol of a part as SVG, for a table row.
 
     The line begins in the row of the first part, and ends in the row of the last part.
     """
@@ -314,14 +314,14 @@ def _row_picture(height: float, title: str) -> Pen:
 
 
 def surface_row(height: float) -> str:
-    """Return the sea surface as SVG."""
+    """Draw the sea surface as SVG, for a table row."""
     page = _row_picture(height, "sea surface")
     draw_surface(page, ROW_WIDTH, height / 2)
     return grey(svg_text(page))
 
 
 def seabed_row(height: float) -> str:
-    """Return the seabed as SVG."""
+    """Draw the seabed as SVG, for a table row."""
     page = _row_picture(height, "seabed")
     page.line(0.0, 1.0, ROW_WIDTH, 1.0, stroke=INK, stroke_width=0.9)
     for at in range(int(ROW_WIDTH / 6.0)):
@@ -330,7 +330,7 @@ def seabed_row(height: float) -> str:
 
 
 def row_height(part: ShownPart) -> float:
-    """Return the smallest height of a row that contains the symbol of a part."""
+    """Return the minimum row height for the symbol of a part."""
     if part.sign.symbol in LINES:
         return 19.0
     scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE

@@ -19,14 +19,14 @@ from calm.drawing.schematic.pen import INK, Pen, picture, text_width
 from calm.physics.line import Floats
 
 COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
-"""Colours of lines in one graph; a single line has the first colour."""
+"""Colours of the lines in a graph, in order of use."""
 
 _MARGIN = 0.05  # share of the range, on either side
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A range of values, linear or logarithmic.
+    """A linear or logarithmic range of values.
 
     Attributes
     ----------
@@ -40,7 +40,9 @@ class Scale:
     logarithmic: bool = False
 
     def share(self, value: ArrayLike) -> Floats:
-        """Positions of values between `low` (0) and `high` (1); NaN without a logarithm."""
+        """Return the positions of values between `low` (0) and `high` (1); NaN if the logarithm is
+        undefined.
+        """
         given: Any = np.asarray(value, dtype=np.float64)
         if not self.logarithmic:
             return np.asarray((given - self.low) / (self.high - self.low))
@@ -60,7 +62,7 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
 
 
 def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
-    """Widen a range about its middle, so that both axes have equal scales.
+    """Widen the narrower of two ranges about its middle, so that both axes have equal scales.
 
     Parameters
     ----------
@@ -89,7 +91,7 @@ _TIMES = (
 
 
 class Tick(NamedTuple):
-    """A value of an axis and its text."""
+    """A tick of an axis: value and text."""
 
     value: float
     text: str
@@ -167,7 +169,7 @@ def _multiples(step: float, low: float, high: float) -> list[float]:
 
 
 def number(value: float) -> str:
-    """Format a number for a scale."""
+    """Format a number for an axis."""
     return f"{value:z.6g}" if abs(value) < 1e6 else f"{value:.0f}"
 
 
@@ -202,7 +204,7 @@ _SAMPLE, _GAP = 16.0, 5.0  # points: length of the line next to a text, and the 
 
 
 class LegendEntry(NamedTuple):
-    """A text with its line or its mark (form, width [pt] and colour)."""
+    """A legend entry: text with a line or a mark (form, width [pt], colour)."""
 
     text: str
     line: Stroke | None = None
@@ -210,14 +212,14 @@ class LegendEntry(NamedTuple):
 
 
 class Graph:
-    """An empty white graph of a width and height [pt]."""
+    """An SVG graph with a white background; width and height in points."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size
         self.pen.element.set("fill", "none")  # a curve and a frame are lines
 
     def svg(self) -> str:
-        """Return the graph as an SVG element, for a file or inside a page."""
+        """Return the graph as an SVG element, for a file or for embedding in a page."""
         return within_xml(ElementTree.tostring(self.pen.element, encoding="unicode"))
 
     def axes(
@@ -245,7 +247,7 @@ class Graph:
         row: float,
         columns: int = 1,
     ) -> None:
-        """Write entries row by row in columns; long texts are shortened.
+        """Write the legend row by row in columns; long texts are shortened.
 
         Parameters
         ----------
@@ -264,7 +266,7 @@ class Graph:
 
 
 class Axes:
-    """Two scales and the drawing between them, in a frame that is drawn last."""
+    """Drawing area with two scales; the frame is drawn last."""
 
     def __init__(
         self,
@@ -286,21 +288,21 @@ class Axes:
             self.drawn = graph.pen.draw("g", clip_path=f"url(#{name})")
 
     def x(self, value: ArrayLike) -> Floats:
-        """Distances [pt] of values from the left edge of the graph."""
+        """Return the distances [pt] of values from the left edge of the graph."""
         return np.asarray(self.left + self.width * self.across.share(value))
 
     def y(self, value: ArrayLike) -> Floats:
-        """Distances [pt] of values from the upper edge of the graph."""
+        """Return the distances [pt] of values from the upper edge of the graph."""
         return np.asarray(self.top + self.height * (1.0 - self.up.share(value)))
 
     def line(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
-        """Draw a line from point to point, interrupted at NaN."""
+        """Draw a polyline, interrupted at NaN."""
         path = _path(self.x(x), self.y(y))
         if path:
             self.drawn.path(path, **stroke.attributes())
 
     def lines(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
-        """Draw separate lines by their (2, n) ends; lines with NaN are skipped."""
+        """Draw separate segments with ends of shape (2, n); segments with NaN are skipped."""
         (x1, x2), (y1, y2) = np.broadcast_arrays(self.x(x), self.y(y))
         for ends in zip(x1.tolist(), y1.tolist(), x2.tolist(), y2.tolist(), strict=True):
             if all(map(isfinite, ends)):
@@ -308,17 +310,17 @@ class Axes:
                 self.drawn.line(left, top, right, bottom, **stroke.attributes())
 
     def level(self, value: float, stroke: Stroke) -> None:
-        """Draw a horizontal line at a value of the upward axis."""
+        """Draw a horizontal line at a value of the vertical axis."""
         y = float(self.y(value))
         self.drawn.line(self.left, y, self.left + self.width, y, **stroke.attributes())
 
     def plumb(self, value: float, stroke: Stroke) -> None:
-        """Draw a vertical line at a value of the axis across."""
+        """Draw a vertical line at a value of the horizontal axis."""
         x = float(self.x(value))
         self.drawn.line(x, self.top, x, self.top + self.height, **stroke.attributes())
 
     def strip(self, low: float, high: float, colour: str) -> None:
-        """Fill the strip between two values of the upward axis."""
+        """Fill the strip between two values of the vertical axis."""
         y = sorted(map(float, self.y([low, high])))
         self.drawn.draw(
             "rect", x=self.left, y=y[0], width=self.width, height=y[1] - y[0], fill=colour
@@ -341,7 +343,7 @@ class Axes:
             self.drawn.path(path, fill=colour, stroke=colour, stroke_width=0.4)
 
     def area(self, x: ArrayLike, y: ArrayLike, colour: str) -> None:
-        """Fill a closed line with a transparent colour."""
+        """Fill a polygon with a transparent colour."""
         self.drawn.path(f"{_path(self.x(x), self.y(y))}Z", fill=colour, fill_opacity=0.2)
 
     def words(
@@ -354,17 +356,19 @@ class Axes:
         anchor: str = "start",
         colour: str = INK,
     ) -> None:
-        """Write a text next to a point, shifted [pt] to the right and down."""
+        """Write a text next to a point, with a shift to the right and down [pt]."""
         at = float(self.x(x)) + shift[0], float(self.y(y)) + shift[1]
         self.drawn.letters(*at, text, size=self.graph.size, anchor=anchor, colour=colour)
 
     def title(self, text: str) -> None:
-        """Write a title above the left end of the frame; a long one is shortened."""
+        """Write a title above the left end of the frame; a long title is shortened."""
         size = self.graph.size
         self.graph.pen.write(self.left, self.top - 0.8 * size, text, self.width, size=size)
 
     def bars(self, at: ArrayLike, value: ArrayLike, width: float, colours: Sequence[str]) -> None:
-        """Draw bars from zero to values, `width` wide on the axis across."""
+        """Draw vertical bars from zero to the given values; `width` is in units of the horizontal
+        axis.
+        """
         centres = np.asarray(at, dtype=np.float64)
         edges = self.x(centres - width / 2), self.x(centres + width / 2)
         ends, zero = self.y(value), float(self.y(0.0))
@@ -434,7 +438,7 @@ class Axes:
             pen.draw("g", transform=turned).letters(0.0, 0.0, text, size=size, anchor="middle")
 
     def scale_above(self, ticks: Sequence[Tick], label: str) -> None:
-        """Draw a second scale above the frame; the ticks have values of the axis across."""
+        """Draw a second scale above the frame; tick positions are values of the horizontal axis."""
         pen, size = self.graph.pen, self.graph.size
         for tick in ticks:
             x = float(self.x(tick.value))

@@ -1,4 +1,4 @@
-"""A result as a drawing: the side view of the line with the water next to it, and the plan."""
+"""Draw a result: side view of the line with the current next to it, and plan."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SIGNS = {
     "release": ("D", 5.0, "#009e73"),
     "anchor": ("v", 6.0, "black"),
 }
-"""Form, size [pt] and colour of the mark of a role."""
+"""Form, size [pt] and colour of the mark for a role."""
 
 STROKES = {
     LineKind.LINE: Stroke(LINE_COLOUR, 1.4),
@@ -32,12 +32,10 @@ STROKES = {
     LineKind.BESIDE: Stroke("grey", 1.0),
     LineKind.SEABED: Stroke(SEABED_COLOUR, 3.0),
 }
-"""The stroke of each kind of line; a band is an area."""
+"""Stroke for each kind of line; bands are filled areas instead."""
 
 LEAST_SPAN = 0.1
-"""Smallest horizontal range, as a share of the height, so that a vertical line does not look
-bent.
-"""
+"""Minimum horizontal range relative to the height, so that a vertical line does not look bent."""
 
 _SIZE = 8.0  # font size in points
 _WIDTH = 600.0  # points
@@ -99,7 +97,7 @@ def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
 
 
 Place = tuple[float, float, float, float]
-"""Left and upper edge, width and height of axes [pt]."""
+"""Position (left, top) and size (width, height) of axes [pt]."""
 
 
 def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
@@ -130,7 +128,7 @@ def draw_elevation(
     written: Sequence[tuple[str, PictureMark]],
     depths: Scale,
 ) -> None:
-    """Draw the line from the side, between surface and seabed, with its names in a column."""
+    """Draw the side view of the line between surface and seabed, with part names in a column."""
     _, _, width, _ = place
     widest = max((text_width(text, _SIZE) for text, _ in written), default=0.0)
     room = min(widest, _LONGEST_NAME)
@@ -200,7 +198,7 @@ def _two_speeds(u: Floats, v: Floats, plane: Floats) -> bool:
 
 
 def flow_legend(u: Floats, v: Floats, plane: Floats) -> list[LegendEntry]:
-    """Legend entries for the lines of `draw_flow`."""
+    """Return the legend entries for the lines drawn by `draw_flow`."""
     entries = [LegendEntry("speed", line=_FASTER)]
     return entries + [LegendEntry("in the plane", line=_IN_PLANE)] * _two_speeds(u, v, plane)
 
@@ -213,7 +211,7 @@ def draw_flow(
     depths: Scale,
     what: str,
 ) -> None:
-    """Draw speed against depth, and its component in a vertical plane if that differs.
+    """Draw current speed against depth, and its component in a vertical plane if different.
 
     Parameters
     ----------

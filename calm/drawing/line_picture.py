@@ -1,8 +1,8 @@
-"""Side view and plan of a solved line, in metres, as the common model of all printers.
+"""Side view and plan of a solved line [m], independent of the output format.
 
-`calm.drawing.line_drawing` draws it for files and pages, `calm.drawing.check_figures` with other
-figures of a check, `calm.drawing.sketch` in a terminal and `calm.drawing.plot` on axes of
-matplotlib.
+The picture is drawn by `calm.drawing.line_drawing` for files and pages, by
+`calm.drawing.check_figures` with other figures of a check, by `calm.drawing.sketch` in a terminal,
+and by `calm.drawing.plot` on matplotlib axes.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,11 +24,11 @@ _SEABED_NEAR = 1.5
 _MOORED_MARGIN, _TOWED_MARGIN = 0.03, 0.04  # share of the height, above and below
 
 NAMED_ROLES = ("float", "instrument", "release", "anchor")
-"""Roles that a drawing marks. Connectors appear only in the table."""
+"""Roles with a mark in drawings. Connectors have none; they appear only in tables."""
 
 
 class LineKind(Enum):
-    """Kind of a line in a picture; each printer has a stroke for each kind."""
+    """Kind of a line in a picture; each output format has a stroke per kind."""
 
     LINE = "line"
     STILL = "still"
@@ -39,7 +39,7 @@ class LineKind(Enum):
 
 @dataclass(frozen=True)
 class Polyline:
-    """Points of a line: `x` to the right, `y` along the other axis [m]."""
+    """A line in a picture: `x` to the right, `y` along the vertical axis of the picture [m]."""
 
     kind: LineKind
     x: Floats
@@ -91,7 +91,7 @@ class LinePicture:
     seabed: float | None = None
 
     def span(self) -> tuple[float, float]:
-        """Smallest and largest `x`, including zero, without the line in still water."""
+        """Minimum and maximum `x`, including zero, but without the line in still water."""
         reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
         return min(0.0, *(float(x.min()) for x in reach)), max(
             0.0, *(float(x.max()) for x in reach)
@@ -101,7 +101,7 @@ class LinePicture:
 def elevation_of(
     result: AnyResult, overlays: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
-    """Return the side view of a line, in the vertical plane of its excursion or its tow.
+    """Return the side view of a line, in the vertical plane of its excursion or tow direction.
 
     Parameters
     ----------
@@ -138,9 +138,7 @@ def elevation_of(
 
 
 def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
-    """Return the view from above, with the anchor or the ship at zero, and optionally other
-    shapes.
-    """
+    """Return the plan of a line, with the anchor or the ship at the origin, and any `overlays`."""
     shapes = [(LineKind.BESIDE, shape) for shape in overlays]
     shapes += [(LineKind.LINE, leg.shape) for leg in result.legs]
     return LinePicture(
@@ -155,7 +153,7 @@ def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
 def from_the_side(
     shape: Shape, plane: Floats, kind: LineKind = LineKind.LINE, label: str = ""
 ) -> Polyline:
-    """Return a shape in a vertical plane, as distances in the plane and depths.
+    """Project a shape onto a vertical plane: distances in the plane, and depths.
 
     Parameters
     ----------
@@ -166,7 +164,7 @@ def from_the_side(
 
 
 def _beds(result: AnyResult) -> Iterator[Polyline]:
-    """Yield the seabed about each anchor, if it slopes there or is shallower than at the deepest
+    """Yield the seabed near each anchor, if it is sloping or shallower than at the deepest
     anchor.
     """
     plane, legs = plane_of(result), result.legs
@@ -184,7 +182,7 @@ def _beds(result: AnyResult) -> Iterator[Polyline]:
 
 
 def _band(uncertain: Uncertain) -> Polyline:
-    """Outline of the line between the 5 and 95 % values of its offset and depth."""
+    """Return the outline of the line between the 5 and 95 % values of offset and depth."""
     (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
     return Polyline(
         LineKind.BAND,
@@ -205,7 +203,7 @@ def plane_of(result: AnyResult) -> Floats:
 
 
 def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
-    """The same of one leg, or of those of a net."""
+    """Return the horizontal direction (east, north) of the side view for one leg or for a net."""
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
@@ -224,7 +222,7 @@ def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
 
 
 def levels_of(result: AnyResult) -> tuple[float, float]:
-    """Depths at the upper and the lower edge of a side view [m]."""
+    """Return the depths at the upper and lower edge of a side view [m]."""
     highest = min(float(line.shape.depth.min()) for line in result.legs)
     if not result.towed:
         depth = seabed_of(result)
@@ -238,21 +236,23 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: AnyResult) -> float:
-    """Water depth at the deepest anchor, or depth of a seabed drawn deeper [m]."""
+    """Return the water depth at the deepest anchor [m], or the depth of the drawn seabed if
+    deeper.
+    """
     beds = (float(bed.y.max()) for bed in _beds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
-    """Distance of points (east, north) along a horizontal direction."""
+    """Project points (east, north) onto a horizontal direction."""
     return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
 
 
 def current_between(
     water: Water, top: float, bottom: float, samples: int = 200
 ) -> tuple[Floats, Floats, Floats]:
-    """Depths, and current east and north at these depths [m/s], including the levels of the
-    profile.
+    """Return depths, and the current east and north at these depths [m/s], including all profile
+    levels.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def current_between(
 
 
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
-    """Depths, and speed of the water past the line, east and north [m/s].
+    """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
     This is the current for a mooring and a net; for a tow the ship's speed is added.
     """
@@ -281,13 +281,13 @@ def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
 
 
 def along_the_line(shape: Shape) -> Floats:
-    """(k,) stretched length from the first node to each node [m]."""
+    """Return the stretched length from the first node to each node [m], shape (k,)."""
     steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def named_parts(result: AnyResult) -> list[PictureMark]:
-    """Floats, instruments, releases and anchors, including clamped items, in file order."""
+    """Return floats, instruments, releases and anchors, including clamped items, in file order."""
     parts = []
     for row, clamps in rows_down(result):
         ends = (
@@ -304,7 +304,7 @@ def named_parts(result: AnyResult) -> list[PictureMark]:
 
 
 def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]]:
-    """Texts to write, each with the part that it refers to.
+    """Return the part names to write in a drawing, each with its part.
 
     Neighbours of the same component within `near` [m] of each other, whose labels differ only by a
     number at the end, get a common text: ``glass 1–6``.
@@ -321,19 +321,19 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
 
 
 def alike(label: str, other: str) -> bool:
-    """Whether two labels differ only by a number at the end."""
+    """Return whether two labels differ only by a number at the end."""
     stems = [text.removesuffix(_number(text)) for text in (label, other)]
     return stems[0] == stems[1] and bool(_number(other))
 
 
 def together(labels: list[str]) -> str:
-    """Common name for labels that differ only by a number: ``glass 1–6``."""
+    """Join labels that differ only by a number to one name: ``glass 1–6``."""
     return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Find positions at least `gap` apart, in the given ascending order, as close as possible to
-    `wanted`.
+    """Shift positions until they are at least `gap` apart, as close as possible to the ascending
+    `wanted` positions.
 
     The sum of the squared shifts is the smallest possible between `start` and `end`; if not all
     positions fit, they extend beyond the end. After subtraction of the gaps before each position,

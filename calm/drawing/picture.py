@@ -1,4 +1,4 @@
-"""Drawings as files, and the characters allowed in drawings."""
+"""Write drawings to files, and replace characters not allowed in drawings."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from pathlib import Path
 from calm.errors import UsageError
 
 FORMATS = (".svg", ".png", ".pdf")
-"""Allowed endings of a picture's file name."""
+"""Allowed file-name suffixes of pictures."""
 
 _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg")"""
 
 
 def check_format(path: Path) -> None:
-    """Raise UsageError, with the allowed formats, if the file name of a picture has another
-    ending.
+    """Raise UsageError, with the allowed formats, if the suffix of a picture's file name is not
+    allowed.
     """
     if path.suffix.lower() not in FORMATS:
         allowed = f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}"
@@ -48,7 +48,7 @@ def within_xml(text: str) -> str:
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """Prefix the identifiers of a drawing, so that drawings on one page do not share
+    """Prefix the identifiers of a drawing, so that several drawings on a page have distinct
     identifiers.
     """
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
@@ -77,7 +77,7 @@ def in_ascii(text: str) -> str:
 
 
 def encodable(encoding: str | None, signs: str) -> bool:
-    """Whether an output encoding has the given characters."""
+    """Return whether an output encoding can represent given characters."""
     try:
         signs.encode(encoding or "ascii")
     except (UnicodeEncodeError, LookupError):

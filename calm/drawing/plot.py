@@ -1,4 +1,4 @@
-"""Drawing with matplotlib: a line on the user's axes, and figures converted to SVG.
+"""Draw lines on matplotlib axes, and convert matplotlib figures to SVG.
 
 matplotlib comes with the extra `plot`.
 """

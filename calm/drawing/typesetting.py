@@ -1,4 +1,4 @@
-"""PDF and PNG files, set by typst in the fonts of this package.
+"""Typeset PDF and PNG files by typst, in the fonts of this package.
 
 System fonts are not used, so that the same input gives the same bytes on every computer.
 """
@@ -26,7 +26,7 @@ def typeset(
     kind: Literal["pdf", "png"],
     timestamp: int | None = None,
 ) -> bytes:
-    """Set a typst template; a PNG contains its first page.
+    """Typeset a typst template; a PNG contains only the first page.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def typeset(
 
 
 def lacking(texts: Iterable[str]) -> str:
-    """Characters of the texts that the fonts lack, each once, in order."""
+    """Return the characters that the fonts lack, each once, in order of occurrence."""
     held, known = list(texts), signs()
     unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
     if not unknown:  # almost always, since a report has millions of characters
@@ -67,7 +67,8 @@ def legible(text: str) -> str:
 
 @cache
 def signs() -> frozenset[int]:
-    """Code points of the regular font, from the groups of its `cmap` table of OpenType (format 12).
+    """Return the characters of the regular font as code points, from its OpenType `cmap` table
+    (format 12).
 
     Source: OpenType 1.9, chapters `otff` and `cmap`.
     """

@@ -17,7 +17,7 @@ _LEAST = 100.0  # smallest guessed weight in N
 
 
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
-    """Set the weight of each anchor that has none in the file, or that the line would lift.
+    """Set the weight of each anchor that has no weight in the file, or that the line would lift.
 
     The shape of the line does not depend on this weight, which is the weight required by `calm
     check` in this current. A line without an equilibrium is left unchanged; `calm run` reports it.
@@ -49,9 +49,7 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
 def _pulls(
     design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
-    """Return each anchor with the vertical load of the line on it, and the weight that holds it
-    [N].
-    """
+    """Return each anchor with its vertical line load and its required weight [N]."""
     before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
         anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}

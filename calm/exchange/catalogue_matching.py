@@ -13,7 +13,9 @@ from calm.files import Anchor, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 
 _TOLERANCE = 0.05
-"""Relative tolerance of size, net buoyancy and drag for a match with a catalogue entry."""
+"""Relative tolerance in size, net buoyancy and drag when a component is matched to a catalogue
+entry.
+"""
 
 _COMMON_WORDS = 0.5  # share of the words of a name that an entry must contain, at least two words
 _GRADE = re.compile(r"\b(?:g|gr|grade)[ -]?(\d{1,3})\b", re.I)
@@ -21,7 +23,7 @@ _GRADE = re.compile(r"\b(?:g|gr|grade)[ -]?(\d{1,3})\b", re.I)
 
 @dataclass(frozen=True)
 class CatalogueMatch:
-    """Name of an imported component, and the catalogue entry used for it."""
+    """An imported component, by name, and the catalogue entry used in its place."""
 
     name: str
     entry: str
@@ -84,8 +86,8 @@ def _likeness(name: str, id: str, other: str) -> float:
 
 
 def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
-    """Whether two components agree in their values; only net buoyancy is compared if one is
-    `sizeless` in the file.
+    """Return whether two components have equal values; for `sizeless` components only net buoyancy
+    is compared.
     """
     pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
     if sizeless:

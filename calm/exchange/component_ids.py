@@ -1,4 +1,4 @@
-"""Ids of the mooring file from the names of parts in other programs."""
+"""Choose mooring-file ids for parts named in other programs."""
 
 import re
 from collections.abc import Iterable
@@ -18,8 +18,8 @@ def _kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """Choose the id of every component, by Python's `id()`; components with equal values share an
-    id.
+    """Choose a mooring-file id for each component object (key: Python's `id()`); components with
+    equal values share a mooring-file id.
 
     Ids in `taken` are not used.
     """

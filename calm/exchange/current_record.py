@@ -1,4 +1,4 @@
-"""Currents at several times that a design file holds, and their NetCDF file."""
+"""Time-dependent currents in a design file, and their conversion to NetCDF."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 @dataclass(eq=False)
 class CurrentRecord:
-    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
+    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, and the `depth` of the
+    levels [m].
 
     `days` are counted from the date `epoch`.
     """

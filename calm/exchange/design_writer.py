@@ -45,7 +45,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Return the text of the mooring file of a design, and the guesses in it."""
+    """Write the mooring file of a design; return its text and the guesses in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
     for note in design.notes:
@@ -145,7 +145,7 @@ def _keyed(page: _Page, key: str, value: str, water: model.ImportedWater) -> Non
 
 
 def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
-    """Combine equal successive items to one item with a count."""
+    """Combine consecutive equal items to one item with a count."""
 
     def what(item: model.ImportedPiece) -> object:
         if item.clamps or item.guess or _called(item):

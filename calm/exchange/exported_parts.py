@@ -1,4 +1,4 @@
-"""A mooring or a tow for other programs: parts with their net buoyancy and drag."""
+"""Parts of a mooring or a tow for other programs, with their net buoyancy and drag."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ AS_A_POINT = (
     "the drag of the float at its midpoint and by its inclination: the float is a point with the "
     "pull computed by CALM"
 )
-"""Loss reported for a float written as in `ExportedLine.float_as_point`."""
+"""Loss reported for a float that is exported by `ExportedLine.float_as_point`."""
 
 _LEAST_MASS = 0.1  # smallest mass, as a share of the mass with its net force as weight
 
@@ -29,7 +29,7 @@ Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
 
 Levels = tuple[tuple[float, float, float, float, float], ...]
-"""Rows of depth [m], current to the east, to the north and up [m/s], and density [kg/m³]."""
+"""Rows of depth [m], current (east, north, up) [m/s] and density [kg/m³]."""
 
 
 @dataclass(frozen=True)
@@ -67,17 +67,17 @@ class ExportedPart:
 
     @property
     def diameter(self) -> float:
-        """Diameter of its definition [m]; 0 for a body."""
+        """Diameter of the component [m]; 0 for a body."""
         return float(getattr(self.component, "diameter", 0.0))
 
     @property
     def mass(self) -> float | None:
-        """Mass in air, or None if unknown [kg or kg/m]."""
+        """Mass in air [kg or kg/m], or None if unknown."""
         return getattr(self.component, "mass", None)
 
     @property
     def likely_mass(self) -> float:
-        """Mass in air [kg or kg/m], as specified or from weight and size."""
+        """Mass in air [kg or kg/m], as specified, else estimated from weight and size."""
         if self.mass is not None:
             return self.mass
         hull = getattr(self.component, "hull", None)
@@ -106,7 +106,7 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Sum of the loads of parts at one point, or on one stiff length.
+    """Net force, mass and drag areas summed over the parts at one point or on one stiff length.
 
     Attributes
     ----------
@@ -124,7 +124,7 @@ class PartLoad:
     along: float = 0.0
 
     def merge(self, other: PartLoad) -> None:
-        """Add another load."""
+        """Add another sum."""
         self.names += other.names
         self.net += other.net
         self.mass += other.mass
@@ -132,25 +132,25 @@ class PartLoad:
         self.along += other.along
 
     def add(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part without its clamps; `share` is the counted share of its drag."""
+        """Add a part without its clamps; its drag is multiplied by `share`."""
         areas = (share * part.area(self.density, along=along) for along in (False, True))
         self.merge(PartLoad(self.density, [part.use], part.net, part.likely_mass, *areas))
 
     def add_whole(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part with its clamps; `share` is the counted share of its own drag."""
+        """Add a part with its clamps; the part's own drag is multiplied by `share`."""
         self.add(part, share)
         for clamp, _ in part.clamps:
             self.add(clamp)
 
     def per_metre(self, length: float) -> PartLoad:
-        """Return the load per metre for a length [m]."""
+        """Divide the sums by a length [m]."""
         figures = (self.net, self.mass, self.area, self.along)
         return PartLoad(self.density, self.names, *(each / length for each in figures))
 
 
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
-    """Store values under a name, and return the name; a different name is chosen if it is taken by
-    other values.
+    """Register values under a name; if the name has other values already, append a number. Return
+    the name.
 
     Parameters
     ----------
@@ -166,7 +166,9 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 
 
 def place_along(path: Floats, share: float) -> Coordinates:
-    """Position at a share of the length of a part, whose nodes (n, 3) are its `path`."""
+    """Interpolate the position at a fraction (`share`) of the length of a part; `path` holds the
+    nodes of the part (n, 3).
+    """
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     east, north, depth = (float(np.interp(share * along[-1], along, each)) for each in path.T)
@@ -222,11 +224,13 @@ class ExportedLine:
 
     @property
     def mean_density(self) -> float:
-        """Density for programs with a uniform density [kg/m³]."""
+        """Mean density of the levels [kg/m³], for programs with uniform density."""
         return sum(row[4] for row in self.levels) / len(self.levels)
 
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
-        """Features that another program cannot represent, each once, with `more` first."""
+        """Features that the other program cannot represent, without repetitions, with `more`
+        first.
+        """
         return tuple(dict.fromkeys((*more, *self.omitted)))
 
     def paths(self) -> list[Floats]:
@@ -253,9 +257,9 @@ class ExportedLine:
     def float_as_point(self, density: float) -> tuple[float, float]:
         """Net force [N] and drag area [m²] of a float below the surface, represented as a point.
 
-        It is for programs in which a float is a point at the line's end, in water of a density
-        [kg/m³]: its drag is computed there, not at its midpoint, and without an axis. Force and
-        area give the same pull as in CALM; without an equilibrium they are those of the float.
+        In some programs a float is a point at the end of the line, and its drag is computed there,
+        without an axis, in water of uniform `density` [kg/m³]. Force and area give the same load on
+        the line as in CALM; without an equilibrium, the float's own values are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)
@@ -278,7 +282,7 @@ class ExportedLine:
 
 @dataclass(frozen=True)
 class ExportedDesign:
-    """A design for another program: its name, and the legs of a net or a single line."""
+    """A design for another program: its name, and either a single line or the legs of a net."""
 
     name: str
     legs: tuple[ExportedLine, ...]

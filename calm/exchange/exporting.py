@@ -1,4 +1,4 @@
-"""Export a mooring file to another program: its line as parts, written in one of the formats."""
+"""Export a mooring file to another program, in one of the registered formats."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Run the readers of foreign binary files in a process of their own.
+"""Run readers of foreign binary files in a separate process.
 
 The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
 may end the process, panic, or request all memory. Here only the child process ends, which is
@@ -17,9 +17,7 @@ _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 
 MOST_MEMORY = 3_000_000_000
-"""Memory that a reader may use in addition to that of the program [bytes]; limited on Linux
-only.
-"""
+"""Additional memory allowed for a reader [bytes]; limited on Linux only."""
 
 MOST_SECONDS = 120.0
 """Time after which a reader is stopped [s]."""
@@ -60,14 +58,14 @@ def read_apart(
 def _read(
     pipe: Connection, reader: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any]
 ) -> None:
-    """Send the result of a reader, or its error message; its printed output is discarded."""
+    """Run a reader; send its result or error message, and discard its printed output."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     _limit_memory()
     try:
         pipe.send((reader(*given, **named), ""))
     except MemoryError:
         pipe.send((None, f"it needs more than {MOST_MEMORY / 1e9:g} GB"))
-    except BaseException as error:  # a panic of Rust is none of `Exception`
+    except BaseException as error:  # a Rust panic is not an `Exception`
         pipe.send((None, " ".join(str(error).split()) or type(error).__name__))
 
 

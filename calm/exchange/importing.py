@@ -31,7 +31,7 @@ _OWN_KEYS = (rb"^environment:", rb"^(line|legs):")
 
 @dataclass(frozen=True)
 class Imported:
-    """A mooring file made from a file of another program.
+    """A mooring file converted from a file of another program.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ def import_file(
 
 
 def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFormat:
-    """Return the format of a file, by its name or from its content.
+    """Find the format of a file, as named by the user or from the content of the file.
 
     With `listed`, a file of no other format is read as a list, even one with a single column.
     """
@@ -144,7 +144,7 @@ def _readable() -> list[FileFormat]:
 
 
 def _check(path: Path, output: Path, text: str) -> None:
-    """Check that `calm run` can read the mooring file; report a mistake as one of its source
+    """Check that `calm run` can read the new mooring file; mistakes are reported for the source
     file.
     """
     try:

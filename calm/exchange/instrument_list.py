@@ -1,4 +1,4 @@
-"""Lists of the instruments of a mooring, as groups keep them: who hangs where, nominally.
+"""Instrument lists of moorings, as used by observing groups, with nominal depths or heights.
 
 Read are CSV tables, `info.dat` of RODB (RAPID, OSNAP), configurations of oceanarray, and NetCDF
 files whose instruments have serial numbers and nominal depths, such as the products of IMOS.
@@ -38,7 +38,7 @@ _PAIR = re.compile(r"\s*(\w+)\s*=\s*(.*?)\s*$")
 
 @dataclass(frozen=True)
 class ListedInstrument:
-    """An instrument of a list.
+    """An instrument in a list.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class ListedInstrument:
 
 
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
-    """Return the instruments of a list, in its order.
+    """Read an instrument list in its order.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Read the variables of a `.mat` file of any program and version.
+"""Read variables from a `.mat` file written by any version of MATLAB or Octave.
 
 No content of such a file is executed or unpickled. MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB
 7.3 and Octave) by h5py, and the text format of Octave, compressed or not, by this module.
@@ -21,7 +21,7 @@ from calm.exchange.foreign_process import read_apart
 from calm.whole_file import read_content
 
 LARGEST = 200_000_000
-"""Largest size of a file, also after decompression [bytes]."""
+"""Maximum size of a file, also after decompression [bytes]."""
 
 _GZIP = b"\x1f\x8b"
 _OCTAVE_BINARY = b"Octave-1-"
@@ -31,16 +31,16 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _TEXTS = ("char", "string", "sq_string")
 _DEEPEST = 4  # cells in cells
 MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
-"""A variable: numbers or characters, a text, or the elements of a cell array."""
+"""Value of a variable: numbers or characters, a text, or the elements of a cell array."""
 
 _MOST = 20_000_000
-"""Most elements of a variable."""
+"""Maximum number of elements in a variable."""
 
 RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
-    """Return the wanted variables, as far as a file has them.
+    """Read the wanted variables; missing variables are omitted.
 
     InputError: the file is not a `.mat` file, or is damaged.
     """
@@ -66,7 +66,7 @@ def _variables(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def is_mat(content: bytes) -> bool:
-    """Return whether a file looks like one of MATLAB or Octave, by its first bytes."""
+    """Return whether a file begins like a MATLAB or Octave file."""
     content = _inflated(content, _HEAD)
     if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
@@ -74,7 +74,7 @@ def is_mat(content: bytes) -> bool:
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """Return the first `most` bytes of gzip content that can be decompressed, or other content
+    """Decompress gzip content as far as possible, up to `most` bytes; return other content
     unchanged.
     """
     if not content.startswith(_GZIP):
@@ -86,8 +86,8 @@ def _inflated(content: bytes, most: int) -> bytes:
 
 
 def _is_version_4(content: bytes) -> bool:
-    """Return whether the first header of a file is one of MATLAB 4: a type, rows, columns and the
-    length of a name.
+    """Return whether a file begins with a MATLAB 4 header: type, rows, columns and length of a
+    name.
     """
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
@@ -107,13 +107,13 @@ def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _is_octave_text(content: bytes) -> bool:
-    """Return whether a file begins as Octave writes its text files."""
+    """Return whether a file begins like an Octave text file."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 
 
 def read_octave_text(text: str) -> dict[str, MatValue]:
-    """Return every variable of a text file of Octave that can be read; the others are left out.
+    """Read an Octave text file; variables that cannot be read are omitted.
 
     ValueError: a matrix has fewer numbers than its header says, or a header cannot be read.
     """
@@ -152,7 +152,7 @@ def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]
 
 
 def _header(line: str) -> tuple[str, str]:
-    """Return the key and the value of a line such as ``# rows: 3``, with or without its colon."""
+    """Parse a line such as ``# rows: 3``, with or without its colon, to key and value."""
     if not line.lstrip().startswith("#"):
         return "", ""
     body = line.lstrip()[1:].strip()
@@ -203,7 +203,7 @@ def _shaped(name: str, array: RealArray, shape: list[int], *, order: str) -> Mat
 
 
 def _texts(rows: list[str]) -> list[MatValue]:
-    """Return the rows of a character matrix: each line after its length."""
+    """Read the rows of a character matrix; each row follows a line with its length."""
     texts: list[MatValue] = []
     for i, row in enumerate(rows):
         if _header(row)[0] == "length":
@@ -213,12 +213,12 @@ def _texts(rows: list[str]) -> list[MatValue]:
 
 
 def _is_hdf5(content: bytes) -> bool:
-    """Return whether a file is HDF5, by its first bytes or by those after MATLAB's header."""
+    """Return whether a file is HDF5, by the signature at its start or after a MATLAB header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
 def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """Return the wanted variables of an HDF5 file; links to other files are not followed."""
+    """Read the wanted variables of an HDF5 file; links to other files are not followed."""
     import h5py
 
     with h5py.File(io.BytesIO(content), "r") as file:
@@ -228,7 +228,7 @@ def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """Return a dataset as written by MATLAB, or a group as written by Octave; cells are read
+    """Read a dataset as written by MATLAB, or a group as written by Octave; cells are read
     recursively.
     """
     import h5py
@@ -251,7 +251,7 @@ def _variable(file: Any, node: Any, depth: int) -> MatValue:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
-    """Return the values of a dataset, whose dimensions HDF5 stores in reverse order."""
+    """Read the values of a dataset, whose dimensions HDF5 stores in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
@@ -280,10 +280,10 @@ def _text_of(value: object) -> str:
 
 
 class MatVariables(dict[str, MatValue]):
-    """The variables of a file by name."""
+    """Variables of a `.mat` file, by name."""
 
     def reals(self, name: str) -> RealArray:
-        """Return a variable as numbers; an empty array if there is no such variable.
+        """Return a variable as real numbers; an empty array if the variable is missing.
 
         ValueError: the variable does not hold real numbers.
         """
@@ -295,7 +295,7 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array; an empty one if it does not hold real
+        """Return a variable as a one-dimensional array; an empty array if it does not hold real
         numbers.
         """
         try:
@@ -304,20 +304,20 @@ class MatVariables(dict[str, MatValue]):
             return np.zeros(0)
 
     def first(self, name: str) -> float:
-        """Return the first number of a variable; 0 if it has none."""
+        """Return the first number of a variable, or 0."""
         row = self.row(name)
         return float(row[0]) if row.size else 0.0
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Return True; raise ValueError if a variable of this shape is too large to be read."""
+    """Raise ValueError if a variable of this shape is too large; otherwise return True."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True
 
 
 def names(value: MatValue | None) -> list[str]:
-    """Return a variable as texts, from a character matrix, a cell array or character codes."""
+    """Convert a variable to texts, from a character matrix, a cell array or character codes."""
     if value is None:
         return []
     if isinstance(value, str):

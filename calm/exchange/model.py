@@ -1,6 +1,7 @@
-"""Define the design that every importer returns, in the terms of a mooring file.
+"""Common design model of all importers, in the terms of a mooring file.
 
-Figures are in SI units and degrees, under the names of the mooring file; depths are positive down.
+Values are in SI units and degrees, under the key names of the mooring file; depths are positive
+down.
 """
 
 from __future__ import annotations
@@ -14,15 +15,15 @@ from calm.exchange.current_record import CurrentRecord
 from calm.exchange.part_names import is_called
 
 MOST_PIECES = 2_000
-"""Most pieces of a line, and most levels of its water."""
+"""Maximum number of pieces in a line, and of levels in its water."""
 
 FigureOrWord = float | str
-"""A number in SI, or a word of the mooring file such as ``insensitive``."""
+"""A number in SI units, or a word of the mooring file such as ``insensitive``."""
 
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """Options of reading a file.
+    """Options for reading a file.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class ImportOptions:
 
 @dataclass(frozen=True)
 class Remark:
-    """A remark about something that was guessed or left out, and its place in the design."""
+    """Remark about a guessed or omitted value, and the place in the design to which it applies."""
 
     where: str
     what: str
@@ -53,7 +54,7 @@ class Remark:
 
 @dataclass(eq=False)
 class ImportedComponent:
-    """Definition of a component, with the figures of the file it comes from.
+    """An imported component, with values from the file.
 
     Attributes
     ----------
@@ -78,7 +79,7 @@ class ImportedComponent:
     def of_line(
         cls, name: str, weight: float, figures: dict[str, FigureOrWord]
     ) -> ImportedComponent:
-        """Make a cable, or a chain if it is called one and sinks.
+        """Create a cable, or a chain if its name says so and it sinks.
 
         Parameters
         ----------
@@ -91,18 +92,18 @@ class ImportedComponent:
         return cls(name, kind, figures)
 
     def number(self, field: str) -> float:
-        """Return a figure; 0 if it is missing."""
+        """Return a value; 0 if it is missing."""
         return float(self.figures.get(field, 0.0))
 
     def identity(self) -> tuple[object, ...]:
-        """Return all figures as a key: components with equal keys share one definition."""
+        """All values, as a key: components with equal keys share a definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull
 
 
 @dataclass(eq=False)
 class ImportedClamp:
-    """Represent a component clamped on a piece, `at` metres below the piece's upper end."""
+    """A component clamped on a piece, `at` metres below the upper end of the piece."""
 
     component: ImportedComponent
     at: float
@@ -114,7 +115,7 @@ class ImportedClamp:
 
 @dataclass(eq=False)
 class ImportedPiece:
-    """Represent a piece of the line; `length` [m] is given for cables and chains only."""
+    """A piece of the line; only cables and chains have a `length` [m]."""
 
     component: ImportedComponent
     length: float | None = None
@@ -127,14 +128,14 @@ class ImportedPiece:
 
     @property
     def extent(self) -> float:
-        """Length of the piece [m]: its own, or that of its component."""
+        """Length of the piece [m], else of its component."""
         return self.component.number("length") if self.length is None else self.length
 
     def clamp(
         self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
         serial: str = "",
     ) -> None:  # fmt: skip
-        """Clamp a component on this piece, below the clamps above it.
+        """Clamp a component on this piece, below the existing clamps.
 
         Parameters
         ----------
@@ -149,7 +150,7 @@ class ImportedPiece:
 
 @dataclass(eq=False)
 class ImportedLeg:
-    """Represent a leg of a net.
+    """A leg of a net.
 
     `items` are its pieces from the upper end. `top` and `bottom` are the keys of its ends as in a
     mooring file, such as ``{join: A}``; empty if the key is not needed.
@@ -162,12 +163,12 @@ class ImportedLeg:
 
 
 def held_at(depth: float, east: float, north: float) -> str:
-    """Return the key of a leg's end that is held at a depth and a place [m]."""
+    """Return the key for a leg end that is held at a depth and a position [m]."""
     return f"{{held: {{depth: {depth:.9g} m, at: [{east:.9g} m, {north:.9g} m]}}}}"
 
 
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
-    """Return the key of a leg's lower end that has an anchor at a place [m].
+    """Return the key for a lower leg end with an anchor at a position [m].
 
     `depth` [m] is given if the anchor is not at the depth of the water.
     """
@@ -176,13 +177,13 @@ def anchored_at(east: float, north: float, depth: float | None = None) -> str:
 
 
 def joined_at(node: str) -> str:
-    """Return the key of a leg's end that joins other legs at a node."""
+    """Return the key for a leg end that joins other legs at a node."""
     return f"{{join: {node}}}"
 
 
 @dataclass(eq=False)
 class ImportedWater:
-    """The water, the current and the wind of the design.
+    """Water, current and wind of an imported design.
 
     Attributes
     ----------
@@ -204,9 +205,7 @@ class ImportedWater:
 
 @dataclass(eq=False)
 class ImportedTow:
-    """The speed [m/s] and course [degrees] of a tow, and the height of the sheave above the
-    water [m].
-    """
+    """Speed [m/s] and course [degrees] of a tow, and sheave height above the water [m]."""
 
     speed: float
     toward: float
@@ -215,7 +214,7 @@ class ImportedTow:
 
 @dataclass(eq=False)
 class ImportedDesign:
-    """A mooring or a tow as the file of another program describes it.
+    """A mooring or a tow, as described by the file of another program.
 
     Attributes
     ----------
@@ -254,12 +253,12 @@ class ImportedDesign:
     understood: str = ""
 
     def lay(self, items: list[ImportedPiece], top: str, bottom: str) -> None:
-        """Add a leg to the net; its pieces are listed from the upper end."""
+        """Add a leg to the net, with its pieces listed from the upper end."""
         self.legs.append(ImportedLeg(f"leg-{len(self.legs) + 1}", items, top, bottom))
         self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
-        """Yield the definition of every piece, then the definitions of its clamps, with
+        """Yield the component of every piece, then the components of its clamps, with
         repetitions.
         """
         for item in self.items:

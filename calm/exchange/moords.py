@@ -1,4 +1,4 @@
-"""Read a design of moords: a list of elements of Mooring Design & Dynamics, from the anchor up."""
+"""Read a moords design, a list of Mooring Design & Dynamics elements from the anchor up."""
 
 import csv
 import io
@@ -18,7 +18,7 @@ _NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs im
 
 
 def is_moords(content: bytes) -> bool:
-    """Return whether a file is a design of moords, by its headings."""
+    """Return whether a file has the headings of a moords design."""
     head = content.split(b"\n", 1)[0].decode("utf-8", "replace")
     return set(head.strip().split(",")) >= _MARKS
 
@@ -26,7 +26,7 @@ def is_moords(content: bytes) -> bool:
 def read_moords(path: Path) -> model.ImportedDesign:
     """Read a design.
 
-    InputError: its headings or figures are not those of moords.
+    InputError: the headings or values are not valid for moords.
     """
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:

@@ -1,9 +1,9 @@
-"""Read the configuration of a mooring in oceanarray, a file `NAME.mooring.yaml`.
+"""Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
 `inline` lists the pieces of the line, and `clamp` the instruments clamped on it, both with heights
-above the seabed. Most have no other figures, which are looked up in a library of elements or in the
-catalogue. If no rope is listed between two pieces, one is inserted with the length that their
-heights require.
+above the seabed. Other values are mostly missing, and are read from an element library or the
+catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length required by
+their heights.
 """
 
 import re
@@ -29,7 +29,7 @@ from calm.files.yaml_document import Document, read_document
 from calm.positions import plain_degrees
 
 ROPE = "rope"
-"""The name of the rope that is inserted between pieces."""
+"""Name of the rope inserted between pieces."""
 # keys that may name a component
 _NAMES = ("component_id", "label", "hardware_type", "category", "instrument")
 _CLOSE = 0.05  # m between pieces that touch
@@ -42,7 +42,7 @@ _MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
 
 
 def is_oceanarray(content: bytes) -> bool:
-    """Return whether a file is a configuration of oceanarray, by its keys."""
+    """Return whether a file has the keys of an oceanarray configuration."""
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
@@ -101,15 +101,15 @@ def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
 
 
 _Location = tuple[str | int, ...]
-"""The place of an item in the file: keys, and indices in lists."""
+"""Location of an item in the file: keys, and list indices."""
 
 _Found = tuple[model.ImportedComponent, str]
-"""The component that a name means, and what about it is guessed."""
+"""Component found for a name, and a note on what was guessed."""
 
 
 @dataclass(frozen=True)
 class _Entry:
-    """An item of the file; heights are above the seabed [m].
+    """An item in the file; heights are above the seabed [m].
 
     `place` is its location in the file, `names` are its names, the most exact first, and
     `instrument` is oceanarray's word for the kind of instrument. At most one of `middle`, `bottom`
@@ -129,7 +129,7 @@ class _Entry:
 
     @property
     def height(self) -> float | None:
-        """Return the height of its middle, bottom or top, whichever is given [m]."""
+        """Height of the middle, bottom or top of the item, as specified in the file [m]."""
         given = (self.middle, self.bottom, self.top)
         return next((one for one in given if one is not None), None)
 
@@ -138,7 +138,7 @@ class _Entry:
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
-        """Return the height of its lower end [m], for a piece of length `extent`."""
+        """Return the height of the item's lower end [m], for a piece of length `extent`."""
         if self.is_anchor:
             return 0.0
         if self.bottom is not None:
@@ -157,7 +157,7 @@ class _Reading:
     depth: float | None = None
 
     def refuse(self, place: _Location, message: str) -> None:
-        """Add a problem at a place of the file."""
+        """Add a problem at a position of the file."""
         self.problems.append(self.document.problem(place, message))
 
     def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
@@ -219,7 +219,7 @@ class _Parts:
     _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
 
     def of(self, entry: _Entry) -> _Found | None:
-        """Return the component of an item, and what about it is guessed; None if nothing is
+        """Find the component for an item; also return what was guessed. None if nothing is
         known.
         """
         message = f"neither the library nor the catalogue has `{entry.names[0]}`"
@@ -279,8 +279,8 @@ class _Parts:
 
 @dataclass(frozen=True)
 class _Strung:
-    """The pieces of a line and the heights of their lower ends [m]: `nominal` ones as in the
-    file, and `height` from the lengths.
+    """Pieces of a line, with heights of their lower ends [m]: `nominal` as in the file, `height`
+    from the lengths.
     """
 
     items: list[model.ImportedPiece]
@@ -293,7 +293,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
     design.
     """
     items: list[model.ImportedPiece] = []
-    nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come
+    nominal, height = [0.0], [0.0]  # lower ends; the last is for the next piece
     if not line[-1].is_anchor:
         items.append(
             model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))

@@ -1,4 +1,4 @@
-"""Recognise the kind of a part by its name, in several languages."""
+"""Recognise the kind of a part from its name in several languages."""
 
 import re
 
@@ -31,11 +31,11 @@ _NAMES = {
         r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax"
     ),
 }
-"""Patterns of the names of parts in several languages, by kind."""
+"""Patterns for part names in several languages, by kind."""
 
-_HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
+_HEAVY = 20.0  # N: maximum weight of connecting hardware, whatever its name
 _LONG, _SLENDER = 3.0, 60.0
-"""A piece longer than both this length [m] and this number of diameters is a line, whatever its
+"""Minimum length [m] and minimum number of diameters: any piece above both is a line, whatever its
 name.
 """
 
@@ -43,7 +43,7 @@ _LONGEST_PIECE = 20.0  # m of a rigid piece
 
 
 def is_called(name: str, *what: str) -> bool:
-    """Return whether a name belongs to a part of one of the given kinds.
+    """Return whether a name matches one of the given kinds of parts.
 
     The kinds are release, chain, connector (shackles, swivels, links), anchor, line (wires, ropes,
     chains) and rigid (floats, instruments and fittings, and the names of their families).
@@ -52,7 +52,7 @@ def is_called(name: str, *what: str) -> bool:
 
 
 def is_long(name: str, length: float, across: float) -> bool:
-    """Return whether a piece is a line, by its size alone.
+    """Return whether a piece is a line, judging by its size alone.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def is_long(name: str, length: float, across: float) -> bool:
 
 
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
-    """Return the role of a rigid piece by its name and its net force in water [N, positive up].
+    """Find the role of a rigid piece from its name and its net buoyancy [N, positive up].
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
 
 
 def size_in(name: str) -> float:
-    """Return the diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 if there is none."""
+    """Find the diameter [m] in a name such as `8 mm wire` or `3/8" chain`; 0 if there is none."""
     found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
     if found:
         return float(found[1].replace(",", ".")) / 1000.0

@@ -1,4 +1,4 @@
-"""The register of file formats: how each is recognised, read and written.
+"""Registry of file formats: recognition, readers and writers.
 
 A format is a module that calls `register_format`. The module is imported when the format is first
 used. Other packages add formats by the entry point ``calm.formats``, which names their modules.
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from calm.exchange.model import ImportedDesign, ImportOptions
 
 ENTRY_POINTS = "calm.formats"
-"""The group of entry points under which packages name the modules of their formats."""
+"""Entry-point group in which packages list the modules of their formats."""
 
 _OWN = {
     "mdd": "calm.exchange.mdd",
@@ -31,8 +31,9 @@ _OWN = {
     "table": "calm.exchange.table",
     "csv": "calm.exchange.table",
 }
-"""CALM's own formats and their modules, in the order in which they are tried on a file. `table` is
-the last that reads, since it takes any text in columns."""
+"""Built-in formats and their modules, in the order in which they are tried on a file. `table` is
+the last with a reader, because it accepts any text in columns.
+"""
 
 
 @dataclass(frozen=True)
@@ -52,18 +53,20 @@ class Exported:
 
 
 Detect = Callable[[bytes], bool]
-"""Whether a file is of a format, by its first 70 000 bytes."""
+"""Function that returns whether a file has a format, given its first 70 000 bytes."""
 
 Read = Callable[[Path, "ImportOptions"], "ImportedDesign"]
-"""Read a file as a design; `calm.errors.refused` makes the error for a file that it cannot read."""
+"""Function that reads a file as a design; for an unreadable file it raises the error made by
+`calm.errors.refused`.
+"""
 
 Write = Callable[["ExportedDesign"], Exported]
-"""Write a design as a file of the format."""
+"""Function that writes a design in a format."""
 
 
 @dataclass(frozen=True)
 class FileFormat:
-    """A format of design files, as `register_format` describes it."""
+    """A registered format of design files; see `register_format`."""
 
     name: str
     program: str
@@ -87,7 +90,7 @@ def register_format(
     takes_elements: bool = False,
     writes_nets: bool = False,
 ) -> None:
-    """Add a format that `calm import` reads or `calm export` writes.
+    """Register a format for `calm import` or `calm export`.
 
     Parameters
     ----------
@@ -107,7 +110,7 @@ def register_format(
 
 
 def file_format(name: str) -> FileFormat:
-    """Return the format of a name, whose module is imported if it has not been.
+    """Return a format by name, importing its module if needed.
 
     KeyError: there is no such format. CalmError: its module cannot be imported, or registers no
     format of that name.
@@ -127,7 +130,8 @@ def file_format(name: str) -> FileFormat:
 
 
 def file_formats() -> tuple[FileFormat, ...]:
-    """Return all formats in the order in which they are tried: added ones before CALM's own.
+    """Return all formats in the order in which they are tried: added formats before built-in
+    formats.
 
     CalmError: as in `file_format`.
     """
@@ -138,7 +142,7 @@ def file_formats() -> tuple[FileFormat, ...]:
 
 
 def _added() -> dict[str, str]:
-    """The formats of other packages and their modules."""
+    """Return the formats of other packages, with their modules."""
     added = {entry.name: entry.module for entry in entry_points(group=ENTRY_POINTS)}
     if taken := sorted(added.keys() & _OWN.keys()):
         raise CalmError(

@@ -1,4 +1,4 @@
-"""Decide from the solved line whether the float of an imported design is at the surface."""
+"""Decide from a still-water solution whether the float of an imported design is at the surface."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from calm.exchange.design_writer import mooring_text
 
 
 def sink_what_stays_under_water(design: model.ImportedDesign, output: Path) -> None:
-    """Replace the upper float by `sunken` if it is under water in still water.
+    """Replace the upper float by the submerged float `sunken` if it is submerged in still water.
 
     A float that is under water only in a current remains a surface float, although one that is too
     small. A line without an equilibrium is not changed. `output` is the path of the mooring file

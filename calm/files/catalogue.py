@@ -1,5 +1,4 @@
-"""The component catalogue: shipped components, those of the user, of given files, and of the
-mooring file.
+"""Component catalogue from several levels: shipped, user's own, given files, and the mooring file.
 
 Definitions are kept as text and validated on first use, so that unused components take no time.
 The user's files are read again only if they have changed.
@@ -34,10 +33,10 @@ FAMILY_ROLES = {
     "connectors": "connector",
     "anchors": "anchor",
 }
-"""The families of the catalogue, one file each, and the role of their components."""
+"""Catalogue families, one file each, and the role of their components."""
 
 _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.ASCII)
-"""An unindented line; the group is the id if the line contains only an id."""
+"""Pattern of an unindented line; its group is the id if the line contains only an id."""
 
 
 class Assembly(Definition):
@@ -55,13 +54,16 @@ Defined = Component | Assembly | Outline
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Definitions in levels, the nearest first, which hide those of their id in later levels."""
+    """Component definitions in levels, nearest first; a definition hides any with the same id in
+    later levels.
+    """
 
     levels: tuple[Level, ...]
 
     @classmethod
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
-        """Load the shipped catalogue, with the user's own above it and the given files on top.
+        """Load the catalogue: given files take precedence over the user's own files, and these over
+        the shipped files.
 
         InputError: a catalogue of the user cannot be read.
         """
@@ -86,15 +88,17 @@ class Catalogue:
         return cls((UnreadLevel(_shipped_files()),))
 
     def under(self, definitions: SourceMapping) -> Catalogue:
-        """Return a catalogue with the `components:` of a mooring file above this one."""
+        """Return a new catalogue in which the `components:` of a mooring file precede this
+        catalogue.
+        """
         entries = map(self._completed, entries_of(definitions, None))
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Return an entry without the keys that have no value; one without `kind` completes the
-        definition of the same id in this catalogue.
+        """Merge an entry without `kind` with the definition of the same id in this catalogue; keys
+        without a value are dropped.
 
-        Assemblies have no figures to complete.
+        Assemblies have no values to complete.
         """
         below = self.entry(entry.id)
         given = {key: value for key, value in entry.section.data.items() if value is not None}
@@ -115,7 +119,7 @@ class Catalogue:
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the definition that a nearer definition of the same id hides; None if there is
+        """Return the definition hidden by a nearer definition with the same id; None if there is
         none.
         """
         return next(islice(self._of(id), 1, None), None)
@@ -131,7 +135,7 @@ class Catalogue:
         return nearest(id, self.ids())
 
     def of_a_sort(self, word: str) -> list[str]:
-        """Return the first six ids of a family, role or kind; none for any other word."""
+        """Return the first six ids in a family, role or kind; none for any other word."""
         sort = word.casefold().rstrip("s")
         return [
             id
@@ -163,7 +167,7 @@ class Catalogue:
     def all(self) -> dict[str, Defined]:
         """Return all definitions of the catalogue, validated.
 
-        InputError: definitions have mistakes; those of all definitions are listed.
+        InputError: definitions have mistakes; all mistakes are listed.
         """
         problems: list[Problem] = []
         found = {
@@ -178,7 +182,7 @@ class Catalogue:
     def same_thing(self, id: str) -> list[str]:
         """Return the ids of all definitions of the same product, the preferred one first.
 
-        These are the id that this one prefers, and all ids that prefer the same.
+        The product has several ids if definitions name the same preferred id under `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -190,8 +194,8 @@ def _shipped_files() -> list[Path]:
 
 
 def user_folder() -> Path:
-    """Return the folder of the user's catalogue: `CALM_CATALOG_DIR`, or a folder in the home
-    folder.
+    """Return the folder of the user's catalogue: `CALM_CATALOG_DIR`, by default `calm/catalog` in
+    the configuration folder.
     """
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
@@ -206,7 +210,7 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Return the model of an entry, or of an entry with overrides; None if it has mistakes.
+    """Validate an entry, or an entry with overrides; return its model, or None if it has mistakes.
 
     Parameters
     ----------
@@ -241,7 +245,7 @@ def _kinds() -> str:
 
 @dataclass(frozen=True, eq=False)
 class CatalogueEntry:
-    """A definition as in the file, and its family, named after the file."""
+    """Unvalidated definition of a component, with its catalogue family (the name of its file)."""
 
     id: str
     family: str | None
@@ -249,14 +253,14 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Return the keys that replace values of the definition which this entry completes."""
+        """Keys whose values replace those of the completed base definition."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})
 
     @property
     def place(self) -> str:
-        """Return the place of the definition, for messages."""
+        """File and line of the definition, for messages."""
         place = self.section.problem((), "")
         return f"{place.path}:{place.line}" if place.line else place.path
 
@@ -336,7 +340,9 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 
 
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
-    """Return the entries of a mapping of definitions by id; `family` is None in a mooring file."""
+    """Return the entries in a mapping from ids to definitions; `family` is None in a mooring
+    file.
+    """
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):
@@ -353,9 +359,9 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 
 
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
-    """Yield the id and the text of each definition; the id is None if it cannot be recognised.
+    """Yield id and text of each definition; the id is None if it cannot be recognised.
 
-    Empty lines are put above the text, so that its line numbers are those of the file.
+    Empty lines are put above the text, so that line numbers agree with the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0
@@ -369,7 +375,7 @@ _LOADED: FileCache[Catalogue] = FileCache()
 
 
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
-    """Return the component that values define, or None, and the mistakes in the values."""
+    """Build a component from values; return it, or None, and the mistakes in the values."""
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)
     definition = define(CatalogueEntry(id, None, section), section)
@@ -379,11 +385,11 @@ def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple
 _LETTERS = str.maketrans(
     {"ø": "o", "æ": "ae", "œ": "oe", "đ": "d", "ð": "d", "þ": "th", "ł": "l", "ı": "i", "⁄": "-"}
 )
-"""Letters, and the sign of fractions, that have no decomposition into ASCII."""
+"""ASCII replacements for letters, and for the fraction slash, that Unicode does not decompose."""
 
 
 def tidy_id(text: str) -> str:
-    """Return a text as an id: lower-case letters, digits and hyphens; letters lose their accents.
+    """Convert a text to an id: lower-case letters without accents, digits and hyphens.
 
     ``Bøye 1½"`` becomes ``boye-1-1-2``.
     """

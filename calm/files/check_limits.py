@@ -20,7 +20,7 @@ from calm.files.yaml_document import SourceMapping
 
 _FACTOR = definition.QuantityField("number", above=0)
 _SAFETY = definition.QuantityField("number", at_least=1)
-"""At least 1: with a smaller factor, a piece that breaks or an anchor that is lifted would pass."""
+"""A safety factor, at least 1: smaller factors would pass broken pieces and lifted anchors."""
 _FRICTION = definition.QuantityField("number", above=0, at_most=1)
 _SHARE = definition.QuantityField("number", at_least=0, at_most=1)
 _SPEED = definition.QuantityField("speed", at_least=0)
@@ -168,15 +168,13 @@ LENIENT_IF_GREATER = (
     *("breaking_load", "working_load", "opening_load", "grip"),
     *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
 )
-"""Limits of a component, and its buoyancy, for which a larger value makes the check more
-lenient.
-"""
+"""Component limits, and buoyancy, for which a larger value makes the check more lenient."""
 LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Weight and drag of a component, for which a smaller value makes the check more lenient, except
-for anchors.
+"""Component weight and drag, for which a smaller value makes the check more lenient, except for
+anchors.
 """
 
 
@@ -205,12 +203,12 @@ class LimitKey:
 
     @property
     def departs(self) -> bool:
-        """Return whether the value of the design differs from the default."""
+        """Whether the value in the design differs from the default."""
         return self.default is not None and self.value != self.default
 
 
 def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
-    """Return all limits of `checks:`, with their defaults if they are not given.
+    """Return all limits of `checks:`; limits that are not given have their defaults.
 
     `prefix` is put before the names, for a model that is the value of another key.
     """
@@ -296,7 +294,7 @@ class Accept(AcceptKeys):
         return self.rule == rule and (self.labels is None or component in self.labels)
 
     def counts_on(self, day: calendar_date) -> bool:
-        """Return whether a day is within the period of the acceptance."""
+        """Return whether the acceptance is valid on a given day."""
         begun = self.date is None or self.date <= day.isoformat()
         return begun and (self.until is None or day.isoformat() <= self.until)
 
@@ -337,7 +335,7 @@ def _accept(
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
-    """Return the labels that match a label or a pattern of labels.
+    """Return the labels that match a given label or pattern.
 
     A text equal to a label matches only that label. In other texts ``*`` matches any characters,
     ``?`` one character, and ``[ab]`` a or b; case matters.

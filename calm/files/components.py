@@ -1,8 +1,8 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
-Some figures are alternatives: a body has its drag as `kn`, or as `drag_area` and `cd`; a net force
+Some values are alternatives: a body has its drag as `kn`, or as `drag_area` and `cd`; a net force
 is given, or is computed from mass and volume. An override with one alternative removes the others,
-and keeps all figures that it does not contradict. Lengths, masses and forces of cables and chains
+and keeps all values that it does not contradict. Lengths, masses and forces of cables and chains
 are per metre.
 """
 
@@ -52,7 +52,7 @@ Elongation = Annotated[
     ],
     AfterValidator(_refuse_what_is_no_curve),
 ]
-"""Rows of load over breaking load and the strain at that load, with increasing loads."""
+"""Table of (load / breaking load, strain at that load), with increasing loads."""
 
 
 WeightPerMetre = Annotated[
@@ -68,7 +68,7 @@ MassPerMetre = Annotated[
 
 
 class Flexible(definition.Definition):
-    """A cable or chain; all its figures are per metre."""
+    """A cable or chain; all its values are per metre."""
 
     role: definition.Role = "line"
     diameter: definition.Diameter
@@ -110,8 +110,8 @@ class Cable(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force of a metre in water, positive up [N/m]; with a mass but no density,
-        that in air.
+        """Net buoyancy per metre in water, positive up [N/m]; if only the mass is known, minus the
+        weight in air.
         """
         if self.buoyancy is not None:
             return self.buoyancy
@@ -123,9 +123,7 @@ class Cable(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume displaced by a metre [m³/m]; None if the mass is unknown, or is the
-        only figure.
-        """
+        """Displaced volume per metre [m³/m]; None if only the weight or only the mass is known."""
         if self._gives_no_force and self.density is None:
             return None
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
@@ -170,7 +168,7 @@ class Cable(Flexible):
 
 
 class Chain(Flexible):
-    """A chain; `diameter` is that of the bar."""
+    """A chain; `diameter` is the bar diameter."""
 
     kind: Literal["chain"] = Field(description="kind of the component")
     weight: WeightPerMetre = Field(default=None, examples=["27 N/m"])
@@ -178,7 +176,7 @@ class Chain(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force of a metre in water, positive up [N/m]."""
+        """Net buoyancy per metre in water, positive up [N/m]."""
         if self.weight is not None:
             return -self.weight
         mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
@@ -186,7 +184,7 @@ class Chain(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume displaced by a metre [m³/m]; None if only the weight is known."""
+        """Displaced volume per metre [m³/m]; None if only the weight is known."""
         if self.mass is not None or self.weight is not None:
             return definition.volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)
@@ -215,7 +213,7 @@ class Anchor(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force in water, positive up [N]: the negative weight."""
+        """Net buoyancy in water [N]: minus the submerged weight."""
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
@@ -224,17 +222,17 @@ class Anchor(definition.Definition):
 
     @property
     def material_known(self) -> bool:
-        """Return whether the weight in water is given, or follows from a known material."""
+        """Whether the weight in water is given, or follows from a known material."""
         return self.weight is not None or self.material_density is not None
 
     @property
     def material_density(self) -> float | None:
-        """Return the given density, or that of the material [kg/m³]; None if unknown."""
+        """Density as specified, else of the material [kg/m³]; None if unknown."""
         return self.density or density_of(self.material)
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume of water displaced [m³]; None if only the weight is known."""
+        """Displaced volume [m³]; None if only the weight is known."""
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
@@ -260,7 +258,7 @@ KINDS: dict[str, type[Component]] = {
 }
 
 FLEXIBLE_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Flexible))
-"""Kinds whose figures are per metre, and that are cut to a length."""
+"""Kinds with values per metre, which are cut to a length."""
 
 RIGID_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Rigid))
 """Kinds of a fixed length, which may also be clamped on a line."""
@@ -276,12 +274,12 @@ _ESSENTIAL = {
     "weight": {"weight", "buoyancy", "density"},
     "drag_area": _DRAG_KEYS,
 }
-"""Figures that every component needs, and for each the keys from which it can be computed."""
+"""Values that every component needs, and the keys from which each value can be computed."""
 
 
 class Outline(definition.Definition):
-    """A product without figures that its kind needs and that no source publishes; the mooring file
-    must give them.
+    """A product for which no source publishes some required values; the mooring file must supply
+    them.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -304,11 +302,11 @@ class Outline(definition.Definition):
 
     @property
     def lacks(self) -> list[str]:
-        """Return the keys that are missing and needed in the mooring file."""
+        """Missing keys that the mooring file must supply."""
         return lacking(self.model_dump(exclude_none=True))
 
     def asks(self, id: str) -> str:
-        """Return a message about the figures missing in the definition."""
+        """Message about the values missing in the definition."""
         given = self.model_dump(exclude_none=True)
         also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
         keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
@@ -321,7 +319,7 @@ class Outline(definition.Definition):
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
-    """Return the keys listed under `searched` that are necessary and missing."""
+    """Return required keys that are missing and listed under `searched`."""
     searched = fields.get("searched")
     known = searched if isinstance(searched, list | tuple) else ()
     return [
@@ -332,7 +330,7 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the keys of a definition that an override makes invalid.
+    """Return the definition keys that an override makes invalid.
 
     Parameters
     ----------
@@ -344,7 +342,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     ================ =========================== ==============================================
     kind             override gives              dropped from the definition
     ================ =========================== ==============================================
-    body, profiler   a drag in another form      its own form, with the `kt` that went with it
+    body, profiler   a drag in another form      its drag keys, and the `kt` given with them
     rigid            `buoyancy`                  `volume`
     rigid            `mass` or `volume`, both    `buoyancy`, which then follows from them
                      being known

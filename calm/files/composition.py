@@ -1,8 +1,8 @@
 """Parse YAML text to a tree of nodes, each with its place in the text, from the events of PyYAML.
 
-libyaml, if PyYAML has it, is about thirty times as fast as the parser in Python. Both must give the
-same result: text that they read differently, and text that libyaml refuses, is read by the parser
-in Python.
+libyaml, if PyYAML has it, is about thirty times as fast as the parser in Python. Both parsers must
+give the same result: text that they parse differently, and text that libyaml rejects, is parsed in
+Python.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from yaml.events import CollectionEndEvent
 from calm.files.yaml_mistakes import syntax_mistakes, without_colon
 
 _DEEPEST = 100
-"""Maximum depth of nested collections. The time to read brackets increases with its square."""
+"""Maximum depth of nested collections. Parsing time for brackets increases with the square of this
+depth.
+"""
 
 # These are no line breaks in YAML 1.2, but they are in YAML 1.1, which PyYAML reads.
 _NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
@@ -82,7 +84,7 @@ def compose(text: str) -> Composition:
             try:
                 return _Reader(text, start, yaml.CSafeLoader(plain).get_event).read()
             except (YAMLError, ValueError):
-                pass  # which the parser in Python says better
+                pass  # the parser in Python has a clearer message
         return _composed_by_python(text, start, plain)
     except _TooDeep:
         return Composition(None, ((0, 0, "is nested too deeply"),))
@@ -124,12 +126,12 @@ class _Reader:
 
     def read(self) -> Composition:
         """Return the nodes of the only document."""
-        self._next()  # the stream begins
+        self._next()  # start of the stream
         if isinstance(self._next(), events.StreamEndEvent):
             return Composition(None)
         event = self._next()
         root = self._node(event, 0)
-        self._next()  # the document ends
+        self._next()  # end of the document
         behind = self._next()
         if not isinstance(behind, events.StreamEndEvent):
             what = "expected a single document in the stream", "but found another document"
@@ -137,7 +139,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: events.NodeEvent, depth: int) -> Node:
-        """Return the node that begins with an event, with all nodes below it."""
+        """Build the node that begins with an event, including all nodes below."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
@@ -172,20 +174,20 @@ class _Reader:
             data = {key.data: child.data for key, child in zip(keys, children, strict=True)}
         style, end = "flow", ending.end_mark.index + self._start
         if not event.flow_style:
-            # It is over where the next thing begins, below comments that are not its own.
+            # libyaml ends a block at the next token, below comments that belong to that token.
             style, end = "block", children[-1].end if children else start
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 
     def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the items of a sequence, and the event that ends it."""
+        """Return the items of a sequence, and the event that ends the sequence."""
         items = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             items.append(self._node(event, depth))
         return items, event
 
     def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the values of a mapping and the event that ends it; the keys are appended to
-        `keys`.
+        """Return the values of a mapping and the event that ends the mapping; the keys are appended
+        to `keys`.
         """
         lines: dict[str, int] = {}
         values = []
@@ -219,7 +221,7 @@ class _Reader:
         return values, event
 
     def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
-        """Skip a node and the problems within it; report `message` if it is given."""
+        """Skip a node without reporting problems inside; report `message` instead, if given."""
         before = len(self._refusals)
         node = self._node(event, depth)
         self._refusals[before:] = [_refusal(event, message)] if message else []
@@ -237,13 +239,13 @@ def _shown(value: str) -> str:
 
 
 Refusal = tuple[int, int, str]
-"""Line and column, from 1, and a message about invalid YAML, or YAML not allowed in these files."""
+"""Line and column, counted from 1, and a message about YAML that is invalid or not allowed."""
 
 Kind = Literal["mapping", "sequence", "scalar"]
 
 
 class Node(NamedTuple):
-    """A value in a text, with its place.
+    """A value in a text, with its position.
 
     Attributes
     ----------
@@ -267,7 +269,7 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
     def entry(self, step: str | int) -> tuple[Node | None, Node | None]:
-        """Return the key and value of a mapping's key, or None and the item of an index; (None,
+        """Return (key node, value node) of a mapping key, or (None, item) of a list index; (None,
         None) if missing.
         """
         if self.kind == "mapping":
@@ -279,7 +281,7 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """The nodes of a text, and its refused parts; `root` is None for an empty or invalid
+    """Parsed nodes of a text and its rejected parts; `root` is None for an empty or invalid
     text.
     """
 

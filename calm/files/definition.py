@@ -1,7 +1,7 @@
-"""Keys that every component may have, and the conventions for their figures.
+"""Keys that every component may have, and the conventions for their values.
 
 In a file a field is text with a unit; here it is an SI float, with angles in degrees, or None if it
-is not given. Net forces are those in sea water of `CATALOGUE_DENSITY` under standard gravity.
+is not given. Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
 """
 
 from __future__ import annotations
@@ -86,12 +86,12 @@ class ColumnHeading(str):
 
 
 def described(description: str, example: object, **default: Any) -> Any:
-    """Return the field of a key, which is required without `default` or `default_factory`."""
+    """Declare a key of a model; it is required unless `default` or `default_factory` is set."""
     return Field(description=description, examples=[example], **default)
 
 
 def optional(description: str, example: object) -> Any:
-    """Return the field of an optional key, None if it is left out."""
+    """Declare an optional key, with None as default."""
     return described(description, example, default=None)
 
 
@@ -100,7 +100,7 @@ def _as_text(value: object) -> object:
 
 
 Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
-"""Text, also from a bare number, whose digits are kept."""
+"""Text; a bare number is kept as written, digit by digit."""
 
 POSITIVE_LENGTH = QuantityField("length", above=0)
 DIAMETER = QuantityField("length", usual_unit="mm", above=0)
@@ -127,7 +127,7 @@ def quantity_of(field: FieldInfo) -> QuantityField | None:
 
 
 def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Return an argument in SI (degrees, degC): a number unchanged, a text with its unit converted.
+    """Convert an argument to SI (degrees, degC): text with its unit; a number is unchanged.
 
     UsageError, with the name of the argument: the text is no quantity of this dimension.
     """
@@ -140,13 +140,13 @@ def in_si(name: str, value: float | str, dimension: str) -> float:
 
 
 CATALOGUE_DENSITY = 1025.0
-"""Density of the sea water in which net forces and drags are given [kg/m³]."""
+"""Density of the sea water to which net forces and drags in the catalogue refer [kg/m³]."""
 
 STANDARD_GRAVITY = KILOGRAM_FORCE
-"""Standard gravity [m/s²], the weight of a kilogram [N]."""
+"""Standard gravity [m/s²], for the weight of a given mass."""
 
 DISAGREEMENT = 0.01
-"""Relative difference allowed between figures that must agree."""
+"""Relative difference allowed between redundant values."""
 
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
 """Context for definitions used in air, which only need a mass."""
@@ -192,10 +192,10 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 
 
 class EstimatedFigure(Model):
-    """Estimate of a figure that no source publishes, with a lower bound `low`.
+    """Estimate of a value that no source publishes, with a lower bound `low`.
 
-    `low_in_waves` is a lesser bound for a line moved by waves, for a figure that is published for
-    steady loads only.
+    `low_in_waves` is a smaller lower bound for lines in waves, if published values apply only to
+    steady loads.
     """
 
     quantity: Literal[
@@ -223,7 +223,7 @@ class EstimatedFigure(Model):
         return _estimated(info.data.get("quantity", "")).read(text)
 
     def bound(self, *, in_waves: bool) -> float:
-        """Return the lower bound for a line in waves, or for a line at rest."""
+        """Return the lower bound for a line in waves or at rest."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
     @property
@@ -277,9 +277,9 @@ class FatigueKeys(Model):
 class Definition(Model):
     """Keys common to all kinds of components.
 
-    `source` applies to every figure, except those for which `sources` names another, field by
-    field. `searched` lists the fields that were searched for and that no source gives. `prefer` is
-    the id of another definition of the same product, which should be used instead.
+    `source` applies to every value, unless `sources` names another source for the field. `searched`
+    lists fields for which a search found no published value. `prefer` is the id of another
+    definition of the same product, which should be used instead.
     """
 
     role: Role = "instrument"
@@ -346,7 +346,7 @@ class Definition(Model):
 
     @property
     def estimates(self) -> dict[str, EstimatedFigure]:
-        """Return the estimates of figures that are not given, by figure."""
+        """Estimates of the missing values, by key."""
         if self.estimate is None:
             return {}
         every = {one.quantity: one for one in self.estimate}
@@ -363,19 +363,21 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Return whether the definition being validated is read for use in air."""
+    """Return whether the definition being validated is for use in air."""
     return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Return the volume of water displaced [m³, or per metre]; None if the mass is unknown."""
+    """Compute the displaced volume [m³, or m³/m] from mass and net buoyancy; None if the mass is
+    unknown.
+    """
     if mass is None:
         return None
     return (mass + net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
 
 
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
-    """Raise ValueError if the weight in water exceeds that in air."""
+    """Raise ValueError if the weight in water exceeds the weight in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):
         raise ValueError(
             f"weighs more in water ({-net_buoyancy:.5g} N) than its mass of {mass:g} kg does in air"

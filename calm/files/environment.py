@@ -43,9 +43,7 @@ class Position(Model):
 
 
 class SeabedKeys(Model):
-    """A plane, sloping seabed: the slope, and the direction in which it becomes deeper
-    [degrees].
-    """
+    """A plane, sloping seabed: its slope, and the direction towards deeper water [degrees]."""
 
     slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
         "from the horizontal", "3 deg"
@@ -55,27 +53,27 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return the same seabed relative to another point, given by its distance from this one
+        """Return this seabed with another reference point, at a given distance from the present one
         [m].
         """
         return self
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Return the increase of depth per metre to the east and to the north [-]."""
+        """Depth increase per metre towards east and towards north [-]."""
         way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
         return steep * math.sin(way), steep * math.cos(way)
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the increase of depth [m] at places east and north of the point [m]; shapes (n,)
-        and (n, 2).
+        """Return the depth increase [m] at positions east and north of the reference point [m];
+        shapes (n,) and (n, 2).
         """
         deeper: Floats = places @ np.array(self.plane)
         return deeper
 
 
 class SeabedFile(Model):
-    """The file of the grid with the depths of the seabed."""
+    """File with gridded seabed depths."""
 
     file: Text = described("NetCDF over latitude and longitude: GEBCO, EMODnet", "gebco.nc")
 
@@ -133,7 +131,7 @@ class Environment:
 
 
 class Fouling(Model):
-    """Marine growth on all parts from the surface to a depth [m], with its thickness [m].
+    """Biofouling of all parts from the surface to a depth [m], with its thickness [m].
 
     Without a density [kg/m³] it is neutrally buoyant.
     """
@@ -150,7 +148,7 @@ class Fouling(Model):
 
 
 class UniformCurrent(Model):
-    """The same current at all depths [m/s, degrees]."""
+    """A current that is constant with depth [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
@@ -162,7 +160,7 @@ class UniformCurrent(Model):
 
 
 class CurrentFile(Model):
-    """A measured or modelled current, from a time in a CSV or NetCDF file.
+    """A measured or modelled current at one time, in a CSV or NetCDF file.
 
     `declination` [degrees], positive east, converts directions of the file that are relative to
     magnetic north.
@@ -201,7 +199,7 @@ def _two_depths(value: object) -> object:
 
 
 class TowEnvironmentKeys(Model):
-    """Keys of `environment:` in the file of a tow."""
+    """Keys of `environment:` in a tow file."""
 
     fluid: Literal["water", "air"] = described(
         "fluid around the line; a tow may be in air", "water", default="water"
@@ -229,7 +227,7 @@ class TowEnvironmentKeys(Model):
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
-    """Keys of `environment:` in the file of a mooring, which requires a water depth."""
+    """Keys of `environment:` in a mooring file, in which the water depth is required."""
 
     fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = described(
         "fluid around the line; a tow may be in air", "water", default="water"
@@ -318,14 +316,16 @@ def read_environment(
 
 
 GREATEST_TIDE = 20.0
-"""Range of the largest tides, 17 m in Ungava Bay and the Bay of Fundy, and a surge [m]."""
+"""Largest plausible tidal range [m]: 17 m in Ungava Bay and the Bay of Fundy, plus a surge."""
 
 STRONGEST_WIND = 75.0
-"""Strongest wind measured over 1 min at sea, in round figures [m/s]."""
+"""Strongest 1 min mean wind measured at sea, rounded [m/s]."""
 
 
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
-    """Return remarks about a current given in the file; none for a current from a record."""
+    """Return remarks about implausible currents in a table of the file; none for a current from a
+    record.
+    """
     if current.record is not None:
         return []
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
@@ -358,7 +358,7 @@ def _seabed(
     section: SourceMapping,
     notices: list[str],
 ) -> Seabed | None:
-    """Return the seabed; a grid covers the area that the mooring may reach.
+    """Read the seabed; a grid is read over the area that the mooring may reach.
 
     Parameters
     ----------

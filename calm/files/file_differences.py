@@ -1,4 +1,4 @@
-"""Differences between two mooring files: piece by piece, and in the other keys.
+"""Compare two mooring files piece by piece, and their other keys.
 
 Parts of the two lines are matched by label, otherwise by content and order. A label is used only if
 it is unique in each line. Labels with a number added by `numbered` are not used, because a shackle
@@ -32,7 +32,7 @@ Value = float | str | None
 
 @dataclass(frozen=True)
 class ComparedValue:
-    """A value of a file [SI, degrees] or a text, and its display.
+    """Value in a file [SI, degrees], or text, with its display form.
 
     `table` is the table that a text summarises, since two different tables may have the same text.
     """
@@ -51,7 +51,7 @@ def _text(text: str) -> ComparedValue:
 
 @dataclass(frozen=True)
 class Change:
-    """A value that differs, with its name such as ``label.field`` or ``environment.depth``."""
+    """Changed value, with a name such as ``label.field`` or ``environment.depth``."""
 
     where: str
     before: ComparedValue
@@ -78,12 +78,12 @@ class Differences:
 
     @property
     def any(self) -> bool:
-        """Return whether there is any difference."""
+        """Whether the files differ at all."""
         return bool(self.changed or self.moved or self.removed or self.added)
 
 
 _OF_THE_SOURCE = frozenset({"kind", "source", "sources", "searched", "prefer", "date"})
-"""Fields of a definition about the source of its figures."""
+"""Definition fields that describe the sources of values."""
 
 _DIMENSIONS = {
     **dict.fromkeys(("length", "at", "depth", "fit_top_depth", "fit_body_depth"), "length"),
@@ -174,7 +174,7 @@ def _of_part(
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
-    """Return the values that the line gives for a part, without its definition."""
+    """Return the values of a part set in the line, without its component definition."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -206,7 +206,7 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 
 
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
-    """Return the fields of a model; those of models inside it have dotted names."""
+    """Return the fields of a model; fields of nested models have dotted names."""
     found: dict[str, ComparedValue] = {}
     model = type(part).model_fields if isinstance(part, BaseModel) else {}
     for name, value in _fields(part).items():
@@ -283,7 +283,7 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """A part's label, without a number added by `numbered`, and its content.
+    """Content of a part, with its label before `numbered` added a number.
 
     `contents` are keys of decreasing strictness; parts with an equal key are alike.
     """
@@ -310,7 +310,7 @@ class Alignment:
 
 
 def own_labels(labels: Sequence[str]) -> list[str]:
-    """Return the labels without their numbers, if those numbers run from 1 to n."""
+    """Return the labels without their numbers, if the numbers run from 1 to n."""
     numbers: dict[str, list[int]] = defaultdict(list)
     matches = [_NUMBERED.fullmatch(label) for label in labels]
     for match in filter(None, matches):

@@ -1,4 +1,4 @@
-"""Keys of items of the line and of clamps, and keys about the individual equipment."""
+"""Keys of line items and clamps, including keys for individual equipment."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from calm.files.yaml_document import SourceMapping, validate
 
 
 class Equipment(definition.Model):
-    """Keys about the individual equipment at a place of the line.
+    """Keys for the individual equipment at a position of the line.
 
     `serial` is a text, or a list with one text for each of the item's `count`, and for each item of
     a component with `items`; each piece gets its own. After reading, `planned_depth` also holds a
@@ -48,7 +48,9 @@ class Equipment(definition.Model):
         return (self.serial,) if isinstance(self.serial, str) else self.serial or ()
 
     def of(self, repeat: int, items: int) -> Equipment:
-        """Return the equipment of one of the pieces of a count, from 0, each of so many items."""
+        """Return the equipment of the piece number `repeat` (from 0) in a row with a count, with
+        `items` items per piece.
+        """
         if not isinstance(self.serial, tuple):
             return self
         first = min(repeat * items, len(self.serial) - items)
@@ -71,9 +73,9 @@ class LengthAt(definition.Model):
 ASSEMBLY_FIGURES = (
     "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
 )  # fmt: skip
-"""Figures of an assembly, which are those of its parts that lack them."""
+"""Values of an assembly that apply to each of its parts without an own value."""
 MOST_PIECES = 10_000
-"""Most pieces of a line, after assemblies and counts are expanded."""
+"""Maximum number of pieces in a line, after expansion of assemblies and counts."""
 
 
 Label = Annotated[Text, described("name of the piece in results; by default its id", "top float")]
@@ -90,7 +92,7 @@ class ClampKeys(Equipment):
 
 
 class ItemKeys(Equipment):
-    """A piece of the line, in which other fields override those of the component."""
+    """A piece of the line; its other fields override values of the component."""
 
     use: str = described("id of a component in the catalogue or in `components`", "wire-jacketed-8")
     label: Label = ""
@@ -118,7 +120,7 @@ NO_EQUIPMENT = Equipment()
 
 
 def read_equipment(item: SourceMapping) -> Equipment:
-    """Read the keys about the individual equipment of an item or a clamp."""
+    """Read the individual-equipment keys of an item or a clamp."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
@@ -126,8 +128,8 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
-    """Check that a list of serial numbers has as many as the item's count, that they differ, and
-    that a planned depth is given for one piece only.
+    """Check the number and uniqueness of serial numbers, and that only single pieces have a planned
+    depth.
 
     Parameters
     ----------
@@ -150,7 +152,9 @@ def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
 
 
 def _numbers_twice(serials: Sequence[object]) -> str:
-    """Return the first number that a list has twice; "" if none, as in a list of question marks."""
+    """Return the first serial number that occurs twice in a list, or ""; texts without digits, such
+    as question marks, may be repeated.
+    """
     texts = [str(one) for one in serials]
     numbers = (one for one in texts if any(digit.isdigit() for digit in one))
     return next((one for one in numbers if texts.count(one) > 1), "")

@@ -1,6 +1,4 @@
-"""The key `legs` of a mooring file: lines that join at nodes, or whose ends are free, anchored or
-held.
-"""
+"""Key `legs` of a mooring file: legs that meet at nodes, with free, anchored or held ends."""
 
 from __future__ import annotations
 
@@ -66,7 +64,7 @@ _At = Annotated[
 
 
 class HeldKeys(Model):
-    """The place at which an end is held, such as a ship, a pier or a platform."""
+    """Position of a held end, such as at a ship, a pier or a platform."""
 
     depth: _Offset = Field(
         description="below the surface; negative: above it, in air", examples=["2 m", "-10 m"]
@@ -75,7 +73,7 @@ class HeldKeys(Model):
 
 
 class AnchoredKeys(Model):
-    """The place at which a leg is anchored."""
+    """Position of the anchor of a leg."""
 
     at: _At = (0.0, 0.0)
     depth: Annotated[float, QuantityField("length", above=0)] | None = optional(
@@ -84,7 +82,7 @@ class AnchoredKeys(Model):
 
 
 class EndKeys(Model):
-    """The connection of an end of a leg, given by one of these keys."""
+    """Connection of a leg end, given by exactly one of these keys."""
 
     join: Text | None = optional("a node where legs meet", "A")
     anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})
@@ -92,7 +90,7 @@ class EndKeys(Model):
 
     @property
     def free(self) -> bool:
-        """Return whether the end is free."""
+        """Whether the end is free."""
         return self.join is None and self.anchor is None and self.held is None
 
 
@@ -100,7 +98,7 @@ FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
-    """Return the keys of an end; `free` has none."""
+    """Return the keys that define an end; a `free` end has none."""
     if value == "free":
         return {}
     if not isinstance(value, dict):
@@ -114,7 +112,7 @@ _End = Annotated[
 
 
 class LegKeys(Model):
-    """The pieces of a leg from its upper to its lower end, and its two ends."""
+    """Pieces of a leg from its upper to its lower end, and its end connections."""
 
     line: Annotated[tuple[Any, ...], Field(min_length=1)] = described(
         "the pieces from the upper to the lower end",
@@ -132,8 +130,7 @@ class LegKeys(Model):
 
 @dataclass(frozen=True)
 class FileLeg:
-    """A leg: the pieces from index `first` up to, but not including, `end` of the file, and its two
-    ends.
+    """A leg with its two ends: pieces from index `first` up to, but not including, index `end`.
 
     An end without a key is free.
     """
@@ -145,7 +142,7 @@ class FileLeg:
     bottom: EndKeys
 
     def grown(self, index: int, more: int) -> FileLeg:
-        """Return the leg after pieces were added below the piece of an index."""
+        """Return the leg after insertion of pieces below the piece with a given index."""
         return replace(
             self,
             first=self.first + more * (self.first > index),
@@ -154,12 +151,14 @@ class FileLeg:
 
     @property
     def ends(self) -> tuple[EndKeys, EndKeys]:
-        """Return its upper and its lower end."""
+        """Connections of the upper and the lower end."""
         return self.top, self.bottom
 
 
 def stand_in_anchor(index: int, item: int) -> Piece:
-    """Return an anchor without height of practically unlimited weight, with a reserved id."""
+    """Create a substitute anchor with a reserved id, without height and practically unlimited in
+    weight.
+    """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
@@ -215,7 +214,7 @@ def read_legs(
 
 
 def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:
-    """Return the ends of a leg; the lower end is anchored if the last piece is an anchor."""
+    """Read the ends of a leg; the lower end is anchored if the last piece is an anchor."""
 
     def refuse(place: tuple[str | int, ...], message: str) -> None:
         own.refuse(place, message, key=bool(place))
@@ -263,7 +262,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
 
 
 def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float | None) -> None:
-    """Check that held ends are above the seabed, whose depth is given [m]."""
+    """Check that held ends are above the seabed."""
     for leg in legs:
         for name, end in zip(("top", "bottom"), leg.ends, strict=True):
             if end.held is not None and depth is not None and end.held.depth >= depth:
@@ -306,7 +305,7 @@ def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
 def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
     """Check that every leg is connected to an anchor or a held end.
 
-    Two anchors may be at the same place only if both places are given in the file.
+    Two anchors may share a position only if the file specifies the positions of both.
     """
     held: set[str] = set()
     reached: set[str | None] = set()
@@ -336,6 +335,6 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
 
 
 def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:
-    """Return the numbers of the nodes by name, in the order of the legs."""
+    """Number the nodes in the order of the legs; return the number of each name."""
     names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
     return {name: number for number, name in enumerate(names)}

@@ -23,7 +23,7 @@ _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count", "serial"})
 _NUMBERED = (("instrument", "release"), ("float",))
-"""Roles of the parts of an assembly that its serial numbers are for, the first that it has."""
+"""Assembly parts that serial numbers refer to, by role: the first role present in the assembly."""
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -31,7 +31,8 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Expand the items of a line; mistakes are added to those of the file, remarks to `notices`.
+    """Expands line items to pieces; mistakes are added to the mistakes of the file, remarks to
+    `notices`.
 
     `towed` and `in_air` determine the keys and figures allowed.
     """
@@ -66,7 +67,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the items of the list under a key; items with mistakes are left out."""
+        """Read the list of items under a key; items with mistakes are skipped."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):
@@ -122,11 +123,10 @@ class LineReader:
         )
 
     def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
-        """Check the keys of an item whose component is unknown.
+        """Check the keys of an item with an unknown component.
 
-        A length is checked. Of the other keys, those that are quantities of the same dimension in
-        all kinds are checked, and those of no kind are refused; with `judged` they are checked
-        elsewhere.
+        The length is checked, and so are keys with the same dimension in all kinds of components.
+        Keys that no kind has are rejected. With `judged`, the keys are checked elsewhere.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -203,8 +203,8 @@ class LineReader:
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
-        """Return the depth to which a piece is cut to fit: that of the line's top, or in a tow that
-        of the piece's lower end.
+        """Return the depth to which a piece is cut to fit: depth of the top of the line or, in a
+        tow, of the lower end of the piece.
         """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
@@ -229,7 +229,7 @@ class LineReader:
             self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
-        """Return the clamps of an item; a clamp beyond a known length is refused."""
+        """Read the clamps of an item; clamps beyond a known length are rejected."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -258,8 +258,8 @@ class LineReader:
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
     ) -> item_keys.Equipment:
-        """Return the keys about the individual equipment; without `planned_depth`, the depth in the
-        label is used.
+        """Read the individual-equipment keys; without `planned_depth`, the depth in the label is
+        used.
         """
         equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):
@@ -269,7 +269,7 @@ class LineReader:
         return equipment if named is None else equipment.planned_for(named)
 
     def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
-        """Return the pieces of an assembly, all at the place of the item that uses it."""
+        """Expand an assembly to pieces, all at the position of the item that uses the assembly."""
         if entry.id in self._open:
             item.refuse(("use",), f"assembly `{entry.id}` contains itself")
             return ()
@@ -288,10 +288,10 @@ class LineReader:
     def _with_serials(
         self, pieces: tuple[Piece, ...], item: SourceMapping, count: int
     ) -> tuple[Piece, ...]:
-        """Return the pieces of an assembly with the serial numbers of its item.
+        """Assign the serial numbers of an item to the pieces of its assembly.
 
-        They are those of its instruments and releases, or else of its floats, in order: one for
-        each item of a component, assembly by assembly.
+        Serial numbers belong to the instruments and releases of the assembly, or else to its
+        floats, in order: one number per item of a component, assembly by assembly.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:
@@ -334,7 +334,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Return the pieces of an assembly, which take its figures if they lack them."""
+        """Add the values of an assembly to those of its pieces that lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -486,7 +486,7 @@ class LineReader:
 
 
 def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
-    """Add a figure to a piece of an assembly, or to clamps on it, that lack the figure."""
+    """Add a value to a piece of an assembly, or to clamps on the piece, if they lack the value."""
 
     def filled(part: _Part) -> _Part:
         component: Component = part.component
@@ -501,7 +501,7 @@ def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Pi
 
 
 def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
-    """Whether a component lacks a figure that it needs in its place."""
+    """Return whether a component lacks a value needed at its position in the line."""
     if key in ("working_load", "breaking_load"):
         return not clamped and component.working_load is component.breaking_load is None
     if key == "grip":

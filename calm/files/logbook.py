@@ -1,4 +1,4 @@
-"""Keys of a mooring file besides the design: document, display units, releases, deployment."""
+"""Mooring-file keys other than the design: document, display units, releases, deployment."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Moment = Annotated[
 
 
 class OutputUnits(definition.Model):
-    """Units of display in tables, documents and the builder; data files are in SI units."""
+    """Display units for tables, documents and the builder; data files are in SI units."""
 
     force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
         "unit of tensions, weights and loads", "kgf"
@@ -58,12 +58,14 @@ class OutputUnits(definition.Model):
 
     @property
     def chosen(self) -> dict[str, str]:
-        """Return the given units by dimension."""
+        """The chosen unit of each dimension."""
         return self.model_dump(exclude_none=True)
 
 
 def nearest_unit(text: str) -> tuple[str, str] | None:
-    """Return the dimension and the unit of display that a text such as `knots` means, or None."""
+    """Find the dimension and the display unit that a text such as `knots` means; None if there is
+    none.
+    """
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):
             value = parse_quantity(f"1 {text}", dimension)
@@ -73,7 +75,7 @@ def nearest_unit(text: str) -> tuple[str, str] | None:
 
 
 class Revision(definition.Model):
-    """A revision of the document."""
+    """Revision entry of the document."""
 
     revision: Text = described("letter or number", "B")
     date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
@@ -114,12 +116,14 @@ class DocumentKeys(definition.Model):
     )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the given keys as JSON data."""
+        """Return the specified keys as JSON data."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
 class ReleaseKeys(definition.Model):
-    """A release by its serial number, and its codes: one text, several, or several by name."""
+    """An acoustic release, identified by its serial number, with its codes: a text, a list, or a
+    mapping by name.
+    """
 
     serial: Text | None = optional("serial number of the release", 1729)
     codes: Text | tuple[Text, ...] | dict[str, Text] | None = optional(
@@ -129,14 +133,14 @@ class ReleaseKeys(definition.Model):
 
     @property
     def code_lines(self) -> tuple[str, ...]:
-        """Return the codes as texts, one for each line."""
+        """Codes of the release, one per line of text."""
         if isinstance(self.codes, dict):
             return tuple(f"{name}: {code}" for name, code in self.codes.items())
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
 
 
 class ClockCheck(definition.Model):
-    """The clock of an instrument against the true time, after recovery."""
+    """Comparison of an instrument clock with true time after recovery."""
 
     checked: Moment = described("time of the check", "2028-03-02T10:40")
     late: Annotated[float, definition.QuantityField("time")] = described(
@@ -145,7 +149,7 @@ class ClockCheck(definition.Model):
 
 
 class DeployedItem(definition.Model):
-    """A piece or a clamp as deployed; a cable was cut to `length` [m]."""
+    """A piece or clamp as deployed; `length` [m] is the cut length of a cable."""
 
     label: Text = described("label of the piece or clamp in results", "wire-jacketed-8")
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
@@ -178,7 +182,7 @@ class Deployed(definition.Model):
 
     @property
     def serials(self) -> dict[str, tuple[str, ...]]:
-        """Return the serial numbers of the items that give any, by label."""
+        """Serial numbers of deployed items, by label; items without numbers are omitted."""
         return {
             one.label: (one.serial,) if isinstance(one.serial, str) else one.serial
             for one in self.items
@@ -189,8 +193,8 @@ class Deployed(definition.Model):
 def check_deployed(
     deployed: Deployed, labels: Sequence[str], cables: Sequence[str], top: SourceMapping
 ) -> None:
-    """Check that deployed items are parts of the line, that each is given once, and that only
-    cables have a length.
+    """Check that deployed items are parts of the line, occur once, and have a length only if they
+    are cables.
 
     Parameters
     ----------

@@ -1,6 +1,4 @@
-"""A mooring file after reading: the expanded line, its environment and settings, in SI units and
-degrees.
-"""
+"""A validated mooring file: expanded line, environment and settings, in SI units and degrees."""
 
 from __future__ import annotations
 
@@ -48,7 +46,7 @@ class TowKeys(Model):
 
 
 class Solver(Model):
-    """Settings of the solver: `angle_step` in radians, `tolerance` as a share of the depth."""
+    """Solver settings: `angle_step` in radians, `tolerance` relative to the water depth."""
 
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
@@ -86,7 +84,7 @@ class MooringFile:
 
     `notices` are remarks for the user, such as a catalogue entry hidden by a nearer one or levels
     left out of a measured current. `variants` are the unvalidated further environments by name.
-    `accepts` are the accepted findings of the design check, `uncertainty` is that of the inputs,
+    `accepts` are the accepted findings of the design check, `uncertainty` applies to the inputs,
     and `looser` are limits that the line sets less strictly than the definitions of its components.
     `document` is the title block, `releases` are the codes of the releases, `deployed` is the
     deployment, and `units` are the units of display.
@@ -117,7 +115,7 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Return the index of the lowest release in the line, or None; the parts above it are
+        """Index of the lowest release in the line, or None. Parts above the lowest release are
         recovered.
         """
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
@@ -132,8 +130,7 @@ class MooringFile:
 
     @property
     def anchor_friction(self) -> float:
-        """Return the friction coefficient of the anchor on the seabed: its own, or that of the
-        checks.
+        """Friction coefficient between anchor and seabed: of the anchor, else from `checks:`.
 
         On a slope b, an anchor of weight w loaded by H down the slope holds if H cos b + w sin b <=
         friction (w cos b - H sin b). This corresponds to a friction coefficient
@@ -146,7 +143,7 @@ class MooringFile:
         return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
     def leg_alone(self, leg: FileLeg) -> MooringFile:
-        """Return the file of a single leg: its pieces, counted from its upper end.
+        """Return a file with a single leg, whose pieces are counted from its upper end.
 
         A leg without an anchor, in a net, gets a substitute with the id `STAND_IN`.
         """
@@ -177,7 +174,7 @@ class MooringFile:
 def unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Return notes about releases whose serial number no piece has, as designed or as deployed."""
+    """Return notes about entries under `releases` whose serial number belongs to no piece."""
     parts = [part for part in parts_of(pieces) if part.component.role == "release"]
     given = {} if deployed is None else deployed.serials
     serials = {one for part in parts for one in (*part.serials, *given.get(part.label, ()))}
@@ -191,7 +188,9 @@ def unknown_releases(
 def check_fit(
     pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
 ) -> None:
-    """Check that the depth of a fitted piece is above the seabed, and below the ship."""
+    """Check that the depth to be reached by a fitted piece is above the seabed, and below a towing
+    ship.
+    """
     for piece in pieces:
         here = piece.line, piece.column
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
@@ -203,9 +202,9 @@ def check_fit(
 
 
 def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
-    """Return the legs of a file; a file without `legs` has one leg.
+    """Return the legs of a file; without the key `legs`, the whole line is one leg.
 
-    The leg of a mooring has a free upper end and an anchored lower end; that of a tow is held at
+    The leg of a mooring has a free upper end and an anchored lower end; the leg of a tow is held at
     the ship.
     """
     if file.legs:
@@ -218,23 +217,25 @@ def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
 
 
 def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg for each piece of a file."""
+    """Leg number of each piece."""
     return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
 def refuse_several(file: MooringFile) -> None:
-    """Raise UsageError for a file with legs, in functions for single lines."""
+    """Raise UsageError if a file has several legs, for functions that need a single line."""
     if file.legs:
         raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
 
 
 def refuse_tow(file: MooringFile) -> None:
-    """Raise UsageError for a tow, in functions for moorings."""
+    """Raise UsageError for a tow, for functions that need a mooring."""
     if file.tow is not None:
         raise UsageError(f"{file.path} is a tow; this is for moorings")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError for tows and files with legs, in functions for single moorings."""
+    """Raise UsageError for tows and for files with legs, for functions that need a single
+    mooring.
+    """
     refuse_several(file)
     refuse_tow(file)

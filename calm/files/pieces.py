@@ -1,4 +1,4 @@
-"""The pieces of a line and their clamps, each with its place and a unique label."""
+"""Pieces of a line and their clamps, each with its position and a unique label."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping
 
 STAND_IN = ""
-"""Id of the substitute for the anchor of a line without one, or of a leg without one."""
+"""Reserved id of the substitute anchor for a line or leg without an anchor."""
 
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """The place of a piece or a clamp in the line, by which it is identified after reading.
+    """Position of a piece or clamp in the line, which identifies it after reading.
 
     Each item of the file has a place, independent of its `count`: `Place(3)` is the fourth item,
     `Place(3, clamp=0)` its first clamp.
@@ -45,29 +45,32 @@ class Place:
 
     @property
     def row(self) -> Place:
-        """Return the place of its row in the file: the item, for a part of an assembly."""
+        """Position of the corresponding row in the file; for a part of an assembly, the row of the
+        assembly.
+        """
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
 class LinePart(Protocol):
-    """A piece, a clamp, or the result of either."""
+    """Interface of pieces, clamps and their results: a position and a label."""
 
     @property
     def place(self) -> Place:
-        """Return the place of the part."""
+        """Position of the part."""
 
     @property
     def label(self) -> str:
-        """Return the name of the part for users."""
+        """Name of the part in output."""
 
 
 @dataclass(frozen=True)
 class Clamp:
-    """An instrument clamped on a piece, `at` metres (unstretched) below the piece's top.
+    """An instrument clamped on a piece, `at` metres of unstretched length below the upper end of
+    the piece.
 
     A profiler moves over `travel`, the distances of its upper and lower stop from the piece's top;
-    inf is the lower end of the piece. Its place `at` is that of the upper stop. `named` is its
-    label in the file, empty if there is none.
+    inf is the lower end of the piece. Its position `at` is the position of the upper stop. `named`
+    is its label in the file, empty if there is none.
     """
 
     use: str
@@ -81,17 +84,17 @@ class Clamp:
 
     @property
     def serial(self) -> str | None:
-        """Return the serial number of this instrument; None if unknown."""
+        """Serial number of this instrument; None if unknown."""
         return _serial(self.equipment)
 
     @property
     def serials(self) -> tuple[str, ...]:
-        """Return the serial number of this instrument, if known."""
+        """Serial number of this instrument, as a tuple; empty if unknown."""
         return self.equipment.serials
 
     @property
     def planned_depth(self) -> float | None:
-        """Return the planned depth in still water [m]; None if there is none."""
+        """Planned depth in still water [m], if any."""
         return self.equipment.planned_depth
 
 
@@ -134,22 +137,22 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Return the serial number of this piece, or those of its items; None if unknown."""
+        """Serial number of this piece, or the numbers of its items as one text; None if unknown."""
         return _serial(self.equipment)
 
     @property
     def serials(self) -> tuple[str, ...]:
-        """Return the serial numbers of the items of this piece, as far as known."""
+        """Known serial numbers of the items of this piece."""
         return self.equipment.serials
 
     @property
     def planned_depth(self) -> float | None:
-        """Return the planned depth of its upper end in still water [m]; None if there is none."""
+        """Planned depth of the upper end in still water [m], if any."""
         return self.equipment.planned_depth
 
     def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
-        """Return the piece with a function applied to each clamp, and with other fields of its
-        own.
+        """Return the piece with a function applied to each clamp, and with the given fields
+        replaced.
         """
         return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
 
@@ -159,8 +162,8 @@ def _serial(equipment: Equipment) -> str | None:
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """Return a piece at a place of the line, with its clamps and the serial numbers of that
-    place.
+    """Move a piece with its clamps to a position of the line, and assign the serial numbers of that
+    position.
     """
 
     def moved(clamp: Clamp) -> Clamp:
@@ -181,7 +184,7 @@ def unplanned(piece: Piece) -> Piece:
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-    """Set the index of the pieces, and number labels that occur more than once down the line."""
+    """Set the index of each piece, and number repeated labels from the top down."""
     pieces = tuple(pieces)
     labels = iter(numbered_labels(labels_of(pieces)))
 
@@ -195,7 +198,7 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
 
 
 def numbered_labels(texts: Sequence[str]) -> list[str]:
-    """Number labels that occur more than once down a line; clamps follow their piece."""
+    """Number repeated labels from the top down; clamps follow their piece."""
     total, seen = Counter(texts), Counter[str]()
 
     def numbered_label(text: str) -> str:
@@ -218,22 +221,24 @@ def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
 
 
 def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
-    """Return the clamps of a line in the order of the file and of the solver."""
+    """Return the clamps of a line in the order of the file, which is also the order of the
+    solver.
+    """
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 
 def clamps_down(pieces: Iterable[Piece]) -> list[Clamp]:
-    """Return the clamps of a mooring's line from its top to its anchor, the order of results."""
+    """Return the clamps of a mooring line from the top down, which is the order of results."""
     return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
 def labels_of(pieces: Iterable[Piece]) -> list[str]:
-    """Return the labels of pieces and clamps down the line."""
+    """Return the labels of pieces and clamps from the top down."""
     return [part.label for part in parts_of(pieces)]
 
 
 def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
-    """Set the travel of each profiler from the labels of its stops."""
+    """Set the travel range of each profiler from the labels of its stops."""
     return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
 
 

@@ -1,4 +1,4 @@
-"""The planned depth of a piece or a clamp, as given in its label.
+"""Planned depth of a piece or a clamp, found in its label.
 
 A label names a depth if it has exactly one number with the unit of a length (``meter 200 m``,
 ``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650 ft``), a number after ``@``, or ends in four digits that
@@ -45,7 +45,9 @@ _WITH_UNIT = re.compile(
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
 _ROUND = 50
-"""Depths of four digits in a label are multiples of it [m]; one serial number in 50 is."""
+"""Four-digit numbers in a label are depths only if they are multiples of this value [m], as is one
+serial number in 50.
+"""
 _FOOT = 0.3048
 _LEAST_OF_A_FLOAT = 10.0
 
@@ -80,7 +82,9 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Return the planned depth in the label of a piece or a clamp [m]; None if there is none."""
+    """Return the planned depth found in the label of a piece or a clamp [m]; None if there is
+    none.
+    """
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

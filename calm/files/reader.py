@@ -1,6 +1,4 @@
-"""Read a mooring file in one of its environments: either every mistake is reported, or a
-`MooringFile` is returned.
-"""
+"""Read a mooring file in one of its environments; all mistakes are reported together."""
 
 import math
 import os.path
@@ -40,7 +38,7 @@ def _given(value: object) -> object:
 
 
 class MooringKeys(Model):
-    """The keys at the top level of a mooring file."""
+    """Keys at the top level of a mooring file."""
 
     name: Text | None = optional("name of the mooring or tow", "Shelf edge 2026")
     description: Text | None = optional("purpose of the mooring", "Slope currents, first year")
@@ -113,7 +111,7 @@ def read_mooring(
 
 
 class _ReadLine(NamedTuple):
-    """The line of a file with the keys that refer to its pieces, and their mistakes."""
+    """Pieces of the line and the keys that refer to them, with their mistakes."""
 
     pieces: tuple[Piece, ...]
     legs: tuple[FileLeg, ...]
@@ -163,8 +161,7 @@ class MooringReader:
         self._catalogue = catalogue
 
     def in_environment(self, environment: str | Path | None = None) -> MooringFile:
-        """Return the file in one of its variants, in an environment file, or by default in its own
-        environment.
+        """Read the file in a named variant, an environment file, or by default its own environment.
 
         InputError: the file has mistakes; all are listed, each with its place.
         """
@@ -215,7 +212,7 @@ class MooringReader:
         )
 
     def _line(self, in_air: bool) -> _ReadLine:
-        """Read the line, for air or for water, and the keys that refer to its pieces."""
+        """Read the line, for air or for water, and the keys that refer to pieces."""
         problems: list[Problem] = []
         notices: list[str] = []
         top, keys, towed = self._top.into(problems), self._keys, self._towed
@@ -253,7 +250,7 @@ def _child(section: SourceMapping, key: str) -> SourceMapping | None:
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Return each problem once: those of the mooring file first, in the order of the file."""
+    """Remove repeated problems, and sort: problems in the mooring file first, in file order."""
     once = dict.fromkeys(problems)
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
@@ -266,7 +263,7 @@ def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
 
 
 def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that the line of a mooring ends with its only anchor."""
+    """Check that a mooring line ends with an anchor and contains no other anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
@@ -294,8 +291,8 @@ def _check_slides(
     top: SourceMapping,
     depth: float | None,
 ) -> None:
-    """Check that no anchor slides down the seabed by its own weight, is off the depth grid, or is
-    above the water.
+    """Check that no anchor slides down the slope, lies outside the depth grid, or is above the
+    water.
 
     `depth` is the water depth at the origin [m].
     """
@@ -329,7 +326,7 @@ def _check_slides(
 
 
 class EnvironmentFileKeys(Model):
-    """The keys at the top level of an environment file."""
+    """Keys at the top level of an environment file."""
 
     name: Text | None = None
     environment: dict[str, Any]
@@ -338,8 +335,8 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Return the `environment` of a file, or the chosen one with that as base, and its name; not
-    yet validated.
+    """Select the environment of a file or a variant based on it; return the unvalidated section and
+    its name.
 
     Variants that are not chosen are checked here, and so is the file's own environment if another
     one is chosen, so that all mistakes are reported. Returns None if there is no environment.
@@ -383,7 +380,9 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check the keys of an environment that may have a base or be one, with any depth."""
+    """Check the keys of an environment that may have a base or serve as one, for any water
+    depth.
+    """
     section = section.over(section.holding({"depth": "1 m"}))
     read_environment(section, None, [], open_files=False, towed=towed)
 

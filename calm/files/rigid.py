@@ -99,7 +99,7 @@ _RESPONSE = (
 
 
 class Rigid(definition.Definition):
-    """A piece of fixed length, or one clamped on a line."""
+    """A component of fixed length, in the line or clamped on it."""
 
     mass: definition.Mass = None
     buoyancy: Annotated[float | None, QuantityField("force")] = optional(
@@ -148,7 +148,9 @@ class Rigid(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force in water, positive up [N]; with a mass alone, that in air."""
+        """Net buoyancy in water, positive up [N]; if only the mass is known, minus the weight in
+        air.
+        """
         if self.buoyancy is not None:
             return self.buoyancy
         assert self.mass is not None
@@ -156,9 +158,7 @@ class Rigid(definition.Definition):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume displaced [m³]; None if it is neither given nor follows from the
-        weights.
-        """
+        """Displaced volume [m³]; None if it is neither specified nor follows from the weights."""
         if self.volume is not None or self.buoyancy is None:
             return self.volume
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
@@ -190,7 +190,7 @@ class Rigid(definition.Definition):
 
 
 class SphereShape(Model):
-    """A sphere as part of a body, for its drag alone."""
+    """Sphere that represents part of a body in its drag."""
 
     kind: Literal["sphere"] = Field(description="kind of the component")
     diameter: definition.Diameter
@@ -198,7 +198,7 @@ class SphereShape(Model):
 
 
 class CylinderShape(Model):
-    """A cylinder as part of a body, for its drag alone."""
+    """Cylinder that represents part of a body in its drag."""
 
     kind: Literal["cylinder"] = Field(description="kind of the component")
     diameter: definition.Diameter
@@ -209,14 +209,14 @@ class CylinderShape(Model):
 
 
 class Sphere(Rigid, SphereShape):
-    """A sphere; by default its length along the line is its diameter."""
+    """A sphere, whose length along the line is its diameter by default."""
 
     length: definition.Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
     surface: Surface = None
 
 
 class Cylinder(Rigid, CylinderShape):
-    """A cylinder along the line."""
+    """A cylinder with its axis along the line."""
 
     surface: Surface = None
 
@@ -228,7 +228,7 @@ def _two_stops(value: object) -> object:
 
 
 class DragMeasurement(Model):
-    """A drag measured at a speed [m/s, N]."""
+    """A measured drag [N] and the speed at which it was measured [m/s]."""
 
     speed: Annotated[float, QuantityField("speed", above=0)] = described(
         "relative speed of the water", "0.5 m/s"
@@ -244,11 +244,11 @@ DRAG_FORMS: tuple[tuple[str, ...], ...] = (
     ("drag_measurements",),
     ("made_of",),
 )
-"""The alternative keys for the drag of a body; exactly one of these sets is given."""
+"""Alternative sets of keys for the drag of a body; exactly one set must be given."""
 
 
 class Shaped(Rigid):
-    """A piece of any shape, with its drag in one of the `DRAG_FORMS`."""
+    """A component of any shape, with its drag in one of the `DRAG_FORMS`."""
 
     length: definition.Length
     kn: definition.Drag = optional(
@@ -297,17 +297,17 @@ class Shaped(Rigid):
 
 
 class Body(Shaped):
-    """A body in the line or clamped on it."""
+    """A body of any shape, in the line or clamped on it."""
 
     kind: Literal["body"] = Field(description="kind of the component")
 
 
 LEAST_WIRE_TENSION = 2224.0
-"""Required tension of the wire of a McLane Moored Profiler: 500 lbf by its manual [N]."""
+"""Wire tension required by a McLane Moored Profiler: 500 lbf according to its manual [N]."""
 
 
 class Profiler(Shaped):
-    """A profiler that moves along a wire between two stops."""
+    """A profiler that travels along a wire between two stops."""
 
     kind: Literal["profiler"] = Field(description="kind of the component")
     between: Annotated[tuple[definition.Text, ...] | None, BeforeValidator(_two_stops)] = optional(

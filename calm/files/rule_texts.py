@@ -1,4 +1,4 @@
-"""The rules of the design check as text: title, quantity, checked value, limit and source.
+"""Design rules as text: title, quantity, checked value, limit and source.
 
 Findings, reports, the manual and `checks: accept:` use this table. The functions that apply the
 rules are in `calm.checks`.
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class RuleText:
-    """A rule of the design check in text.
+    """Texts that describe one rule of the design check.
 
     Attributes
     ----------
@@ -304,9 +304,7 @@ RULES = {
 """All rules by id, in the order of the report."""
 
 ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
-"""The rules that may be in `checks: accept:`. Without an equilibrium there are no findings to
-accept.
-"""
+"""Rules allowed in `checks: accept:`. Without an equilibrium there are no findings to accept."""
 
 LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
-"""The rules for which an accepted finding may state the maximum tension that it accepts."""
+"""Rules for which an accepted finding may state a maximum accepted tension."""

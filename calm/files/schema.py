@@ -1,4 +1,4 @@
-"""The JSON Schema of the mooring file, with which editors complete and check keys during typing.
+"""JSON Schema of the mooring file, for completion and checks in text editors.
 
 It is made from the models that read the file. It contains the keys, the kinds, and the fact that a
 quantity has a unit. Conditions that involve the catalogue or several keys are checked only by the
@@ -21,7 +21,7 @@ from calm.files.reader import MooringKeys
 Schema = dict[str, Any]
 
 _NO_FORM = ("description", "examples", "default", "title")
-"""Entries in the schema of a field that do not restrict its value."""
+"""Schema entries of a field that do not restrict its value."""
 
 
 def mooring_schema() -> Schema:
@@ -41,7 +41,7 @@ def mooring_schema() -> Schema:
     own = schemas["Item"]["properties"]
     own["length"] = fields["length"] | {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
     own["clamps"]["items"] = {"$ref": "#/$defs/Clamp"}
-    for part in ("Clamp", "Item"):  # other fields override those of the component
+    for part in ("Clamp", "Item"):  # other fields override the component
         schemas[part]["properties"] = fields | schemas[part]["properties"]
         del schemas[part]["title"]
     schemas["Item"]["required"] = ["use"]
@@ -89,7 +89,9 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Return all fields that can be overridden; if kinds differ, all their forms are allowed."""
+    """Return the schema of all fields that can be overridden; a field that differs between kinds
+    allows all its forms.
+    """
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}
     for kind in kinds:

@@ -1,4 +1,4 @@
-"""The key `strumming:` of a file's solver: the increase of the Cn of cables by vibration.
+"""Solver key `strumming:`: increase of the drag coefficient Cn of cables by vibration.
 
 ===================================== ==========================================
 written                               read as
@@ -26,9 +26,7 @@ from calm.units import QuantityError
 _NUMBER = QuantityField("number")
 _FACTOR = QuantityField("number", above=0)
 _RAISED = QuantityField("number", at_least=1)
-"""At least 1: a vibrating cable has a higher drag than one at rest, because it sweeps a larger
-width.
-"""
+"""A strumming factor, at least 1: a vibrating cable sweeps a larger width and has a higher drag."""
 _RESTING_CN = QuantityField("number", above=0, at_most=BourgetMarichal.ceiling)
 
 AmplitudeName = Literal["vandiver", "blevins", "skop-griffin"]
@@ -42,15 +40,18 @@ class StrummingFactor(Model):
 
 
 class ConstantCn(Model):
-    """One Cn for every cable, whatever its own; usual for towed cables, 1.8 to 1.9."""
+    """A fixed Cn for every cable, in place of its own value; 1.8 to 1.9 is usual for towed
+    cables.
+    """
 
     cn: Annotated[float, COEFFICIENT] = described("drag coefficient across the axis", 1.2)
 
 
 class BourgetMarichalKeys(Model):
-    """The towed cable of Bourget & Marichal: a/D = a1 + b1 φ + c1 φ² (φ in degrees), Cn c0 at rest.
+    """Towed-cable model of Bourget & Marichal: a/D = a1 + b1 φ + c1 φ² (φ in degrees); Cn at rest
+    is c0.
 
-    The figures left out are those of `calm.physics.strumming.BourgetMarichal`.
+    Missing coefficients have the defaults of `calm.physics.strumming.BourgetMarichal`.
     """
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})
@@ -81,7 +82,7 @@ class BourgetMarichalKeys(Model):
 
 @dataclass(frozen=True)
 class AmplitudeModel:
-    """A law that gives the increase of Cn from the vibration amplitude of each segment."""
+    """Model that computes the increase of Cn from the vibration amplitude of each segment."""
 
     name: Annotated[AmplitudeName, described("the law", "vandiver")]
 
@@ -91,17 +92,17 @@ _FORMS: Mapping[str, type[Model]] = {
     "cn": ConstantCn,
     "model": BourgetMarichalKeys,
 }
-"""The mappings that may be written, by their required key."""
+"""Mappings allowed under `strumming:`, by their required key."""
 
 
 def _forms_in(value: dict[str, object]) -> list[str]:
-    """Return the keys of `_FORMS` in a mapping, also if they are misspelt."""
+    """Return the keys of `_FORMS` in a mapping, including misspelt keys."""
     exact = [form for form in _FORMS if form in value]
     return exact or [form for key in value if (form := nearest(key, _FORMS))]
 
 
 def _written_out(value: object, info: ValidationInfo) -> object:
-    """Replace the name of a law by its keys; a mapping must be one of the forms."""
+    """Expand the name of a model to keys; check that a mapping is one of the forms."""
     if value is None:
         raise QuantityError("has no value")
     law = value.get("model") if isinstance(value, dict) else value
@@ -140,8 +141,8 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
 
 
 def _form(value: object) -> str:
-    """Return the name of the class as which a value is read; messages find its keys by this
-    name.
+    """Return the name of the class for validation of a value; messages use this name to find the
+    keys.
     """
     if isinstance(value, dict):
         return _FORMS[_forms_in(value)[0]].__name__
@@ -160,4 +161,4 @@ Strumming = Annotated[
         json_schema_input_type=_Name | StrummingFactor | ConstantCn | BourgetMarichalKeys,
     ),
 ]
-"""The type of the field; None is no strumming."""
+"""Type of the field; None means no strumming."""

@@ -1,4 +1,4 @@
-"""The key `uncertainty:` of a mooring file: the uncertainty of its figures, each with a default."""
+"""Key `uncertainty:` of a mooring file: uncertainties of input values, with defaults."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -10,7 +10,7 @@ from calm.files.definition import Model, QuantityField, described
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25
-"""Largest standard deviation of a share: a wider normal distribution would often give negative
+"""Largest relative standard deviation: a wider normal distribution would often give negative
 values.
 """
 _SHARE = QuantityField("number", at_least=0.0)
@@ -19,7 +19,7 @@ _TOO_WIDE = "is above 25 %, the largest standard deviation; give a pair, the 5 a
 
 @dataclass(frozen=True)
 class Spread:
-    """Uncertainty of a figure: relative, or of an angle in degrees.
+    """Uncertainty of a value: relative, or in degrees for an angle.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class SpreadOf:
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Read a text with a unit, or a list of two."""
+        """Parse a text with a unit, or a list of two such texts."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:
@@ -90,7 +90,7 @@ AngleSpread = Annotated[
 
 
 class Uncertainty(Model):
-    """Uncertainty of the inputs of a design; each draw of a mooring has one value of each."""
+    """Uncertainties of the inputs of a design, from which random moorings are drawn."""
 
     current: ShareSpread = described(
         "speed of the current, the same at all depths", "10 %", default=Spread(0.1)

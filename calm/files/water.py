@@ -1,4 +1,4 @@
-"""Keys of the water and of the wind over it: tables by depth, and density."""
+"""Keys for the water and the wind: tables by depth, and density."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from calm.records.value_tests import left_out
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}
-"""Default density [kg/m³], for air that of the standard atmosphere at sea level."""
+"""Default density of water, and of air for moorings in air [kg/m³]."""
 
 
 def _form(value: object) -> str:
@@ -34,7 +34,7 @@ def _table_or_constant(value: object) -> str:
 
 
 class TableKeys(Model):
-    """Columns, each with a name and a unit, and rows of values."""
+    """A table: columns with a name and a unit, and rows of values."""
 
     columns: tuple[Text, ...] = described(
         "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
@@ -46,7 +46,7 @@ class TableKeys(Model):
 
 
 class SeaWaterKeys(Model):
-    """Temperature [°C] and practical salinity, each a constant or a table by depth."""
+    """Temperature [°C] and practical salinity, each constant or in a table by depth."""
 
     temperature: Annotated[
         Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
@@ -66,16 +66,22 @@ Density = Annotated[
     | Annotated[SeaWaterKeys, Tag("sea water")],
     Discriminator(_form),
 ]
-"""The value of `density:` in a file."""
+"""Type of the value of `density:` in a file."""
 
 
 _RANGES: Mapping[str, QuantityRange] = {"water": profile_tables.WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
-"""Decrease of density with depth above which the water would overturn [kg/m³]."""
+"""Largest plausible decrease of density with depth [kg/m³]; water with a larger decrease would
+overturn.
+"""
 _RATIO = 0.05
-"""A lower salinity means a lake, or a mass fraction instead of g/kg."""
+"""Lowest plausible salinity of the sea; lower values indicate a lake, or a mass fraction instead of
+g/kg.
+"""
 _WARMEST_BELOW = 30.0
-"""No sea is warmer below its surface, and the salinity of most is higher than this number [°C]."""
+"""Number that separates temperature [°C] from salinity: few seas have a lower salinity, and none is
+warmer below its surface.
+"""
 
 
 def read_density(
@@ -105,7 +111,7 @@ def read_density(
 
 
 def table_of(value: object) -> TableKeys | None:
-    """Return a value of a file as a table; None if it is not a table."""
+    """Validate a value as a table; return None if it is invalid."""
     try:
         return TableKeys.model_validate(value)
     except ValidationError:
@@ -113,7 +119,7 @@ def table_of(value: object) -> TableKeys | None:
 
 
 def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
-    """Return the table at a key of a mapping, with places for its mistakes.
+    """Build the table at a key of a mapping, with locations for messages.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ from calm.records.sea_states import (
 
 
 class SwellKeys(Model):
-    """The keys of `swell:`: long waves from far away, added to the wind sea."""
+    """Keys of `swell:`, long waves from distant winds, added to the wind sea."""
 
     significant_height: Annotated[float, QuantityField("length", above=0)] = described(
         "Hs of the swell", "2 m"
@@ -86,7 +86,7 @@ class WaveKeys(Model):
 
 
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
-    """Return the sea states of `waves:`; an empty tuple if it has mistakes.
+    """Read the sea states of `waves:`; return an empty tuple if there are mistakes.
 
     Sea states of a scatter table have their shares of the time; another one beside them has a share
     of 0.

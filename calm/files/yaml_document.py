@@ -1,4 +1,4 @@
-"""YAML text with the place of each value, and protection against invalid or malicious files.
+"""Parse YAML with the position of each value, and reject malicious files.
 
 Scalars are kept as text, because the meaning of `1000` depends on the field. Anchors, aliases and
 tags are refused, so that nothing can be expanded.
@@ -26,7 +26,7 @@ Location = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """A YAML file as plain data, with its nodes if it was read from text.
+    """Plain data of a YAML file, with its nodes if it was read from text.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Return a problem at a value (or its key), or at the nearest existing place around it.
+        """Build a problem at a value (or its key); if missing, at the nearest enclosing value.
 
         An empty value has the place of its key.
 
@@ -72,7 +72,7 @@ def read_document(path: Path) -> Document:
 
 
 def compose(name: str, text: str) -> Document:
-    """Return the document of a text; `name` is shown as its path in messages.
+    """Parse a text to a document; `name` is shown as its path in messages.
 
     InputError: it is not valid YAML, or has duplicate keys.
     """
@@ -89,7 +89,7 @@ def compose(name: str, text: str) -> Document:
 
 @dataclass(frozen=True)
 class SourceMapping:
-    """A mapping in a document, optionally with another mapping as its base.
+    """A mapping in a document, with an optional base mapping that supplies missing keys.
 
     Attributes
     ----------
@@ -109,25 +109,27 @@ class SourceMapping:
 
     @classmethod
     def of(cls, document: Document, problems: list[Problem]) -> SourceMapping:
-        """Return the top level of a document, whose mistakes are added to a list."""
+        """Return the top-level mapping of a document; mistakes are added to `problems`."""
         return cls(document, (), document.data, None, frozenset(document.data), problems)
 
     def holding(self, data: dict[str, Any]) -> SourceMapping:
-        """Return a mapping of other data at the same place."""
+        """Return a mapping with other data at this position of the document."""
         own = frozenset(data)
         return SourceMapping(self.document, self.location, data, None, own, self.problems)
 
     def into(self, problems: list[Problem]) -> SourceMapping:
-        """Return the same mapping, whose mistakes are added to another list."""
+        """Return this mapping with another list of mistakes."""
         return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """Return this mapping with another one as base, from which some keys are dropped."""
+        """Return this mapping with another mapping as its base, without the dropped keys of the
+        base.
+        """
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return replace(self, data={**kept, **self.data}, base=base)
 
     def child(self, key: str, *more: str | int) -> SourceMapping:
-        """Return the mapping under a key, or under further keys below it."""
+        """Return the mapping under a key, or under a path of keys."""
         home, data = self.home(key), self.data[key]
         for step in more:
             data = data[step]
@@ -135,7 +137,7 @@ class SourceMapping:
         return SourceMapping(home.document, place, data, None, own, self.problems)
 
     def home(self, key: str | int) -> SourceMapping:
-        """Return the mapping, this one or a base, that contains a key."""
+        """Return the mapping that contains a key: this mapping or one of its bases."""
         if self.base is None or key in self.own or key not in self.data:
             return self
         return self.base.home(key)
@@ -151,11 +153,11 @@ class SourceMapping:
     def refuse(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> None:
-        """Add a problem; the parameters are those of `problem`."""
+        """Add a problem; parameters as in `problem`."""
         self.problems.append(self.problem(location, message, key=key, lacks=lacks))
 
     def refuse_at(self, line: int, column: int, message: str, *, lacks: str = "") -> None:
-        """Add a problem at a line and a column of the file."""
+        """Add a problem at a line and column of the file."""
         self.problems.append(Problem(self.document.path, line, column, message, lacks))
 
 
@@ -169,7 +171,7 @@ def validate(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """Return the model of a mapping; None if it has mistakes, which are added to its problems.
+    """Validate a mapping by a model; return None and record the mistakes if it is invalid.
 
     Parameters
     ----------
@@ -186,9 +188,7 @@ def validate(
 
 
 def complaint(model: type[BaseModel], name: str, value: object) -> str:
-    """Return the reason why a value is not valid for a key of a model, by itself; empty if it is
-    valid.
-    """
+    """Explain why a value is invalid for a single key of a model; empty if it is valid."""
     data = {name: value}
     try:
         model.model_validate(data)
@@ -245,7 +245,9 @@ def _explain(
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """Return the part of a pydantic location that exists in the data; tags of unions do not."""
+    """Return the part of a pydantic location that exists in the data, without the tags of
+    unions.
+    """
     location: list[str | int] = []
     for part in loc:
         if isinstance(data, dict):
@@ -279,11 +281,11 @@ _OTHER_NAMES = {
     "breaking_load": "mbl breaking_strength strength",
     "working_load": "wll swl",
 }
-"""Common alternative names of keys."""
+"""Common alternative names of keys, and the keys that they stand for."""
 
 
 def unknown_key(name: str, keys: list[str], owner: str = "") -> str:
-    """Return the message about an unknown key, with the key probably meant."""
+    """Return the message about an unknown key, with the most similar valid key."""
     return unknown(f"unknown key `{shown(name)}`{owner}", _nearest_key(name, keys) or name, keys)
 
 
@@ -326,7 +328,7 @@ _SHAPES: Mapping[str, str] = {
 
 
 def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Return an example of the value of a key, if it is a mapping or a list and has an example."""
+    """Return an example for a key whose value is a mapping or list, if its schema has one."""
     field = model.model_fields.get(str(loc[0])) if loc else None
     inside = {key for one in _models_in(field and field.annotation) for key in one.model_fields}
     if loc[1:] and (len(loc) > 2 or loc[1] in inside or isinstance(loc[1], int)):

@@ -1,4 +1,4 @@
-"""Messages about invalid YAML: the mistake that people made, instead of the state of the parser."""
+"""Messages about invalid YAML that name the mistake of the writer instead of the parser state."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from yaml.error import Mark, MarkedYAMLError
 
 Mistake = tuple[int, int, str]
-"""Line and column, from 1, and the message."""
+"""Line and column, counted from 1, and the message."""
 
 _KEY = re.compile(r"\s*(?:- +)*(?:[{\[] *)?[\w-]+:(?= |$)")
 _OPENING = {"mapping": "{", "sequence": "["}
@@ -22,7 +22,7 @@ def without_colon(text: str) -> str:
 
 
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
-    """Return the mistake behind an error of the parser, every tab in the indentation being one.
+    """Find the mistake behind a parser error; every tab in the indentation is reported.
 
     An error of an unknown kind is reported in the words of the parser.
     """
@@ -82,8 +82,8 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
 
 
 def _colon(lines: list[str], mark: Mark) -> Mistake | None:
-    """Return the mistake at a colon where none is allowed: the second of its line, one after a
-    line without any, or one in a line that is indented too far.
+    """Explain a misplaced colon: second on its line, after a line without a colon, or on a line
+    with too much indentation.
     """
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
@@ -113,7 +113,7 @@ def _indent(line: str) -> int:
 
 
 def _content(line: str) -> str:
-    """Return a line without its comment, indentation and the dash of a list."""
+    """Return the content of a line, without indentation, list dash and comment."""
     return re.sub(r"(?:^|\s)#.*", "", line).strip().removeprefix("- ").strip()
 
 

@@ -1,4 +1,4 @@
-"""The line builder inside a page: receives messages of the page, and sends files and documents."""
+"""Line builder in a web page: receives messages from the page, and sends files and documents."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from calm.tui.session import Session
 from calm.tui.start import open_session
 
 Post = Callable[[str, str, bytes | None], object]
-"""Function that sends the page a message: kind, text (often a name), and content of a file."""
+"""Function that sends a message to the page: kind, text (often a name), and file content."""
 
 
 class Button(NamedTuple):
@@ -51,7 +51,7 @@ NEW = "mooring.yaml"
 
 
 class PageBuilder(BuildApp):
-    """The line builder; it passes every saved file to the page."""
+    """Line builder that passes every saved file to the page."""
 
     def __init__(self, session: Session, kept: KeptWork | None, page: WebPage) -> None:
         super().__init__(session, kept=kept)
@@ -66,7 +66,7 @@ class PageBuilder(BuildApp):
 
 
 class WebPage:
-    """A page: a folder of files in its memory, and the builder of one of these files.
+    """A page, with a folder of files in memory and the builder for one of these files.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class WebPage:
     # the builder
 
     async def run(self) -> None:
-        """Edit one file after the other; a page has nothing else to return to."""
+        """Edit files one after the other without end, since the page has nothing else to show."""
         while True:
             await self.build()
 
@@ -119,11 +119,11 @@ class WebPage:
 
     @property
     def app(self) -> PageBuilder | None:
-        """The running builder, if any."""
+        """Running builder, if any."""
         return self._app
 
     def receive(self, message: Mapping[str, Any]) -> None:
-        """Handle a message of the page.
+        """Handle a message from the page.
 
         Kinds: `type` (input of keyboard and mouse), `resize` (columns, rows), `act` (action of
         `BAR`), `open` (names and contents of files), `example` (name of a file in `lines`), `new`,
@@ -149,7 +149,7 @@ class WebPage:
             self._make(message["text"])
 
     def _act(self, app: PageBuilder, name: str) -> None:
-        """Run the action of a button; an action of the line is run by its key."""
+        """Run the action of a button; actions on the line are run by simulating their key."""
         if name.startswith("app."):
             app.call_later(app.run_action, name)
         elif app.screen is not app.builder:
@@ -161,7 +161,7 @@ class WebPage:
             app.call_later(app.simulate_key, action.keys.partition(",")[0])
 
     def _open(self, files: Mapping[str, bytes]) -> None:
-        """Write files into the folder, and edit the first mooring among them."""
+        """Write files to the folder, and edit the first mooring among them."""
         paths = []
         for name, content in files.items():
             path = self._folder / PurePosixPath(name.replace("\\", "/")).name
@@ -181,7 +181,7 @@ class WebPage:
             self._app.exit(0)
 
     def _make(self, kind: str) -> None:
-        """Make a document after the typed text has been solved."""
+        """Create a document after the current text has been solved."""
         app = self._app
         if app is None:
             return
@@ -217,7 +217,7 @@ def _is_mooring(path: Path) -> bool:
 
 
 def _touched(path: Path) -> float:
-    """When a file, or what was kept of it unsaved, was written last."""
+    """Return the time at which a file, or its backup copy, was last written."""
     kept = path.parent.glob(f".{path.name}.*{SUFFIX}")
     return max(each.stat().st_mtime for each in (path, *kept))
 

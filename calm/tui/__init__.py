@@ -1,1 +1,3 @@
-"""The line builder in the terminal: screens and widgets; `live` solves and judges the line."""
+"""Line builder in the terminal: screens and widgets; the module `live` solves and judges the
+line.
+"""

@@ -1,4 +1,4 @@
-"""Changes of the file that correct findings of the design check.
+"""Suggest changes to the file that correct findings of the design check.
 
 This module does not depend on the screen. Targets are met by the search of `calm size`.
 """
@@ -27,7 +27,7 @@ _GRAVE = (State.FAIL, State.WARN)
 
 @dataclass(frozen=True)
 class Offer:
-    """A change that is offered.
+    """A suggested change.
 
     Attributes
     ----------
@@ -42,13 +42,13 @@ class Offer:
 
 
 def single(view: View) -> LegResult | None:
-    """Return the line of a mooring with an equilibrium; None for a tow or several legs."""
+    """Return the solved line of a mooring; None for a tow, several legs, or no equilibrium."""
     result = view.result
     return None if result is None or result.several or result.towed else result.leg
 
 
 def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
-    """Return remedies for the failures and warnings of a line, the most severe first."""
+    """Return suggested changes for the failures and warnings of a line, the most severe first."""
     result = single(view)
     if view.result is None or result is None:
         return [*_against_lifting(view, catalogue)]
@@ -62,7 +62,7 @@ def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
 
 
 def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """Offer a heavier anchor for a line that lifts its anchor.
+    """Suggest a heavier anchor for a line that lifts its anchor.
 
     The weight is found with an anchor that holds any load.
     """
@@ -76,7 +76,8 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
 
 
 def sized(mooring: Design, target: str, change: str) -> Offer:
-    """Offer the smallest change that meets a target, both in the syntax of `calm size`.
+    """Suggest the smallest change of a quantity that meets a target; both are in the syntax of
+    `calm size`.
 
     Raises
     ------
@@ -136,7 +137,9 @@ def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
 
 
 def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """Offer the lightest anchor of the catalogue that is heavy enough, or a heavier one."""
+    """Suggest the lightest sufficient anchor in the catalogue, and a heavier version of the present
+    anchor.
+    """
     item = last.place.item
     heavy = [] if catalogue is None else [*_heavy_enough(catalogue, needed)]
     if heavy:
@@ -174,7 +177,9 @@ def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Return a change that writes a value; a new component deletes the `weight` of the row."""
+    """Return a change that writes a value; with a new component, the `weight` of the row is
+    deleted.
+    """
 
     def make(draft: Draft) -> Draft:
         made = draft.put(item, key, value)

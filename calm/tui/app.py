@@ -1,4 +1,4 @@
-"""The application handles the order of keys, the workers and the exit; screens show the draft."""
+"""Application: order of key presses, workers and exit. The screens display the draft."""
 
 import os
 import time
@@ -120,7 +120,8 @@ class BuildApp(App[int]):
             self._wait_for_listeners(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """Return the widgets that a key may affect: the focused widget, its ancestors, the screen.
+        """Return the widgets that a key press may affect: focused widget, its ancestors, and the
+        screen.
 
         Screens below are excluded: each message would repaint the whole screen. Lists are included:
         they post their selection without having the focus.
@@ -149,7 +150,9 @@ class BuildApp(App[int]):
     # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
-        """Return the line as the lowest screen: a screen below would be painted, too."""
+        """Return the line screen as the lowest screen; any screen below it would be painted,
+        too.
+        """
         return self.builder
 
     def on_mount(self) -> None:
@@ -199,7 +202,7 @@ class BuildApp(App[int]):
                 driver.write(self._pace.question(time.monotonic()))
 
     def on_cursor_position(self) -> None:
-        """Send the next changes; the terminal has displayed the previous frame."""
+        """Send the next changes, since the terminal has displayed the previous frame."""
         if self._late is not None:
             self._late.stop()
             self._late = None
@@ -224,7 +227,7 @@ class BuildApp(App[int]):
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Whether no value is being typed any more; an invalid value is reported."""
+        """Accept a value that is being typed; return False, with a message, if it is invalid."""
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def show_replaced_draft(self, message: str) -> None:
@@ -289,7 +292,7 @@ class BuildApp(App[int]):
             self.tell(message)
 
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
-        """Open the text if the draft cannot be parsed or, `as_judged`, has mistakes."""
+        """Open the text editor if the draft cannot be parsed or, with `as_judged`, has mistakes."""
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
             self.call_later(self._open_text)
@@ -324,7 +327,7 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Keep unsaved work now; return the reason if this fails, else ""."""
+        """Save unsaved work to its backup copy; return the reason for a failure, else ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -345,22 +348,22 @@ class BuildApp(App[int]):
             self.call_later(self.tell, f"Unsaved work cannot be kept: {error}", wrong=True)
 
     def on_unmount(self) -> None:
-        """Keep unsaved work, even after a failure or a closed page."""
+        """Save unsaved work to its backup copy, even after a failure or when the page is closed."""
         self.saving.presence.announce(None)
         self.save_copy_on_exit()
 
     def take_typed(self) -> None:
-        """Accept a valid value that is being typed, without questions."""
+        """Accept a value that is being typed, if it is valid."""
         if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Keep unsaved work unless the user has quit; set `not_kept` if this fails."""
+        """Save a backup copy unless the user has quit; set `not_kept` if this fails."""
         if not self._is_left:
             self.not_kept = self.keep()
 
     def leave(self) -> None:
-        """End the application without keeping unsaved work."""
+        """End the application without a backup copy of unsaved changes."""
         self._is_left, self._ends_at = True, time.monotonic() + 1.0
         if not self.session.changed:
             self.keep()  # removes an outdated copy

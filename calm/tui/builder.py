@@ -1,4 +1,4 @@
-"""The first screen: the line, its picture and the verdict, and the catalogue on request."""
+"""First screen: the line, its picture and its verdict; the catalogue opens on request."""
 
 from functools import partial
 from typing import Any
@@ -30,7 +30,7 @@ from calm.tui.screen import KeyBar
 from calm.tui.verdict_pane import VerdictPane
 
 _MOST_STEPS = 9
-"""Number of steps of the history in one list."""
+"""Maximum number of history steps in the list."""
 
 
 class BuilderScreen(ComparingScreen):
@@ -48,7 +48,7 @@ class BuilderScreen(ComparingScreen):
         self.line.table.focus()
 
     def on_key(self, event: Key) -> None:
-        """Remove the current message."""
+        """Clear the message in the key bar."""
         if not self.line.editor.is_open:
             self.tell("")
 
@@ -62,14 +62,14 @@ class BuilderScreen(ComparingScreen):
         self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
-        """Suspend to the shell; undo while a value is typed, or without a shell."""
+        """Suspend to the shell; if a value is being typed, or without a shell, undo instead."""
         if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
             self.app.action_suspend_process()
 
     def action_picture(self, tab: Tab) -> None:
-        """Show another picture."""
+        """Show the picture of a tab."""
         self.pictures.tab = tab
 
     def action_zoom(self) -> None:
@@ -98,7 +98,7 @@ class BuilderScreen(ComparingScreen):
         self.verdict.focus()
 
     def action_figures(self) -> None:
-        """Ask for all missing values of components, and write the answers."""
+        """Ask for all missing values of components, and write the answers to the file."""
         session = self.session
         if not self.settle():
             return
@@ -127,7 +127,7 @@ class BuilderScreen(ComparingScreen):
             self.tell(f"All component values are present so far. {PENDING}")
 
     def action_begin(self) -> None:
-        """Begin an empty line with a mooring."""
+        """Start a mooring from an empty line."""
         session = self.session
         if session.draft.items:
             self.tell("The line is not empty; templates are for new files")
@@ -143,7 +143,7 @@ class BuilderScreen(ComparingScreen):
         choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
-        """Show the changes made, and go back to the state before any of them."""
+        """List the changes made, and return to the state before a chosen change."""
         steps = self.session.history
         if not self.settle():
             return
@@ -168,7 +168,7 @@ class BuilderScreen(ComparingScreen):
         self.search(purpose)
 
     def action_define(self) -> None:
-        """Define a component in the file, and add it to the line."""
+        """Define a new component in the file, and add it to the line."""
         from calm.tui.component_screen import ComponentScreen
 
         index, session = self.workspace.index, self.session
@@ -186,7 +186,7 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(listed, session.components), take)
 
     def action_change_component(self) -> None:
-        """Change the component of the row in its form; keys that are not in the form are kept."""
+        """Edit the component of the row in a form; keys that are not in the form are unchanged."""
         from calm.tui.component_screen import ComponentScreen
 
         spot, session = self.line.table.spot, self.session
@@ -212,13 +212,13 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(begun=(id, values)), take)
 
     def action_water(self) -> None:
-        """Show depth, density, current and wind."""
+        """Open the screen for depth, density, current and wind."""
         from calm.tui.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
-        """Show the file as text."""
+        """Open the file in the text editor."""
         from calm.tui.text_screen import TextScreen
 
         spot, session = self.line.table.spot, self.session
@@ -233,7 +233,7 @@ class BuilderScreen(ComparingScreen):
         self.workspace.edited()
 
     def action_sheet(self, name: str) -> None:
-        """Edit a group of keys of the whole file on a sheet."""
+        """Edit a group of file-level keys on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         part = part_of_row(None if view is None else view.file, self.line.table.spot)
         sheet, label, changed = sheet_of(name, session.draft, part)
@@ -244,7 +244,7 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, sheet, take)
 
     def action_settings(self) -> None:
-        """Choose a section of the file, and open its form."""
+        """Choose a section of the file, and edit the section in a form."""
         models = MooringKeys.model_fields
         answers = numbered(
             (f"{name}: {models[name].description}", partial(self.action_sheet, name))

@@ -1,4 +1,4 @@
-"""The catalogue: incremental search, component card, and questions for length or position."""
+"""Catalogue pane: incremental search, component card, and questions for length or position."""
 
 from collections.abc import Callable, Sequence
 from itertools import zip_longest
@@ -67,7 +67,7 @@ class ComponentList(TableCells, can_focus=False):
         by: str | None = None,
         favourites: frozenset[str] = frozenset(),
     ) -> None:
-        """List components sorted by the value `by`, with the cursor on the first."""
+        """List components sorted by the quantity `by`, with the cursor on the first."""
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
         self._index, self._by, self._favourites = index, by, favourites
@@ -97,7 +97,9 @@ class ComponentList(TableCells, can_focus=False):
         return [*columns, TableColumn("name", "", start, max(width - start, 0))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the id, value or name; a name that does not fit is only on the card."""
+        """Return the text of a cell: id, value or name. Names too long for the column are only on
+        the card.
+        """
         each: Listed = self.rows[number]
         if column.name == "id":
             return each.id
@@ -108,7 +110,7 @@ class ComponentList(TableCells, can_focus=False):
         return figure.shown(figures.get(column.name))
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the cursor, the star of a favourite, and the sign of the role."""
+        """Return the leading cells of a row: cursor, star of a favourite, and sign of the role."""
         each: Listed = self.rows[number]
         cursor = theme.CURSOR if number == self.cursor else " "
         star = theme.FAVOURITE if each.id in self._favourites else " "
@@ -121,7 +123,7 @@ class ComponentList(TableCells, can_focus=False):
         return self.rich_style + self.look("component-list--cursor")
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Style of an id or a name; values have the style of the row."""
+        """Style of a cell with an id or a name; cells with values have the style of the row."""
         look = {"id": "own" if self.rows[number].own else "id", "name": "name"}.get(column.name)
         if look is None:
             return style
@@ -129,7 +131,7 @@ class ComponentList(TableCells, can_focus=False):
 
 
 Purpose = Literal["below", "above", "clamp", "replace"]
-"""Purpose of the search."""
+"""Purpose of a catalogue search."""
 
 _TITLES = {
     "below": "Add below",
@@ -140,7 +142,8 @@ _TITLES = {
 
 
 class CataloguePane(Vertical):
-    """Search field, list and card; asks for the length of a cable or the position of a clamp.
+    """Pane with search field, list and card; it asks for the length of a cable or the position of a
+    clamp.
 
     Parameters
     ----------
@@ -210,7 +213,7 @@ class CataloguePane(Vertical):
     def open(
         self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
-        """Open the search of a component for the row `target` ("" in an empty line).
+        """Open the search for a component next to the row `target` ("" in an empty line).
 
         Favourites come first; then, until words are typed, components with this `role`, recent
         components, and components of the line. With `clampable`, only components for clamps.
@@ -223,7 +226,7 @@ class CataloguePane(Vertical):
         self.search.focus()
 
     def retitle(self, target: str) -> None:
-        """Show the row next to which the component will be added."""
+        """Update the title, which names the row next to which the component will be added."""
         self._target = target
         text = f"{_TITLES[self.purpose]} {target}" if target else "The top of the line"
         if self._by is not None:
@@ -270,7 +273,7 @@ class CataloguePane(Vertical):
         self._search()
 
     def action_mark(self) -> None:
-        """Mark the component as a favourite, or unmark it."""
+        """Toggle the favourite mark of the component."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:
@@ -289,7 +292,7 @@ class CataloguePane(Vertical):
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
-        """Add the component to the line, or first ask for required values."""
+        """Add the component to the line, after asking for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return

@@ -1,4 +1,4 @@
-"""A table whose values are edited in place."""
+"""Table with in-place editing of values."""
 
 from collections.abc import Callable
 from typing import Literal
@@ -12,11 +12,11 @@ from calm.tui.checking import Check, Reading, anything
 from calm.tui.scrolled import TableCells
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
-"""Movement of the cursor after a value is accepted."""
+"""Cursor movement after a value is accepted."""
 
 
 class EditableTable(Vertical):
-    """A table, and over it the line of input that edits the cell under its cursor.
+    """A table with an input line over the edited cell.
 
     Subclasses call `open_editor`, and implement `write` and the movement of the cursor (`go_on`).
     `tell` shows a message in the last line of the screen.
@@ -36,27 +36,27 @@ class EditableTable(Vertical):
         yield self.editor
 
     def write(self, text: str) -> None:
-        """Write a valid text into the edited cell."""
+        """Write a valid text to the edited cell."""
         raise NotImplementedError
 
     def tell_reading(self, reading: Reading) -> None:
-        """Show the interpretation of the text typed so far."""
+        """Show how the text typed so far is interpreted."""
         self.tell(reading.told(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Move on after a text was accepted; None if the value is unchanged."""
+        """Move the cursor after a text was accepted; the text is None if the value is unchanged."""
         raise NotImplementedError
 
     def abandoned(self) -> None:
         """Hook that is called when editing is cancelled."""
 
     def action_move_column(self, by: int) -> None:
-        """Go to the left or the right."""
+        """Move the cursor to the left or the right."""
         self.table.column += by
 
     @property
     def is_typing(self) -> bool:
-        """Whether a typed value is not written yet."""
+        """Whether a typed value has not been written yet."""
         return self.editor.is_typing
 
     def open_editor(
@@ -86,7 +86,7 @@ class EditableTable(Vertical):
         return reading.is_good
 
     def _take_typed(self) -> str | None:
-        """Write the typed, valid text, if any, into its cell."""
+        """Write the typed text to its cell, if it is valid."""
         text = self.editor.text
         self.leave_cell()
         if text is not None:
@@ -102,14 +102,14 @@ class EditableTable(Vertical):
             self.tell("")
 
     def done(self, then: Then) -> None:
-        """Accept the valid text, and move on unless the focus is elsewhere."""
+        """Write a valid text, and move the cursor unless the focus is elsewhere."""
         is_here = self.editor.is_here
         text = self._take_typed()
         if is_here:
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Cancel editing; report the `reason` if an invalid text is discarded."""
+        """Cancel editing; if an invalid text is discarded, report the `reason`."""
         self.leave_cell()
         self.abandoned()
         if reason:
@@ -117,7 +117,7 @@ class EditableTable(Vertical):
 
 
 class CellEditor(field.ScrolledEntry):
-    """Input over a cell that reports its interpretation of the text at each key."""
+    """Input line over a cell, which shows how its text is interpreted at each key press."""
 
     BINDINGS = key_table.bindings("cell")
     DEFAULT_CSS = """
@@ -142,11 +142,11 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_here(self) -> bool:
-        """Whether the editor receives the keys; `has_focus` is updated later."""
+        """Whether the editor receives key presses; `has_focus` is updated too late for this."""
         return self.screen.focused is self
 
     def open(self, text: str, check: Check, *, begun: bool = False) -> None:
-        """Begin to edit a text.
+        """Open the editor with a text.
 
         The first key replaces the text, or continues a text that is `begun`.
         """
@@ -174,7 +174,7 @@ class CellEditor(field.ScrolledEntry):
         return reading.text if reading.is_good and (self.is_typing or is_completed) else None
 
     def settle(self) -> Reading:
-        """Check the typed text; an invalid text stays in the editor. Untouched text is valid."""
+        """Accept a valid or unchanged text; an invalid text stays in the editor."""
         if not self.is_typing:
             return Reading(self.value)
         return self._judged()
@@ -185,12 +185,12 @@ class CellEditor(field.ScrolledEntry):
         return reading
 
     def watch_value(self) -> None:
-        """Check the text at each key."""
+        """Check the text at each key press."""
         if self.is_open:
             self._owner.tell_reading(self._judged())
 
     def action_done(self, then: Then = "stay") -> None:
-        """Accept the text and move on."""
+        """Accept the text and move the cursor."""
         reading = self._judged()
         if reading.is_good:
             self._owner.done(then)
@@ -199,7 +199,9 @@ class CellEditor(field.ScrolledEntry):
             self.correct(reading)
 
     def action_right(self) -> None:
-        """Accept typed text if the cursor is at its end, as in a spreadsheet; else move it."""
+        """Accept typed text if the cursor is at its end, as in a spreadsheet; otherwise move the
+        text cursor.
+        """
         if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
             self.action_done("right")
         else:

@@ -1,4 +1,4 @@
-"""Checks of typed text at each key: accepted, completed by its unit, or rejected."""
+"""Check typed text at each key press: accept it, complete its unit, or reject it."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -44,7 +44,9 @@ class Reading:
         return self.complaint
 
     def told(self, typed: str) -> str:
-        """Return the note of an invalid text, or the meaning of a valid text if not obvious."""
+        """Text for the user: the error in an invalid text, or the meaning of a valid text if not
+        obvious.
+        """
         is_completed = self.text and self.text != " ".join(typed.split())
         return self.note or self.comes_to or (f"= {self.text}" if is_completed else "")
 
@@ -59,7 +61,7 @@ def anything(text: str) -> Reading:
 
 
 def one_of(words: Sequence[str]) -> Check:
-    """Accept one of the words, or empty text; the start of a word is completed."""
+    """Accept one of the given words, or empty text; an abbreviated word is completed."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()
@@ -72,7 +74,7 @@ def one_of(words: Sequence[str]) -> Check:
 
 
 def needed(what: str) -> Check:
-    """Accept any text except an empty one."""
+    """Accept any nonempty text."""
 
     def check(text: str) -> Reading:
         reading = anything(text)
@@ -84,7 +86,7 @@ def needed(what: str) -> Check:
 def quantity(
     kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None
 ) -> Check:
-    """Accept a quantity; a number alone is completed by `usual_unit`, by default the SI unit."""
+    """Accept a quantity. A bare number gets the unit `usual_unit`, by default the SI unit."""
 
     def check(text: str) -> Reading:
         tidy = " ".join(text.split())
@@ -125,7 +127,7 @@ number = quantity(QuantityField("number"))
 
 
 def count(text: str) -> Reading:
-    """Check a count, a whole number; empty text is 1."""
+    """Accept a count, a whole number; empty text means 1."""
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")
@@ -137,12 +139,14 @@ def count(text: str) -> Reading:
 
 
 def distance(before: str = "") -> Check:
-    """Check of a clamp's distance from the upper end of the piece."""
+    """Accept the distance of a clamp from the upper end of its piece."""
     return quantity(LENGTH, usual_unit=unit_of(before))
 
 
 def length(before: str = "", *, towed: bool = False) -> Check:
-    """Check of a length, alone, with its load (``at``), or ``fit`` with the depth to reach."""
+    """Accept a length, a length with the load at which it was measured (``at``), or ``fit`` with
+    the depth to reach.
+    """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
     load = quantity(item_keys.LOAD, usual_unit="kN")
@@ -164,7 +168,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
 
 
 def _joined(long: Reading, load: Reading) -> Reading:
-    """Combine the readings of a length and of the load at which it is measured."""
+    """Combine the readings of a length and of the load at which the length is measured."""
     offers = [each.offer or each.text for each in (long, load)]
     offer = " at ".join(offers) if long.offer or load.offer else None
     complaint = long.complaint or load.complaint
@@ -172,7 +176,7 @@ def _joined(long: Reading, load: Reading) -> Reading:
 
 
 def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Value | None]:
-    """Return the keys of an item for a length text accepted by `length`."""
+    """Convert a length text accepted by `length` to keys of an item."""
     key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
     fit, measured = _FIT.fullmatch(text), _AT_LOAD.fullmatch(text)
     if fit is not None:
@@ -185,7 +189,7 @@ def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Val
 
 
 def length_text(values: Mapping[str, str]) -> str:
-    """Return the length of an item in the form in which it is typed."""
+    """Format the length of an item in the form in which it is typed."""
     written = values.get("length", "") or values.get("length_at", "")
     if written != "fit":
         return written

@@ -1,4 +1,4 @@
-"""Tasks around the line: advice, comparisons, reports and deck sheets."""
+"""Actions on the main screen: advice, comparisons, reports and deck sheets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MOST_LINES = 24
 _MOST_OFFERS = 9
 _DOCUMENTS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
-"""Command that writes each document, and its option for the folder."""
+"""Command that writes each document, and the option of the command for the output folder."""
 
 
 class ComparingScreen(line_screen.LineScreen):
@@ -36,7 +36,7 @@ class ComparingScreen(line_screen.LineScreen):
     """
 
     def action_compare(self) -> None:
-        """Show the changes since the file was saved, and draw the saved line."""
+        """List the changes since the last save, and draw the saved line for comparison."""
         if not self.settle():
             return
         if not self.session.changed:
@@ -68,7 +68,7 @@ class ComparingScreen(line_screen.LineScreen):
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _effects(self, before: View, after: View) -> list[str]:
-        """Return the differences between two lines, both judged fully; for a thread."""
+        """Compare two lines after a full check of both; runs in a thread."""
         from calm.tui.advice import differences
         from calm.tui.live import judge_fully
 
@@ -78,7 +78,7 @@ class ComparingScreen(line_screen.LineScreen):
     # advice
 
     def action_advise(self) -> None:
-        """Offer changes that correct findings or meet a target."""
+        """Suggest changes that correct findings or meet a target."""
         from calm.tui.advice import offers, single
 
         if not self.settle():
@@ -122,7 +122,7 @@ class ComparingScreen(line_screen.LineScreen):
         enter(self.app, "A target to meet", text, fields, take)
 
     def _try(self, offer: Offer, before: View) -> None:
-        """Compute a change in a thread, and ask for confirmation, showing its effects."""
+        """Compute a suggested change in a thread, show its effects, and ask for confirmation."""
         session, draft = self.session, self.session.draft
 
         def work() -> None:
@@ -190,7 +190,7 @@ class ComparingScreen(line_screen.LineScreen):
         enter(self.app, "Output folder", "", fields, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
-        """Run the command in a thread, and show its last message."""
+        """Run a document command in a thread, and show its last message."""
         folder, (command, option) = Path(texts["folder"]).expanduser(), _DOCUMENTS[what]
         words = [sys.executable, "-m", "calm", command, str(path), option, str(folder)]
         words += [word for each in self.session.catalogs for word in ("--catalog", str(each))]
@@ -208,7 +208,7 @@ class ComparingScreen(line_screen.LineScreen):
 
 
 def changed_lines(before: str, after: str) -> list[str]:
-    """Return the first removed (``-``) and added (``+``) lines."""
+    """Return the first removed (``-``) and added (``+``) lines of a text comparison."""
     diff = unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
     lines = [line for line in diff if not line.startswith(("---", "+++", "@@"))]
     more = len(lines) - _MOST_LINES

@@ -1,4 +1,6 @@
-"""Form of a component of the file; each value is checked as it is typed, and all together."""
+"""Form for a component of the file; each value is checked as it is typed, and all values on
+completion.
+"""
 
 from collections.abc import Collection
 from typing import Any
@@ -18,7 +20,7 @@ from calm.tui.forms import FormField, filled, form_of, values_of
 from calm.tui.screen import KeyBar, TitleBar
 
 Defined = tuple[str, dict[str, str]]
-"""Id of a component, and the texts of its form by key."""
+"""Component id, and form texts by key."""
 
 
 class ComponentScreen(dialogs.Form[Defined]):
@@ -117,7 +119,7 @@ class ComponentScreen(dialogs.Form[Defined]):
     @on(Field.Judged)
     @on(events.DescendantFocus)
     def _judge(self) -> None:
-        """Show the component that results from the values, and its errors."""
+        """Show the component that results from the entered values, with errors."""
         from rich.console import Group, RenderableType
         from rich.text import Text
 
@@ -141,7 +143,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_take(self) -> None:
-        """Return the component if it is valid."""
+        """Return the component if all values are valid."""
         if not all_settled(self.all_parts):
             return
         component, problems = defined(*self._all())
@@ -156,7 +158,9 @@ _FIRST = ("name", "manufacturer", "role")
 
 
 def form_fields(kind: str) -> list[FormField]:
-    """Return the fields of a kind: names, required keys, keys of this kind, common keys."""
+    """Return the form fields of a component kind, in the order: names, required keys, keys of the
+    kind, common keys.
+    """
     fields = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
 
     def rank(each: FormField) -> tuple[int, ...]:
@@ -168,7 +172,7 @@ def form_fields(kind: str) -> list[FormField]:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Check of an id, given the ids `own` that the file defines already."""
+    """Return a check for a new component id, which may not be one of the ids `own` in the file."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()

@@ -40,7 +40,7 @@ Then = Callable[[], object]
 
 
 def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
-    """Open a screen on top, and pass its result to `take` unless it is cancelled."""
+    """Open a screen on top of the others, and pass its result to `take` unless it is cancelled."""
 
     def taken(given: T | None) -> None:
         if given is not None:
@@ -50,7 +50,7 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
 
 
 def choose(app: App[Any], question: Question) -> None:
-    """Ask a question, and call the action of the answer."""
+    """Ask a question, and run the action of the chosen answer."""
     ask(app, question, lambda then: then())
 
 
@@ -61,13 +61,13 @@ def enter(
     fields: Sequence[FormField],
     take: Callable[[dict[str, str]], object],
 ) -> None:
-    """Ask for texts on an `InputSheet`, and pass them to `take`."""
+    """Ask for several texts on an `InputSheet`, and pass them to `take`."""
     ask(app, InputSheet(title, text, fields), take)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer with its key, its text and its action."""
+    """A possible answer, with its key, text and action."""
 
     key: str
     title: str
@@ -75,7 +75,7 @@ class Answer:
 
 
 def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
-    """Number (title, action) pairs from 1; the numbers are their keys."""
+    """Number answers, given as (title, action), from 1; each number is the key of its answer."""
     return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
@@ -154,11 +154,13 @@ class Question(ModalScreen[Then | None]):
 
 
 class Form(Screen[T | None]):
-    """Fields that are entered together: Enter goes to the next field and finally accepts all."""
+    """Fields that are entered together: Enter moves to the next field, and on the last field
+    accepts all.
+    """
 
     @property
     def fields(self) -> list[Field]:
-        """All fields in order, without the tables."""
+        """All fields in order; tables are not included."""
         return list(self.query(Field))
 
     @property
@@ -173,7 +175,7 @@ class Form(Screen[T | None]):
         return {part.key: part.text for part in self.all_parts}
 
     def parts_of(self, fields: Iterable[FormField]) -> Iterator[Widget]:
-        """Yield the widgets of the fields, under the names of their groups."""
+        """Yield the widgets of the fields, each group under its name."""
         for each in fields:
             if each.above:
                 yield Static(each.above, classes="above", markup=False)
@@ -204,12 +206,12 @@ class Form(Screen[T | None]):
 
 
 _BELOW = 7
-"""Lines of a sheet outside its fields: margins, a note of two lines, the keys."""
+"""Number of lines on a sheet that are not fields: margins, a two-line note, the keys."""
 _TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ go on"
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
-    """Sheet of several texts; Esc discards all changes.
+    """Sheet with several text fields; Esc discards all changes.
 
     It is wide if the fields have notes next to them.
     """

@@ -1,4 +1,4 @@
-"""Input fields for values, with the interpretation of the text at each key."""
+"""Input fields that show how their text is interpreted at each key press."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Input that leaves pasted text of several lines to its container."""
+    """Text input that leaves pasted text of several lines to its container."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
@@ -32,7 +32,7 @@ class ScrolledEntry(Input):
         self.cursor_blink = False
 
     def on_paste(self, event: events.Paste) -> None:
-        """Ignore pasted tables, of which Textual would use the first row."""
+        """Ignore a pasted table; Textual would insert its first row."""
         if len(event.text.splitlines()) > 1:
             event.prevent_default()
 
@@ -44,19 +44,19 @@ class ScrolledEntry(Input):
 
 
 class Part(Protocol):
-    """A part of a form: a field, or a table."""
+    """A part of a form: a field or a table."""
 
     @property
     def key(self) -> str:
-        """Key of the value."""
+        """Key of the value in the file."""
 
     @property
     def text(self) -> str:
-        """Entered text in the form in which it is written."""
+        """Entered text, in the form that is written to the file."""
 
     @property
     def input(self) -> Widget:
-        """Widget that receives the keys."""
+        """Widget that receives the key presses."""
 
     def settle(self) -> bool:
         """Accept the typed text; return whether it is valid."""
@@ -71,7 +71,7 @@ def all_settled(fields: Iterable[Part]) -> bool:
 
 
 class Field(Horizontal):
-    """A name, an input and a note.
+    """Name, text input, and a note on the input.
 
     Only the input is a widget of its own: each of the dozens in a form takes time to start. The
     field writes the name into the margin of the input, and the note behind the input.
@@ -124,7 +124,7 @@ class Field(Horizontal):
         yield self.input
 
     def render(self) -> Content:
-        """Render the name and the note, as far as there is room."""
+        """Render the name and, if there is room, the note."""
         before, width = self.input.styles.margin.left, self.input.outer_size.width + 1
         title = Content(self.form_field.title).truncate(before, ellipsis=True, pad=True)
         room = max(self.content_size.width - before - width, 0)
@@ -133,18 +133,18 @@ class Field(Horizontal):
         return Content.assemble(title, " " * width, (note.plain, style))
 
     def notify_style_update(self) -> None:
-        """Render again: the input may have another margin and width."""
+        """Render again, since the margin and width of the input may have changed."""
         super().notify_style_update()
         self.refresh()
 
     @property
     def is_typing(self) -> bool:
-        """Whether the text differs from the text shown first."""
+        """Whether the text differs from the initial text."""
         return self.input.value != self._shown
 
     @property
     def text(self) -> str:
-        """Typed text in the form in which it is written, or the initial text."""
+        """Typed text in the form that is written to the file, or the initial text if unchanged."""
         return self.reading.text if self.is_typing else self.begun
 
     @property
@@ -153,14 +153,14 @@ class Field(Horizontal):
         return self.check(self.input.value)
 
     def reset(self, text: str) -> None:
-        """Show another initial text."""
+        """Replace the initial text."""
         self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
         self._tell(Reading(text))
 
     def tell(self, note: str) -> None:
-        """Show another note unless the text is invalid; "" shows the description of the field."""
+        """Replace the note unless the text is invalid; "" shows the description of the field."""
         self._note = note or self.form_field.takes
         if not self.has_class("-wrong"):
             self._show_note(self._note)
@@ -197,7 +197,9 @@ class Field(Horizontal):
             self.settle()
 
     def settle(self) -> bool:
-        """Commit a valid text or insert a correction; return whether the text was valid."""
+        """Accept a valid text, or insert a suggested correction; return whether the text was
+        valid.
+        """
         reading = self.reading
         if not reading.is_good:
             self._tell(reading)
@@ -214,7 +216,7 @@ class Field(Horizontal):
 
 
 class Cycle(Widget, can_focus=True):
-    """A choice of words between two arrows."""
+    """Selector of one word from a list, between two arrows."""
 
     BINDINGS = bindings("choice")
     DEFAULT_CSS = """
@@ -246,22 +248,22 @@ class Cycle(Widget, can_focus=True):
         return "← → another, ↑ ↓ go on"
 
     def show(self, word: str) -> None:
-        """Show another word."""
+        """Select a word."""
         self.word = word
         self.refresh()
 
     def next_word(self, by: int) -> str:
-        """Return the word after the one shown, or before it."""
+        """Return the next or the previous word of the list."""
         here = self.words.index(self.word) if self.word in self.words else 0
         return self.words[(here + by) % len(self.words)]
 
     def action_turn(self, by: int) -> None:
-        """Go to the next word."""
+        """Select the next or the previous word."""
         self.show(self.next_word(by))
         self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
-        """Go to the next word by mouse."""
+        """Select the next word."""
         self.action_turn(1)
 
     def render(self) -> Text:

@@ -1,4 +1,4 @@
-"""Forms of the file: fields for the keys of a model, and the text form of their values.
+"""Forms for sections of the file: fields for the keys of a model, and conversion of values to text.
 
 A structured value is typed as YAML in brackets, `[98 m, 104 m]`; a list of rows is a table, whose
 text is also YAML.
@@ -27,7 +27,7 @@ _EXAMPLE = re.compile(r",? ?e\.g\. [^;]+;? ?")
 
 @dataclass(frozen=True)
 class FormColumn:
-    """A column of a table, with the key of its rows ("" if the rows are lists)."""
+    """A table column, with the key of its values in each row ("" if the rows are lists)."""
 
     key: str
     heading: str
@@ -59,7 +59,7 @@ class FormField:
 
 
 def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[FormField]:
-    """Return the fields of a model: required keys first, keys of nested models last.
+    """Create the form fields of a model: required keys first, keys of nested models last.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Return the only model of an annotation, or None if there is none or a choice."""
+    """Return the model in a type annotation; None if there is none, or a choice of several."""
     members = _members(annotation)
     return members[0] if len(members) == 1 and _is_model(members[0]) else None
 
@@ -111,7 +111,7 @@ def _form_field(model: type[BaseModel], name: str, at: str, *, needed: bool) -> 
 
 
 def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Reading:
-    """Check a text by the model, which accepts or rejects its value."""
+    """Check a text by validating its value with the model."""
     tidy = " ".join(text.split())
     if not tidy:
         return Reading("", "a value is needed" if needed else "")
@@ -119,7 +119,7 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the columns of a list of models or of fixed-length rows, else ()."""
+    """Return the table columns for a list of models or of fixed-length rows, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]
@@ -174,23 +174,25 @@ def _as_texts(value: Any) -> Value:
 
 
 def text_of(value: Value | None) -> str:
-    """Return the typed form of a value: a text unchanged, any other value as inline YAML."""
+    """Convert a value to typed form: a text unchanged, any other value as inline YAML."""
     return value or "" if isinstance(value, str | None) else inline(value)
 
 
 def value_of(text: str) -> Value | None:
-    """Parse a typed value; None if it is empty."""
+    """Parse a typed value; None if the text is empty."""
     value = read_inline(text) if text[:1] in ("[", "{") else text
     return None if value in ("", [], {}) else value
 
 
 def rows_of(text: str, columns: Sequence[FormColumn]) -> Rows | None:
-    """Return the rows of a table, or None if a row does not fit the columns."""
+    """Parse a text to table rows; None if a row does not fit the columns."""
     return rows_in(value_of(text), columns)
 
 
 def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
-    """Return the rows of a value of the file, or None; missing cells are blank."""
+    """Convert a table in the file to rows of text; None if it does not fit. Missing cells are
+    blank.
+    """
     keys = {column.key for column in columns}
     rows = []
     for row in value if isinstance(value, list) else [] if value is None else [value]:
@@ -204,7 +206,7 @@ def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
 
 
 def text_of_rows(rows: Iterable[Sequence[str]], columns: Sequence[FormColumn]) -> str:
-    """Return the text of a table, without empty rows."""
+    """Convert table rows to text, without empty rows."""
     return text_of([_row(row, columns) for row in rows if any(row)])
 
 
@@ -216,7 +218,7 @@ def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
 
 
 def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
-    """Return the fields filled with the texts of the file."""
+    """Return the form fields with texts from the file."""
 
     def at(key: str) -> Any:
         found = values
@@ -228,7 +230,7 @@ def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
 
 
 def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
-    """Return the values of a form by key, nested for nested models, without blank values."""
+    """Return form values by key, nested as in the model, without blank values."""
     values: dict[str, Any] = {}
     for place, text in texts.items():
         *outer, key = place.split(".")
@@ -241,7 +243,7 @@ def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
 
 
 def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
-    """Return the file with the texts of a form; a blank text deletes its key."""
+    """Return the file with the texts of a form written to it; a blank text deletes its key."""
     for key, text in texts.items():
         place = (*below, *key.split("."))
         old, new = draft.value(place), value_of(text)

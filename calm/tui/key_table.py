@@ -1,4 +1,4 @@
-"""All actions of the builder with their keys, for bindings, key bar, help and palette."""
+"""All actions of the builder with their keys, used for bindings, key bar, help and palette."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -205,7 +205,7 @@ leave | escape | go back |  | Go back, where possible.
 [help] This help
 dismiss | escape,q,enter,question_mark,f1 | close |  | Close the help.
 """
-"""Actions by place, below the heading of the place in the help.
+"""Actions of each part of the builder, under the heading of that part in the help.
 
 Each row is: name | keys | title | rank in the key bar | meaning. Lines that begin with a blank
 continue the meaning. A ``-`` as rank excludes the action from the palette.
@@ -219,9 +219,9 @@ def _action(place: str, row: str) -> Action:
 
 
 PLACES: dict[str, str] = {}
-"""Headings of the help by place, in order."""
+"""Help headings by part of the builder, in order."""
 ACTIONS: dict[str, list[Action]] = {}
-"""Actions of each place, in order."""
+"""Actions by part of the builder, in order."""
 
 for _section in _TABLE.strip("\n[").replace("\n  ", " ").split("\n["):
     _head, *_rows = _section.splitlines()
@@ -235,7 +235,7 @@ _KEYS = {**_ARROWS, **_SHORT, "slash": "/", "space": "Space"}
 
 
 def shown_key(key: str) -> str:
-    """Return the usual name of a key: ``ctrl+s`` → ``Ctrl+S``, ``question_mark`` → ``?``."""
+    """Convert a key name to its usual form: ``ctrl+s`` → ``Ctrl+S``, ``question_mark`` → ``?``."""
     *held, last = key.split("+")
     if len(last) == 1:
         last = last.upper() if held else last
@@ -246,17 +246,17 @@ def shown_key(key: str) -> str:
 
 
 def shown_keys(keys: str) -> str:
-    """Return the usual names of keys that are separated by commas."""
+    """Convert comma-separated key names to their usual form."""
     return "  ".join(map(shown_key, keys.split(",")))
 
 
 def bindings(place: str) -> list[BindingType]:
-    """Return the bindings of a place, for the widget or screen with its methods."""
+    """Return the key bindings for a widget or screen, which has the action methods."""
     return [Binding(each.keys, each.name, each.title, show=False) for each in ACTIONS[place]]
 
 
 def hints(place: str) -> list[Action]:
-    """Return the actions in the key bar while a place has the focus, the most used first."""
+    """Return the actions for the key bar of a focused widget, most used first."""
     places = ("line", "anywhere") if place == "line" else (place,)
     own = [each for where in places for each in ACTIONS[where] if each.hint is not None]
     return sorted(own, key=lambda action: action.hint or 0)
@@ -278,7 +278,7 @@ _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
 
 
 def all_keys() -> RenderableType:
-    """Return a table of all keys by place."""
+    """Return a table of all keys by part of the builder."""
     listed = {
         title: [(action.keys, action.meaning) for action in ACTIONS[place]]
         for place, title in PLACES.items()

@@ -25,11 +25,11 @@ _FROM_A_ROW = frozenset(
     {"mark", "why", "equipment", "column", "repeat", "duplicate", "delete",
      "move_piece", "cut"}
 )  # fmt: skip
-"""Actions that require a row."""
+"""Actions that need at least one row."""
 
 
 class LinePane(LineSearch):
-    """Edit the line: its cells, its rows and their order.
+    """Pane in which the line is edited: cells, rows and their order.
 
     Parameters
     ----------
@@ -46,7 +46,9 @@ class LinePane(LineSearch):
         self._cell: LineCell | None = None  # the cell edited now or last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable row actions while a value is typed, and some of them in an empty line."""
+        """Disable row actions while a value is typed, and actions that need a row in an empty
+        line.
+        """
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
@@ -58,7 +60,7 @@ class LinePane(LineSearch):
         self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Place | None = None) -> None:
-        """Show a new draft, with the cursor on `spot` or unmoved."""
+        """Show a new draft; the cursor moves to `spot`, if given."""
         here = self.table.spot if spot is None else spot
         self.leave_cell()
         self.table.mark(frozenset())
@@ -66,7 +68,7 @@ class LinePane(LineSearch):
         self.table.go_to(here)
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
-        """Accept typed text, make a change, and return whether it was made."""
+        """Accept typed text, then make a change; return whether the change was made."""
         if not self.settle():
             return False
         self.session.followed = []
@@ -163,7 +165,9 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Fill a column of the marked rows, or of all rows with the component of this row."""
+        """Fill one column of the marked rows, or of all rows with the same component as this
+        row.
+        """
         table = self.table
         spots = table.chosen
         if not table.marked:
@@ -187,7 +191,7 @@ class LinePane(LineSearch):
         choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
-        """Add several copies of the chosen rows."""
+        """Add several copies of the selected rows."""
         chosen = self._chosen_of_a_kind()
 
         def take(texts: dict[str, str]) -> None:
@@ -198,7 +202,7 @@ class LinePane(LineSearch):
             enter(self.app, "Repeat", "", fields, take)
 
     def action_duplicate(self) -> None:
-        """Duplicate the chosen rows."""
+        """Duplicate the selected rows."""
         chosen = self._chosen_of_a_kind()
         named = [each for spot in chosen for each in references_to(self.session.draft, spot)]
 
@@ -216,13 +220,13 @@ class LinePane(LineSearch):
             duplicate()
 
     def action_delete(self) -> None:
-        """Delete the chosen rows."""
+        """Delete the selected rows."""
         chosen = self.table.chosen
         what = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
         self.attempt(lambda: self.session.delete(chosen), f"{what}; u restores")
 
     def action_move_piece(self, by: int) -> None:
-        """Move the chosen rows up or down."""
+        """Move the selected rows up or down."""
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
         moved: list[Place] = []
 
@@ -234,13 +238,13 @@ class LinePane(LineSearch):
             self.table.mark(frozenset(moved))
 
     def action_copy(self) -> None:
-        """Copy the chosen rows for pasting."""
+        """Copy the selected rows for pasting."""
         if copied := self.session.copy(self._chosen_of_a_kind()):
             self.table.mark(frozenset())
             self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
 
     def action_cut(self) -> None:
-        """Cut the chosen rows for pasting."""
+        """Cut the selected rows for pasting."""
         chosen = self._chosen_of_a_kind()
         if self.session.copy(chosen):
             self.attempt(lambda: self.session.delete(chosen), "cut; v pastes below")
@@ -253,7 +257,8 @@ class LinePane(LineSearch):
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """Return the chosen rows, or () with a message if pieces and clamps of others are mixed.
+        """Return the selected rows; if pieces are mixed with clamps of other pieces, show a message
+        and return ().
 
         Such clamps have no position among pieces that are pasted or moved.
         """
@@ -303,7 +308,7 @@ class LinePane(LineSearch):
             self._show_edited()
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Go to the next value of the row, or to another row."""
+        """Move the cursor to the next value of the row, or to another row."""
         onward = self._cell.onward() if self._cell and then == "edit next" else None
         if onward is not None:
             self._edit(onward)

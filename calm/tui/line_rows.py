@@ -1,4 +1,4 @@
-"""Rows of the line, from the file and its results; editing of single values and columns."""
+"""Rows of the line table, from the file and its results, and editing of values and columns."""
 
 from __future__ import annotations
 
@@ -40,10 +40,11 @@ _MOST_USE = 9.99
 def table_rows(
     draft: Draft, view: View | None, index: Index | None, added: Collection[Place] = ()
 ) -> list[TableRow]:
-    """Return a row for each item and clamp, with the governing values of the pieces of an item.
+    """Return a row for each item and clamp; an item with several pieces shows their governing
+    values.
 
-    If the view is of an earlier text, its values go to the rows of the same name, except the rows
-    that were `added`.
+    If the view belongs to an earlier text, its values are shown in rows with the same names, except
+    in rows that were `added`.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
@@ -51,7 +52,7 @@ def table_rows(
     before, legs = "", draft.lists.legs
     for number, item in enumerate(draft.items):
         row = _row(Place(number), item, found.get(Place(number), ()), index)
-        if legs[number] != before:  # the first row of a leg has its name
+        if legs[number] != before:  # the first row of a leg shows the name of the leg
             before = row.texts["leg"] = legs[number]
         rows.append(replace(row, state=State.FAIL) if number in wrong else row)
         for below, clamp in enumerate(item.clamps):
@@ -61,7 +62,7 @@ def table_rows(
 
 
 def _wrong_items(draft: Draft, view: View | None) -> set[int]:
-    """Return the numbers of items with mistakes in their lines of text."""
+    """Return the numbers of items whose lines of text contain mistakes."""
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
@@ -97,7 +98,9 @@ def _figures(
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return the identity of a row in the file: component, label, and whether it is clamped."""
+    """Return a key that identifies a row in the file: component, label, and whether it is
+    clamped.
+    """
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")
@@ -129,7 +132,7 @@ def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
 
 
 def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
-    """Return the texts of an item: the governing value of its pieces in each column."""
+    """Return the text in each column for an item: the governing value of its pieces."""
     texts = {}
     for one in table_columns(Output.BUILDER):
         known = [row.figures[one.name] for row in found if one.name in row.figures]
@@ -155,17 +158,17 @@ class LineCell:
     workspace: Workspace
     spot: Place
     column: str
-    """An editable column of the table, or `serial`."""
+    """Name of an editable table column, or `serial`."""
 
     @property
     def listed(self) -> Listed | None:
-        """Component of the row, if the loaded catalogue has it."""
+        """Component of the row, if it is in the loaded catalogue."""
         index = self.workspace.index
         return None if index is None else index.get(self._values.get("use", ""))
 
     @property
     def refused(self) -> str:
-        """Reason why the value cannot be edited, or ""."""
+        """Reason why the value cannot be edited; "" if it can."""
         listed = self.listed
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
@@ -175,7 +178,7 @@ class LineCell:
 
     @property
     def text(self) -> str:
-        """Text to edit."""
+        """Text shown when editing starts."""
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":
@@ -184,7 +187,7 @@ class LineCell:
 
     @property
     def check(self) -> Check:
-        """Check of a new text."""
+        """Check applied to a new text."""
         if self.column != "length":
             return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
@@ -192,7 +195,7 @@ class LineCell:
         return length(self._values.get("length", ""), towed=self._is_towed)
 
     def put(self, text: str) -> None:
-        """Write a valid text; an unchanged text has no effect.
+        """Write a valid text to the file; an unchanged text has no effect.
 
         Raises
         ------
@@ -203,7 +206,7 @@ class LineCell:
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """Return the keys of the file that a text changes; None deletes a key."""
+        """Return the keys that a text changes, with their values; None deletes a key."""
         written = self._values
         if text == self.text:
             return {}
@@ -262,7 +265,7 @@ class ColumnSheet(InputSheet):
 
 
 class ColumnFilling:
-    """Values of a column in several rows, edited on one sheet."""
+    """Values of one column in several rows, edited on a sheet."""
 
     def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
         self._session, self._column = workspace.session, column
@@ -274,13 +277,13 @@ class ColumnFilling:
 
     @property
     def sheet(self) -> ColumnSheet | None:
-        """Sheet for the values, or None if no row can have such a value."""
+        """Sheet for editing the values; None if no row can have a value in this column."""
         return (
             ColumnSheet(_TITLES[self._column], "", self._form_fields) if self._form_fields else None
         )
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write the changed values in one step."""
+        """Write all changed values as one step of the history."""
         begun, draft = {each.key: each.text for each in self._form_fields}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"

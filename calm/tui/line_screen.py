@@ -1,4 +1,4 @@
-"""Layout of the main screen: the line next to its picture and verdict, or the catalogue."""
+"""Layout of the main screen: the line next to its picture and verdict, or next to the catalogue."""
 
 from collections.abc import Collection
 
@@ -15,7 +15,7 @@ from calm.tui.workspace import Workspace
 
 
 class LineScreen(screen.DraftScreen):
-    """Layout of the main screen, and navigation between its parts."""
+    """Main-screen layout, and navigation between line, picture, verdict and catalogue."""
 
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
     DEFAULT_CSS = """
@@ -65,7 +65,7 @@ class LineScreen(screen.DraftScreen):
 
     @property
     def is_typing(self) -> bool:
-        """Whether a value typed in a cell is not in the draft yet."""
+        """Whether a value typed in a cell has not been written to the draft yet."""
         return self.line.editor.is_typing
 
     def settle(self) -> bool:
@@ -86,7 +86,7 @@ class LineScreen(screen.DraftScreen):
         self.show_title()
 
     def show_catalogue(self) -> None:
-        """Use the catalogue that was loaded."""
+        """Switch to a newly loaded catalogue."""
         self.line.show_rows()
         self._show_side_panes()
 
@@ -126,7 +126,7 @@ class LineScreen(screen.DraftScreen):
         table.focus()
 
     def action_back(self) -> None:
-        """Go back to the verdict if the cursor came from there."""
+        """Return to the verdict if the cursor came from there."""
         if self._came_from_verdict:
             self._came_from_verdict = False
             self.add_class("-reading")

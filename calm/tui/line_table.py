@@ -1,4 +1,4 @@
-"""The line as a table from top to bottom, with cursor, marks and values, and its searches."""
+"""The line as a table from top to bottom, with cursor, marks, values and searches."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _EMPTY = (
 
 
 class LineTable(TableCells, can_focus=True):
-    """Table of the rows of the line with a cell cursor."""
+    """Table of the line, with a cell cursor."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "line-table--row",
@@ -61,7 +61,7 @@ class LineTable(TableCells, can_focus=True):
     BEYOND = 2
 
     class Moved(TableCells.Moved):
-        """The cursor is on another cell of the line."""
+        """The cursor has moved to another cell of the line."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -72,7 +72,7 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def columns(self) -> tuple[TableColumn, ...]:
-        """Columns for the current width."""
+        """Columns that fit the current width."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
             names = ("component", "label", "length", "leg")
@@ -86,7 +86,7 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """Names of the columns that the user fills."""
+        """Names of the editable columns."""
         return EDITABLE
 
     @property
@@ -96,37 +96,37 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def spot(self) -> Place | None:
-        """Row of the line under the cursor, or None in an empty line."""
+        """Position of the row under the cursor; None in an empty line."""
         return self.row.spot if self.row else None
 
     @property
     def chosen_here(self) -> Place:
-        """Row of the line under the cursor; the line must have rows."""
+        """Position of the row under the cursor; the line must have rows."""
         return self.rows[self.cursor].spot
 
     @property
     def chosen(self) -> tuple[Place, ...]:
-        """Marked rows, or the row under the cursor."""
+        """Positions of the marked rows, or of the row under the cursor."""
         if self.marked:
             return tuple(row.spot for row in self.rows if row.spot in self.marked)
         return (self.spot,) if self.spot else ()
 
     def show_rows(self, rows: Sequence[TableRow], *, old: bool = False) -> None:
-        """Replace the rows; dim their values if `old` (of an earlier line)."""
+        """Replace the rows; dim their values if `old` (values of a previous solve)."""
         self.old = old
         self._arranged = (-1, self._arranged[1])
         self.marked &= {row.spot for row in rows}
         self.take_rows(tuple(rows))
 
     def go_to(self, spot: Place | None) -> None:
-        """Put the cursor on a row of the line."""
+        """Move the cursor to a row of the line."""
         for number, row in enumerate(self.rows):
             if row.spot == spot:
                 self.cursor = number
                 self.follow()
 
     def mark(self, spots: frozenset[Place]) -> None:
-        """Mark only these rows."""
+        """Mark the given rows, and unmark all others."""
         self.marked = spots
         self.refresh()
 
@@ -161,13 +161,13 @@ class LineTable(TableCells, can_focus=True):
         return style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Style of a cell; values of an earlier line are dimmed."""
+        """Style of a cell; values of a previous solve are dimmed."""
         if self.old and column.name not in EDITABLE:
             style += self.look("line-table--old")
         return style
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the cursor, the mark or the state, and the sign of a row."""
+        """Return the leading cells of a row: cursor, mark or state, and sign."""
         row = self.rows[number]
         sign = Segment(" ", style)
         if row.spot in self.marked:
@@ -186,7 +186,7 @@ class LineTable(TableCells, can_focus=True):
 
 Column = Literal["component", "label", "count", "length"]
 EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
-"""Columns that the user fills, from the left."""
+"""Editable columns, from the left."""
 
 _WORDS = ("leg", "component", "label")
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "use": 5,
@@ -195,12 +195,12 @@ _DEFAULT_WIDTH = 9
 _MIN_TEXT, _PREFERRED_TEXT = 9, 12
 _MAX_COMPONENT, _MAX_LABEL, _MAX_LENGTH, _MAX_LEG = 30, 40, 13, 10
 LEAD = 4
-"""Cells before the first column: cursor, mark or state, sign, a blank."""
+"""Number of cells before the first column, for cursor, mark or state, sign, and a blank."""
 
 
 @dataclass(frozen=True)
 class TableRow:
-    """Displayed row of a piece or a clamp.
+    """Table row of a piece or a clamp, as displayed.
 
     `texts` are by the name of the column; `wrong` marks an unknown component.
     """
@@ -273,7 +273,7 @@ def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
 
 
 class LineSearch(cell_editor.EditableTable):
-    """Table of the line with searches that move the cursor and report the match."""
+    """Line table with search commands, which move the cursor and report the match."""
 
     table: LineTable
     workspace: Workspace
@@ -301,7 +301,7 @@ class LineSearch(cell_editor.EditableTable):
         )
 
     def action_weakest(self) -> None:
-        """Go to the row with the highest use of strength."""
+        """Go to the row with the highest utilisation of strength."""
         view = self.workspace.judged("Checks are still running; try again in a moment")
         if view is None:
             return

@@ -1,4 +1,4 @@
-"""Solution and verdict of a text while it is edited.
+"""Solve and judge a text while it is edited.
 
 This module does not depend on the screen. `judge` runs in a worker after every change;
 `judge_fully` adds the slower checks.
@@ -27,12 +27,12 @@ from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring,
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
-"""Path of a text without a file."""
+"""Path that stands for a text without a file."""
 
 
 @dataclass(frozen=True)
 class View:
-    """Results for a text.
+    """Results and mistakes for a text.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class View:
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
-        """Whether the view is of this text, path and environment."""
+        """Whether the view belongs to a given text, path and environment."""
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @cached_property
@@ -82,7 +82,7 @@ class View:
 
     @property
     def here(self) -> str:
-        """Name of the current environment in the findings."""
+        """Name of the current environment, as in the findings."""
         return OWN if self.file is None else self.file.environment.name or OWN
 
     @property
@@ -98,7 +98,8 @@ def judge(
     catalogs: Sequence[str | Path] = (),
     keep: View | None = None,
 ) -> View:
-    """Solve a text and judge it by the rules for a line in equilibrium; for any thread.
+    """Solve a text, and apply the design rules for a line in equilibrium; may be called in any
+    thread.
 
     Parameters
     ----------
@@ -124,12 +125,12 @@ def judge(
 
 
 def _placed(path: str | Path | None) -> Path:
-    """Return the path of a text, to which file names in it are relative."""
+    """Return the path relative to which file names in a text are resolved."""
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
-    """Return the view with all findings of `calm check`.
+    """Return the view with the complete findings of `calm check`.
 
     These include every environment and situation, waves, launch, recovery and breaks. A tow, and a
     line without an anchor or without equilibrium, is returned unchanged.
@@ -150,7 +151,9 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 def in_all_environments(
     view: View, here: Design, catalogs: Sequence[str | Path] = ()
 ) -> tuple[list[Design], list[Problem]]:
-    """Return the mooring in each environment, with the cut lengths of `here`, and mistakes."""
+    """Return the mooring in each environment, with the cut lengths for the environment `here`; also
+    return mistakes.
+    """
     found: list[Design] = []
     problems: list[Problem] = []
     for name in dict.fromkeys([None, *view.environments, view.environment]):
@@ -189,7 +192,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 
 def _missing_parts(file: MooringFile) -> Iterator[str]:
-    """Yield missing parts without which a mooring has no equilibrium; none for a tow."""
+    """Yield missing parts that a mooring needs for an equilibrium; a tow needs none."""
     if file.tow is not None or file.legs:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
@@ -229,7 +232,7 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 
 @dataclass(frozen=True)
 class FoundRow:
-    """A piece, or an instrument clamped on the piece above it.
+    """A row for a piece, or for an instrument clamped on the piece above the row.
 
     Attributes
     ----------
@@ -254,7 +257,7 @@ class FoundRow:
 def rows_of(
     file: MooringFile, result: Result | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
-    """Yield rows in the order of the file, with results, if any, and findings."""
+    """Yield rows in file order, with findings and any results."""
     solved = {} if result is None else rows_by_place(result)
     columns = table_columns(Output.BUILDER)
     found: defaultdict[Place | None, list[Finding]] = defaultdict(list)

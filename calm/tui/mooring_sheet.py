@@ -1,4 +1,6 @@
-"""Sheets for a whole file and for a row of its line, derived from the models of the file."""
+"""Input sheets for file-level keys and for single rows of the line, derived from the file
+models.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ if TYPE_CHECKING:
     from calm.tui.live import View
 
 Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
-"""The sheet, the label of the change, and a function that applies the entered texts."""
+"""An input sheet, the label of the resulting change, and a function that applies the entered
+texts.
+"""
 
 _BEGIN_A_TOW = (
     "The line becomes a tow: suspended from a ship, listed from the ship down, without an "
@@ -41,7 +45,7 @@ SHEETS = {
     "deployed": ("As deployed", ("deployed", "releases")),
     "tow": ("The tow", ("tow",)),
 }
-"""Titles of sheets, and the keys of the file on them."""
+"""Titles of sheets, and the keys of the file that each sheet contains."""
 _ABOUT = {
     "document": "For the title block of drawings, and its history.",
     "tow": _BEGIN_A_TOW,
@@ -49,14 +53,14 @@ _ABOUT = {
 
 
 def settings() -> list[str]:
-    """Return the sections of the file that have a form, but no sheet in `SHEETS`."""
+    """Return the sections of the file that have a form and are not in `SHEETS`."""
     known = {key for _, keys in SHEETS.values() for key in keys}
     fields = MooringKeys.model_fields.items()
     return [name for name, each in fields if name not in known and model_in(each.annotation)]
 
 
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
-    """Return a sheet of `SHEETS` or of a section of `settings`, filled from the file.
+    """Create a sheet from `SHEETS` or for a section from `settings`, with the values in the file.
 
     Parameters
     ----------
@@ -81,7 +85,9 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the piece or clamp of a row; None if the row has several, or is unknown."""
+    """Return the piece or clamp of a row; None if the row has several pieces, or if the piece is
+    unknown.
+    """
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -121,7 +127,7 @@ _SEVERAL = "For a count, give one number for each, separated by commas."
 
 
 def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> InputSheet:
-    """Return the equipment sheet of a row, filled from the file.
+    """Create the equipment sheet for a row, with the values in the file.
 
     Parameters
     ----------
@@ -140,7 +146,7 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
 def equipment_changes(
     values: Mapping[str, Any], texts: Mapping[str, str]
 ) -> dict[str, Value | None]:
-    """Return the texts that differ from the file; None deletes a key."""
+    """Return the entered texts that differ from the file; None deletes a key."""
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
         if new != texts_of_equipment(values, key):
@@ -150,13 +156,13 @@ def equipment_changes(
 
 
 def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
-    """Return the typed form of an equipment value; several values are separated by commas."""
+    """Convert equipment values to typed form; several values are separated by commas."""
     value = values.get(key)
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check a serial number, or one for each of a count or of a pair."""
+    """Accept a serial number, or one number for each item of a count or a pair."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
@@ -164,7 +170,7 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return the plain text of an entry under a key, else "".
+    """Return the plain text under a key of an entry, or "".
 
     Parameters
     ----------
@@ -178,7 +184,7 @@ def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) 
 def entered(
     draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
 ) -> Draft:
-    """Return the file with the texts in an entry, which is added if needed.
+    """Return the file with texts written to an entry; a missing entry is added.
 
     An entry that has only its identifying key left is deleted.
     """
@@ -209,7 +215,7 @@ _SOURCE = "data sheet, test certificate …"
 
 
 def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> InputSheet:
-    """Return the sheet for missing values of components and their source; all are optional.
+    """Create a sheet for missing component values and their source; all fields are optional.
 
     Parameters
     ----------
@@ -232,7 +238,7 @@ def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> Input
 
 @dataclass
 class Missing:
-    """Missing values of a component, for all rows that use it.
+    """Missing values of a component, collected from all rows that use the component.
 
     Attributes
     ----------
@@ -259,12 +265,12 @@ class Missing:
 
     @property
     def fields(self) -> list[FormField]:
-        """Fields of the component form that can supply the missing values."""
+        """Form fields in which the missing values can be entered."""
         return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the missing values behind the unknown findings, in the order of the line."""
+    """Return the missing component values behind the unknown findings, in line order."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
@@ -301,7 +307,7 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 def with_figures(
     draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
 ) -> Draft:
-    """Return the draft with values filled in.
+    """Return the draft with the entered values.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Names in a file: references to labels, updated with the line; environments."""
+"""References to labels in a file, updated when labels change; choice of the environment."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
@@ -23,12 +23,14 @@ class Named:
 
     @property
     def where(self) -> str:
-        """Path of the reference, for messages."""
+        """Path of the reference in the file, for messages."""
         return ": ".join(str(key) for key in self.location[:2] if isinstance(key, str))
 
 
 def named_in(draft: Draft) -> Iterator[Named]:
-    """Yield all references of a file to labels: accepted findings, deployed items, stops."""
+    """Yield all references to labels in a file: accepted findings, deployed items, profiler
+    stops.
+    """
 
     def within(*location: str | int) -> Iterator[tuple[yaml_document.Location, Any]]:
         values = draft.value(location)
@@ -50,7 +52,7 @@ def named_in(draft: Draft) -> Iterator[Named]:
 
 
 def labels_of(draft: Draft) -> dict[Place, list[str]]:
-    """Return the labels of each row, numbered for a count, without parts of assemblies."""
+    """Return the labels of each row, numbered for a count, without labels inside assemblies."""
     rows: list[tuple[Place, str]] = []
     for number, item in enumerate(draft.items):
         count = item.values.get("count", "1")
@@ -67,7 +69,7 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 
 
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
-    """Update the references to labels in an edited file; also return messages on the changes.
+    """Update the references to labels after an edit; also return messages about the updates.
 
     Parameters
     ----------
@@ -117,12 +119,14 @@ def _new_reference(
 
 
 def references_to(draft: Draft, place: Place) -> list[Named]:
-    """Return the references to this row alone, which could also mean a copy of the row."""
+    """Return the references that match only this row; after copying, they could also match the
+    copy.
+    """
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 
 def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
-    """Extend acceptances of a piece to all pieces with the same base name."""
+    """Extend each acceptance of a piece to all pieces with the same base name."""
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):
             draft = draft.put_at(each.location, f"{each.text} *")
@@ -130,7 +134,7 @@ def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
 
 
 class EnvironmentChoice:
-    """The current environment of a line: the default, a named one, or an environment file.
+    """Choice of environment for a line: the default, a named environment, or an environment file.
 
     Parameters
     ----------
@@ -144,13 +148,13 @@ class EnvironmentChoice:
 
     @property
     def environments(self) -> list[str | None]:
-        """Environments of the file; the first is None, the default environment."""
+        """Environments of the file; the first is None, which means the default environment."""
         named = self._history.draft.value(("environments",))
         return [None, *(named if isinstance(named, dict) else ())]
 
     @property
     def environment(self) -> str | None:
-        """Current environment; the default if the chosen one is not in the file any more."""
+        """Current environment; the default if the chosen one is no longer in the file."""
         return None if self.lost_environment else self._environment
 
     @environment.setter
@@ -159,13 +163,13 @@ class EnvironmentChoice:
 
     @property
     def lost_environment(self) -> str | None:
-        """The chosen environment if a readable file does not have it, else None."""
+        """Chosen environment if it is missing in a readable file, else None."""
         here = self._environment
         is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here
 
     @property
     def next_environment(self) -> str | None:
-        """Next environment; after the last comes the default."""
+        """Environment that follows the current one; the default follows the last."""
         names, here = self.environments, self.environment
         return names[(names.index(here) + 1) % len(names)] if here in names else None

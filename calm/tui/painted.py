@@ -1,4 +1,4 @@
-"""Record of the displayed cells, so that only changed cells are sent to the terminal.
+"""Records the displayed cells, so that only changed cells are sent to the terminal.
 
 Textual sends a whole region again if one of its cells may have changed, and the whole screen after
 a change of size: 38 kB for a screen of 140 columns and 45 rows.
@@ -18,18 +18,18 @@ from rich.style import Style
 from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 
 Cell = tuple[str, Style | None]
-"""A sign and its style; the second cell of a wide sign is empty."""
+"""A character and its style; the second cell of a wide character is empty."""
 
 _UNKNOWN: Cell = ("\0", None)
 _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
 _PATIENCE = 3.0  # seconds after which an answer is given up
 _GAP = 8
-"""Runs of unchanged cells shorter than this are sent, because skipping them costs more."""
+"""Minimum length of a run of unchanged cells that is skipped; sending a shorter run costs less."""
 
 
 class Painted:
-    """Displayed cells of a terminal."""
+    """Cells that the terminal displays."""
 
     def __init__(self) -> None:
         self._rows: list[list[Cell]] = []
@@ -61,7 +61,7 @@ class Painted:
 
 
 class Pace:
-    """Flow control: the next frame waits until the terminal has displayed the previous one.
+    """Flow control: each frame waits until the terminal has displayed the previous frame.
 
     After each frame, the cursor position is requested; the answer shows that the frame has been
     displayed. Over a slow connection, frames merge in this way. A terminal that has never answered
@@ -73,26 +73,28 @@ class Pace:
         self._since: float | None = None
 
     def holds(self, now: float) -> bool:
-        """Return whether a frame must wait; the later frame then contains all changes."""
+        """Return whether a frame must wait; the next frame sent then contains all changes."""
         is_out = self._since is not None and now - self._since < _PATIENCE
         self._has_waiting = self._answers and is_out
         return self._has_waiting
 
     def question(self, now: float) -> str:
-        """Return the request to send after a frame, or ""."""
+        """Return the status request to send after a frame, or ""."""
         if self._has_asked and not self._answers:
             return ""
         self._has_asked, self._since = True, now
         return _WHERE
 
     def answered(self) -> bool:
-        """Register an answer; return whether a frame is waiting."""
+        """Register the answer to a status request; return whether a frame is waiting."""
         self._answers, self._since = True, None
         return self._has_waiting
 
     @property
     def is_out(self) -> bool:
-        """Whether an answer is pending, which the shell would read as keys."""
+        """Whether the answer to a status request is pending. The shell would read this answer as
+        keys.
+        """
         return self._answers and self._since is not None
 
 
@@ -115,7 +117,7 @@ class _Changes(CompositorUpdate):
 
 
 def _parts(update: LayoutUpdate | ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
-    """Yield (row, column, cells) of an update of the whole screen or of spans."""
+    """Yield (row, column, cells) for an update of the whole screen or of spans."""
     if isinstance(update, LayoutUpdate):
         for y, line in enumerate(update.strips, update.region.y):
             yield y, update.region.x, [*_cells(chain.from_iterable(line))]
@@ -150,7 +152,7 @@ def _ground(style: Style | None) -> Style | None:
 
 
 def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
-    """Yield begin and end of each run of changed cells; runs with small gaps are merged.
+    """Yield start and end of each run of changed cells; runs with small gaps are merged.
 
     A run never begins or ends within a wide character, because half of it cannot be written.
     """
@@ -207,7 +209,7 @@ class _Pen:
 
 @lru_cache(4096)
 def _style_codes(style: Style | None, system: ColorSystem | None) -> str:
-    """Return the numbers of the escape sequence of a style."""
+    """Return the numbers of the terminal escape sequence for a style."""
     if style is None or system is None:
         return ""
     return style._make_ansi_codes(system)

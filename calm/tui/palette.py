@@ -1,4 +1,4 @@
-"""The command palette: the actions of the first screen, found by their names."""
+"""Command palette: actions of the main screen, found by name."""
 
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -11,7 +11,7 @@ from calm.tui.line_pane import LinePane
 
 
 class Commands(CommandPalette):
-    """Textual's palette, adapted to terminals of any height."""
+    """Command palette of Textual, adapted to terminals of any height."""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Disable page keys if the list has no visible line."""
@@ -20,7 +20,7 @@ class Commands(CommandPalette):
 
 
 class Actions(Provider):
-    """The actions of the first screen."""
+    """Provider of the main-screen actions for the palette."""
 
     @property
     def _offered(self) -> list[Action]:
@@ -29,7 +29,7 @@ class Actions(Provider):
         return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
 
     async def discover(self) -> Hits:
-        """List all actions before a word is typed."""
+        """Yield all actions, before a search word is typed."""
         for action in self._offered:
             yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
 

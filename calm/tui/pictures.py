@@ -30,7 +30,7 @@ _CURRENT_SHARE, _MAX_CURRENT_WIDTH = 3, 26
 
 
 class Picture(scrolled.DrawnRows, can_focus=True):
-    """A picture drawn to fit its cells."""
+    """A picture of the line, drawn to fit the available cells."""
 
     DEFAULT_CSS = """
     Picture { height: 1fr; width: 1fr; background: $background; scrollbar-size: 1 1;
@@ -47,14 +47,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         self._overlays: Sequence[Shape] = ()
 
     def show(self, view: View | None, tab: Tab, overlays: Sequence[Shape] = ()) -> None:
-        """Draw the line of a view, with other shapes for comparison."""
+        """Draw the line of a view, with `overlays` for comparison."""
         if tab != self.tab:
             self.scroll_to(0, 0, animate=False)
         self._view, self.tab, self._overlays = view, tab, overlays
         self.draw_again()
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the picture; the schematic may exceed the size and scroll."""
+        """Draw the picture; a schematic may be larger than the widget and then scrolls."""
         rows = self._picture(size)
         widest = max((row.cell_len for row in rows), default=0)
         self.virtual_size = Size(widest, len(rows)) if self.tab == "schematic" else Size(0, 0)
@@ -104,7 +104,7 @@ def _is_small(size: Size) -> bool:
 
 
 class Pictures(Vertical):
-    """Tabs of pictures, dimmed if they show an earlier state of the line."""
+    """Tabs with pictures, which are dimmed if they show an earlier state of the line."""
 
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
@@ -148,7 +148,7 @@ class Pictures(Vertical):
         self._show()
 
     def watch_tab(self) -> None:
-        """Draw the other picture."""
+        """Draw the picture of the selected tab."""
         self._show()
 
     def _show(self) -> None:
@@ -160,7 +160,9 @@ class Pictures(Vertical):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
-        """Show the tabs, the current one in reverse, and a cursor if the picture has the focus."""
+        """Show the tabs: the current tab in reverse video, with a cursor if the picture has the
+        focus.
+        """
         parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):
             style = ("[reverse bold]", "[/]") if tab == self.tab else ("", "")
@@ -174,7 +176,7 @@ class Pictures(Vertical):
 
 
 class ProfilePicture(scrolled.DrawnRows):
-    """Speed and direction against depth in the current environment."""
+    """Current speed and direction against depth in the current environment."""
 
     DEFAULT_CSS = """
     ProfilePicture { height: 1fr; overflow: hidden; }
@@ -184,7 +186,9 @@ class ProfilePicture(scrolled.DrawnRows):
     _view: View | None = None
 
     def show(self, view: View | None, *, old: bool = False) -> None:
-        """Draw the profile of a view, dimmed if `old`; without a readable file, dim the last."""
+        """Draw the current profile of a view, dimmed if `old`. If the file is not readable, dim the
+        last profile.
+        """
         if view is not None and view.file is not None:
             self._view = view
             self.draw_again()
@@ -193,7 +197,9 @@ class ProfilePicture(scrolled.DrawnRows):
         self.set_class(old, "-old")
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the profile; return [] without enough room or without an environment."""
+        """Draw the current profile; return [] if the widget is too small or there is no
+        environment.
+        """
         file = None if self._view is None else self._view.file
         if _is_small(size) or file is None:
             return []

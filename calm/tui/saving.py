@@ -1,4 +1,4 @@
-"""Saving, with questions on missing names, existing files and changes on the disk."""
+"""Save the file, with questions about missing names, existing files and external changes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saves the file of a workspace, asks before overwriting, and watches the disk.
+    """Saves the file of a workspace, asks before overwriting, and watches for external changes.
 
     Parameters
     ----------
@@ -76,7 +76,9 @@ class Saving:
             then()
 
     def _mistake(self) -> str:
-        """Return the first mistake of the saved file, or ""; missing parts are not mistakes."""
+        """Return the first mistake in the saved file, or "". Missing parts do not count as
+        mistakes.
+        """
         session = self._session
         path = session.file.path or Path(session.name)
         try:
@@ -90,7 +92,7 @@ class Saving:
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
-        """Ask for another name (default `begin`) and save."""
+        """Ask for a new file name (default `begin`) and save."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
@@ -136,7 +138,9 @@ class Saving:
     # the file on the disk
 
     def check_external_change(self) -> None:
-        """Reload the file if another program changed it; warn if that would lose unsaved work."""
+        """Reload the file if another program changed it; warn if that would discard unsaved
+        work.
+        """
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
             return  # try again later: a question is open, or the application is ending
@@ -169,7 +173,7 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work, with its time and whether the file is newer.
+        """Offer to recover unsaved work, stating its time and whether the file is newer.
 
         Discarding needs a confirmation, because it cannot be undone.
         """
@@ -215,7 +219,7 @@ class Saving:
     # the way out
 
     def quit(self) -> None:
-        """Leave; unsaved work is asked about."""
+        """Quit the builder, after a question if there is unsaved work."""
         self.check_external_change()
         if not self._session.changed:
             self._leave()
@@ -238,7 +242,7 @@ class Saving:
 
 
 def chosen_path(text: str) -> Path:
-    """Return the path of a typed name, with the suffix `.yaml` if it has none."""
+    """Convert a typed name to a path, with the default suffix `.yaml`."""
     path = Path(os.path.expanduser(text.strip()))
     is_named = path.name not in ("", "..") and not text.rstrip().endswith(("/", os.sep))
     bare = is_named and not path.suffix and not path.is_dir()
@@ -246,7 +250,7 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """Return an unused name similar to that of a file."""
+    """Return an unused file name similar to a given name."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1
@@ -254,7 +258,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _is_writable(text: str) -> Reading:
-    """Check of a name of a file to write."""
+    """Check that a file name can be written to."""
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")
@@ -274,5 +278,5 @@ def _is_writable(text: str) -> Reading:
 
 
 def moment(seconds: float) -> str:
-    """Format a time [s since 1970] as local date and time, to the minute."""
+    """Format a time [s since 1970] as local date and time in minutes."""
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))

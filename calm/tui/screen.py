@@ -1,4 +1,4 @@
-"""Base of the screens that show and edit the draft, with title bar and key bar."""
+"""Base class of the screens that display and edit the draft, with title bar and key bar."""
 
 from collections.abc import Callable, Iterable
 
@@ -44,11 +44,11 @@ class DraftScreen(Screen[None]):
 
     @property
     def is_typing(self) -> bool:
-        """Whether typed text is not in the draft yet."""
+        """Whether typed text has not been written to the draft yet."""
         raise NotImplementedError
 
     def settle(self) -> bool:
-        """Accept typed text; if this returns True, the draft contains it.
+        """Accept typed text; if this returns True, the draft contains the text.
 
         Returns False for an invalid value, which stays in its field, with a message.
         """
@@ -59,14 +59,14 @@ class DraftScreen(Screen[None]):
         raise NotImplementedError
 
     def replaced(self) -> None:
-        """Show a draft that replaced the previous one; typed text and marks are obsolete.
+        """Show a replacement of the draft; typed text and marks are obsolete.
 
         If the draft cannot be parsed, the application opens the text view.
         """
         self.show_draft()
 
     def show_view(self) -> None:
-        """Show the view that a worker computed from the draft."""
+        """Show the results that a worker computed from the draft."""
         raise NotImplementedError
 
     def titles(self) -> tuple[str, str]:
@@ -76,7 +76,7 @@ class DraftScreen(Screen[None]):
     # shared by all screens
 
     def show_title(self) -> None:
-        """Update the title bar; the verdict is dimmed if it is of an earlier draft."""
+        """Update the title bar; the verdict is dimmed if it belongs to an earlier draft."""
         self.query_one(TitleBar).show(*self.titles(), old=not self.workspace.is_fresh)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
@@ -118,13 +118,13 @@ class TitleBar(Widget):
         self._texts = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
-        """Show other texts; the right one is dimmed if `old`."""
+        """Replace the texts; the right text is dimmed if `old`."""
         if (left, right, old) != self._texts:
             self._texts = left, right, old
             self.refresh()
 
     def render(self) -> Text:
-        """Render both texts; the left one is truncated if necessary."""
+        """Render both texts; the left text is truncated if necessary."""
         width = self.content_size.width
         text, verdict, old = self._texts
         right = Text(verdict, style="dim" if old else "", no_wrap=True)
@@ -154,7 +154,7 @@ class KeyBar(Static):
         self._beside_message = False
 
     def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
-        """Show other keys.
+        """Show the keys of a widget.
 
         With `beside_message` the keys stay next to a message, unless it reports a mistake.
         """
@@ -163,7 +163,7 @@ class KeyBar(Static):
             self._show()
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Show a message; an empty one shows the keys again."""
+        """Show a message; an empty message shows the keys again."""
         if (text, wrong) == (self._message, self.has_class("-wrong")):
             return
         self._message = text

@@ -1,4 +1,4 @@
-"""Scrollable rows, texts, and tables with a cursor, all of fixed size.
+"""Scrollable widgets of fixed size: rows, texts, and tables with a cursor.
 
 Textual computes the layout of the whole screen again if the size of a widget changes, which takes
 10 to 20 ms at each key of a search. The size of these widgets is independent of their content.
@@ -25,12 +25,14 @@ Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
-    """Scrollable lines drawn by `render_line`; `virtual_size` is their number and length."""
+    """Scrollable lines drawn by `render_line`; `virtual_size` holds line length and number of
+    lines.
+    """
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def watch_virtual_size(self, size: Size) -> None:
-        """Update the scroll bar, and scroll back if the position is beyond the new end."""
+        """Update the scroll bar, and scroll back if the content has become shorter."""
         self._scroll_update(size)
         if self.scroll_offset.y > self.max_scroll_y:
             self.scroll_to(y=self.max_scroll_y, animate=False)
@@ -45,23 +47,23 @@ class Scrolled(ScrollView, inherit_bindings=False):
 
 
 class DrawnRows(Scrolled, can_focus=False):
-    """Rows drawn to fit the widget, and drawn again after a change of size."""
+    """Rows drawn to fit the widget, and redrawn after a change of size."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._drawn: tuple[Size | None, list[Row]] = (None, [])  # rows and their size
 
     def rows_for(self, size: Size) -> list[Row]:
-        """Draw the rows for a size."""
+        """Draw the rows for a given widget size."""
         raise NotImplementedError
 
     def draw_again(self) -> None:
-        """Draw the rows again."""
+        """Redraw the rows."""
         self._drawn = (None, self._drawn[1])
         self.refresh()
 
     def drawn(self) -> list[Row]:
-        """Return the rows for the current size."""
+        """Return the rows drawn for the current size."""
         size = self.scrollable_content_region.size
         if size.width > 0 and size != self._drawn[0]:
             self._drawn = (size, self.rows_for(size))
@@ -76,7 +78,7 @@ class DrawnRows(Scrolled, can_focus=False):
 
 
 class ScrolledText(DrawnRows):
-    """Texts one below the other, wrapped to the width; new texts are shown from the top."""
+    """Texts below each other, wrapped to the width; new texts are shown from the top."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
@@ -86,7 +88,7 @@ class ScrolledText(DrawnRows):
         self._numbers: list[int] = []  # number of the text of each row
 
     def show(self, *texts: RenderableType) -> None:
-        """Show other texts."""
+        """Replace the texts."""
         self._texts = texts
         self.scroll_to(y=0, animate=False)
         self.draw_again()
@@ -104,7 +106,7 @@ class ScrolledText(DrawnRows):
         return [row for _, row in wrapped]
 
     def _wrapped(self, width: int) -> list[tuple[int, Row]]:
-        """Return the wrapped rows, each with the number of its text."""
+        """Return the wrapped rows, each with the index of its text."""
         console = self.app.console
         options = console.options.update(width=width, height=None)
         return [
@@ -116,7 +118,7 @@ class ScrolledText(DrawnRows):
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column with a name, a heading, its first cell on the screen, and a width.
+    """A table column: name, heading, first cell on the screen, and width.
 
     A text that is too long keeps its last `tail` characters.
     """
@@ -129,7 +131,7 @@ class TableColumn:
     tail: int = 0
 
     def fitted(self, text: str) -> str:
-        """Fit a text to the width of the column, with an ellipsis if it is too long."""
+        """Fit a text to the column width; a text that is too long ends with an ellipsis."""
         excess = cell_len(text) > self.width
         if excess and self.tail:
             begin = set_cell_size(text, self.width - 1 - self.tail)
@@ -159,30 +161,30 @@ class TableCells(Scrolled, inherit_bindings=False):
 
     HEADING: ClassVar[int] = 1
     BEYOND: ClassVar[int] = 0
-    """Number of rows kept visible beyond the cursor."""
+    """Number of rows that stay visible above and below the cursor."""
     GAP: ClassVar[int] = 1
-    """Cells between two columns."""
+    """Number of cells between two columns."""
 
     cursor: reactive[int] = reactive(0, init=False, repaint=False)
     column: reactive[int] = reactive(0, init=False, repaint=False)
     rows: Sequence[Any] = ()
 
     class Moved(Message):
-        """The cursor is on another cell."""
+        """The cursor has moved to another cell."""
 
     class Pressed(Message):
-        """A cell was pressed with the mouse while the cursor was on it."""
+        """The cell under the cursor was pressed with the mouse."""
 
-    # what is made of it tells
+    # defined by subclasses
 
     @property
     def columns(self) -> Sequence[TableColumn]:
-        """Columns for the current width."""
+        """Columns that fit the current width."""
         raise NotImplementedError
 
     @property
     def editable(self) -> Sequence[str]:
-        """Names of the columns that the cursor visits, from the left."""
+        """Names of the columns that the cursor can enter, from the left."""
         return ()
 
     def text_of(self, number: int, column: TableColumn) -> str:
@@ -190,7 +192,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         raise NotImplementedError
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the segments in front of the first column of a row."""
+        """Return the text segments before the first column of a row."""
         raise NotImplementedError
 
     def look(self, name: str) -> Style:
@@ -206,15 +208,15 @@ class TableCells(Scrolled, inherit_bindings=False):
         return style
 
     def below(self, y: int) -> list[Segment]:
-        """Return the segments of a screen line below the last row."""
+        """Return the text segments of a screen line below the last row."""
         return []
 
     # rows and cursor
 
     def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
-        """Replace the rows, keeping the cursor in its row if possible.
+        """Replace the rows; the cursor stays in its row if possible.
 
-        If the numbers of `changed` rows are given, only those are drawn.
+        If the numbers of `changed` rows are given, only these rows are redrawn.
         """
         self.rows = rows
         self.virtual_size = Size(0, len(rows) + self.HEADING)
@@ -244,12 +246,12 @@ class TableCells(Scrolled, inherit_bindings=False):
         self.post_message(self.Moved())
 
     def refresh_rows(self, *numbers: int) -> None:
-        """Draw only these rows."""
+        """Redraw only the given rows."""
         for number in numbers:
             self.refresh_line(number + self.HEADING)
 
     def follow(self) -> bool:
-        """Scroll to the cursor; return whether this was necessary."""
+        """Scroll until the cursor is visible; return whether this was necessary."""
         page = max(self.scrollable_content_region.height - self.HEADING, 1)
         beyond = min(self.BEYOND, (page - 1) // 2)
         top = self.scroll_offset.y
@@ -259,19 +261,19 @@ class TableCells(Scrolled, inherit_bindings=False):
         return wanted != top
 
     def row_at(self, y: int) -> int | None:
-        """Return the number of the row on a line of the widget, or None outside the rows."""
+        """Return the row number on a line of the widget; None outside the rows."""
         row = y - self.HEADING + self.scroll_offset.y
         return row if y >= self.HEADING and row < len(self.rows) else None
 
     def cell_region(self) -> Region:
-        """Return the region of the cell under the cursor within the widget."""
+        """Return the region of the cell under the cursor, relative to the widget."""
         shown = {each.name: each for each in self.columns}
         column = shown.get(self.editable[self.column], self.columns[0])
         y = self.cursor + self.HEADING - self.scroll_offset.y
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the mouse; a press on the cursor posts `Pressed`.
+        """Move the cursor to the mouse; if the cursor is already there, post `Pressed`.
 
         This happens at once, because text typed elsewhere is accepted now, which may change the
         layout of the screen.

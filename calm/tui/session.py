@@ -1,4 +1,4 @@
-"""The edited file: its text, its history, the clipboard, and all editing operations.
+"""Editing session of a file: text, history, clipboard and all editing operations.
 
 This module depends neither on the screen nor on the solver.
 """
@@ -13,7 +13,7 @@ from calm.files.yaml_document import Location
 from calm.tui.names import EnvironmentChoice, Named, followed, with_extended_acceptances
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
-"""Keys of a row that are independent of its component."""
+"""Row keys that do not depend on the component."""
 
 
 class Session:
@@ -79,28 +79,28 @@ class Session:
 
     @property
     def components(self) -> dict[str, Any]:
-        """Components defined in the file, in their text form."""
+        """Components defined in the file, in typed form."""
         defined = self.draft.value(("components",))
         return defined if isinstance(defined, dict) else {}
 
     # the line
 
     def spots(self) -> list[Place]:
-        """Return all rows of the line, clamps below their piece."""
+        """Return the positions of all rows of the line; clamps follow their piece."""
         return _rows_of(self.draft, 0, len(self.draft.items))
 
     def item(self, spot: Place) -> LineItem:
-        """Return the item or clamp of a row."""
+        """Return the item or clamp in a row."""
         item = self.draft.items[spot.item]
         return item.clamps[spot.clamp] if spot.is_clamp else item
 
     def written(self, spot: Place) -> dict[str, Any]:
-        """Return all keys of a row."""
+        """Return all keys of a row with their values."""
         values = self.draft.value(location(spot))
         return values if isinstance(values, dict) else {}
 
     def do(self, draft: Draft, label: str) -> None:
-        """Make a draft the current state; an unchanged text adds no step to the history."""
+        """Make a draft current, as a step of the history; an unchanged text adds no step."""
         if draft.text != self.draft.text:
             self.history.do(draft, label)
             self.added = frozenset()
@@ -108,7 +108,7 @@ class Session:
     def _edit(
         self, draft: Draft, label: str, *, removed: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
-        """Make a draft the current state, given its `gone` and `new` rows; update references."""
+        """Make a draft current, and update references from `gone` rows to `new` rows."""
         removed, new, then = list(removed), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
             [spot for spot in self.spots() if spot not in removed],
@@ -123,7 +123,7 @@ class Session:
         self.added = frozenset(new.difference(moved.values()))
 
     def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
-        """Replace the text; `further` merges the change with the last step."""
+        """Replace the text; with `further`, the change is merged with the last step."""
         if further:
             self.history.undo()
         self.do(Draft(text), label)
@@ -153,7 +153,9 @@ class Session:
         self._edit(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, Value]) -> list[str]:
-        """Replace the component of a row; return the remaining overrides of the old component."""
+        """Replace the component of a row; return the remaining overrides of the previous
+        component.
+        """
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
             for key, value in self.written(spot).items()
@@ -163,7 +165,9 @@ class Session:
         return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
-        """Delete rows, pieces with their clamps; return the row for the cursor, if any."""
+        """Delete rows, including clamps of deleted pieces; return the new row of the cursor, if
+        any.
+        """
         chosen = _whole(spots)
         if not chosen:
             return None
@@ -182,7 +186,7 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Copy rows below the last of them, once or several times; return the first copy.
+        """Copy rows once or several times, below the last of these rows; return the first copy.
 
         The references in `also` are extended to the copies.
         """
@@ -200,15 +204,15 @@ class Session:
         return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
 
     def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
-        """Add clamps to the piece of a row from index `first`; return their rows."""
+        """Insert clamps on the piece of a row at index `first`; return their rows."""
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
         return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
-        """Move pieces, or one clamp, up (-1) or down (1); return their new rows.
+        """Move pieces or a single clamp up (-1) or down (1); return their new rows.
 
-        At the end of the line, or of the list of clamps, they do not move.
+        Rows at the end of the line or of the list of clamps do not move.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -234,7 +238,7 @@ class Session:
         return tuple(map(there, moved))
 
     def copy(self, spots: Iterable[Place]) -> int:
-        """Copy rows for pasting; return their number."""
+        """Copy rows for pasting; return the number of copied rows."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
         if chosen:
@@ -269,7 +273,7 @@ class Session:
     # saving
 
     def save(self) -> str:
-        """Save the file and delete its backup; return a note on attributes that were lost.
+        """Save the file and delete its backup copy; return a note about lost file attributes.
 
         Raises
         ------
@@ -283,7 +287,7 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Save under another path and continue with that file; see `save`."""
+        """Save to another path and continue with the new file; return the note of `save`."""
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -296,12 +300,12 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Register the unsaved text with the file, for `keep`; return the file."""
+        """Register the unsaved text for the next backup copy; return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 
     def recover(self, kept: editing.KeptWork) -> None:
-        """Continue with unsaved work of an earlier session; undo leads back to the file."""
+        """Continue with unsaved work of an earlier session; undo restores the text of the file."""
         self.file.adopt(kept)
         self.write(kept.text, "recover unsaved work")
 

@@ -1,4 +1,4 @@
-"""Start of the builder, with or without a file."""
+"""Start the line builder, with or without a file."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 _TURN = 0.001  # seconds
 _GRACE = 3
-"""Maximum time [s] for an orderly end: a blocked terminal accepts no output."""
+"""Maximum time for an orderly exit [s]; a blocked terminal accepts no output."""
 
 
 def open_session(
     path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()
 ) -> tuple[Session, KeptWork | None]:
-    """Open a session of a file; also return unsaved work of an earlier session, if any.
+    """Open a session for a file; also return any unsaved work of an earlier session.
 
     Parameters
     ----------
@@ -54,7 +54,9 @@ def open_session(
 
 
 def _refuse_other_files(session: Session) -> None:
-    """Reject mistakes in other files, which cannot be corrected in the builder."""
+    """Reject mistakes in files other than the edited file, since the builder cannot correct
+    them.
+    """
     Catalogue.load(session.catalogs)
     here, names = session.standing.environment, session.standing.environments
     if (lost := session.standing.lost_environment) is not None:
@@ -102,7 +104,7 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 
 
 def end(app: BuildApp, number: int, _frame: object) -> None:
-    """Keep unsaved work and quit after a signal that ends the terminal or the process.
+    """Keep unsaved work and quit after a signal that terminates the terminal or the process.
 
     The event loop is not waited for, because it may wait for a closed terminal for ever. A closed
     terminal needs no restoring, so the process ends at once.

@@ -1,4 +1,4 @@
-"""Tables edited cell by cell, in forms and on the screen of the water."""
+"""Tables edited cell by cell, in forms and on the water screen."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class GridCells(TableCells, can_focus=True):
         self.rows: Rows = ()
 
     def show(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Replace headings and rows, keeping the cursor in its cell if possible."""
+        """Replace headings and rows; the cursor stays in its cell if possible."""
         self.headings = tuple(headings)
         self.set_reactive(TableCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns, named by number because two may have the same heading."""
+        """Columns, named by number, because headings may be equal."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -59,7 +59,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """All columns, by number."""
+        """Names of the editable columns: all columns."""
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
@@ -72,13 +72,13 @@ class GridCells(TableCells, can_focus=True):
         return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
     def below(self, y: int) -> list[Segment]:
-        """Return the hint that is shown in an empty table."""
+        """Return the hint shown in an empty table."""
         is_empty = y == self.HEADING and self.headings and not self.rows
         cursor = theme.CURSOR if self.has_focus else " "
         return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
 
     def go_on(self, by: int) -> bool:
-        """Go to the next or previous value, across rows; return whether there is one."""
+        """Move to the next or previous value, also in other rows; return whether there is one."""
         count = len(self.headings)
         row, column = divmod(self.cursor * count + self.column + by, count)
         if is_there := 0 <= row < len(self.rows):
@@ -87,7 +87,7 @@ class GridCells(TableCells, can_focus=True):
 
 
 class Grid(cell_editor.EditableTable):
-    """Table with editing of cells and rows.
+    """Table with editable cells and rows.
 
     Values are texts of the file. Without columns, the table is empty and cannot be edited.
 
@@ -104,7 +104,7 @@ class Grid(cell_editor.EditableTable):
     """
     LEAST_ROWS: ClassVar[int] = 0
     EDITS_ON: ClassVar[bool] = True
-    """Whether Enter edits the next value of an added row (if digits do not start editing)."""
+    """Whether Enter edits the next value of an added row; used if digits do not start editing."""
 
     def __init__(
         self,
@@ -122,12 +122,12 @@ class Grid(cell_editor.EditableTable):
         self._before: Rows | None = None  # rows without the row that Enter added
 
     def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
-        """Show other rows."""
+        """Replace the rows."""
         self._columns = tuple(columns)
         self.cells.show([column.heading for column in columns], rows)
 
     def change(self, rows: Rows, label: str) -> None:
-        """Show changed rows, and report the change."""
+        """Show changed rows, and post a message about the change."""
         self.cells.show(self.cells.headings, rows)
         self._changed(self, label)
 
@@ -139,11 +139,11 @@ class Grid(cell_editor.EditableTable):
             self.change((*rows[:row], values, *rows[row + 1 :]), "a value")
 
     def new_row(self, at: int) -> tuple[str, ...]:
-        """Return the initial values of a row that is added at index `at`."""
+        """Return the initial values for a new row at index `at`."""
         return ("",) * len(self._columns)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether no row should be proposed at index `at`."""
+        """Return whether the table ends above index `at`, so that no new row is proposed."""
         return False
 
     # keys
@@ -162,7 +162,7 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_previous()
 
     def action_move_cell(self, by: int) -> None:
-        """Go to the next value, but do not leave the table after the last."""
+        """Move to the next value; after the last value the table keeps the focus."""
         has_rows = bool(self.cells.headings) and bool(self.cells.rows)
         if has_rows and self.cells.go_on(by):
             return
@@ -186,7 +186,7 @@ class Grid(cell_editor.EditableTable):
             self._edit()
 
     def _edit(self, begun: str | None = None) -> None:
-        """Edit the cell under the cursor, starting with its text or with `begun`."""
+        """Edit the cell under the cursor, starting with its text or with the typed text `begun`."""
         cells = self.cells
         if not super().settle():  # only the cell: the row may be incomplete
             return
@@ -215,7 +215,7 @@ class Grid(cell_editor.EditableTable):
     # typed text
 
     def go_on(self, then: cell_editor.Then, text: str | None) -> None:
-        """Go up or down, or to the next value; add a row below a new row that is complete."""
+        """Move up, down, or to the next value; after completing an added row, add another row."""
         cells = self.cells
         if text is not None:
             self._before = None  # the row is not empty any more
@@ -236,7 +236,7 @@ class Grid(cell_editor.EditableTable):
             self._before = before
 
     def abandoned(self) -> None:
-        """Delete an added row that was not filled."""
+        """Delete an added row that was left empty."""
         if self._before is not None:
             self.change(self._before, "delete a row")
             self.cells.cursor -= 1
@@ -250,7 +250,7 @@ class Grid(cell_editor.EditableTable):
         self.take_text(event.text)
 
     def take_text(self, text: str) -> None:
-        """Replace all rows by the rows of a text, which must have as many columns."""
+        """Replace all rows by the rows of a text, which must have the same number of columns."""
         try:
             copied = copied_table(text).rows
         except NoTableError as error:
@@ -282,13 +282,13 @@ class TableField(Grid):
 
     @property
     def text(self) -> str:
-        """Text of the rows, or the initial text if they are unchanged."""
+        """Text of the rows, or the initial text if unchanged."""
         rows = self.cells.rows
         return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
 
     @property
     def reading(self) -> Reading:
-        """Interpretation of the rows; required cells must not be blank."""
+        """Interpretation of the rows as text; required cells must not be blank."""
         for number, row in enumerate(self.cells.rows, 1):
             for column, text in zip(self._columns, row, strict=True):
                 reading = column.check(text)

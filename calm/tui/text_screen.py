@@ -1,4 +1,4 @@
-"""Text editor of the file, with a list of its mistakes."""
+"""Text editor for the file, with a list of mistakes."""
 
 import re
 
@@ -48,7 +48,7 @@ class YamlArea(TextArea):
 
 
 class TextScreen(screen.DraftScreen):
-    """Text of the file, judged after each pause.
+    """Screen with the text of the file, which is judged after each pause in typing.
 
     Unchanged lines keep their line breaks.
     """
@@ -81,7 +81,7 @@ class TextScreen(screen.DraftScreen):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """Put the cursor on the first mistake, or on the piece it was on."""
+        """Put the cursor on the first mistake, else on the piece selected on the main screen."""
         self.query_one(screen.KeyBar).show_keys(key_table.hints("text"))
         self.show_view()
         self.text_area.focus()
@@ -110,7 +110,7 @@ class TextScreen(screen.DraftScreen):
 
     @property
     def _here(self) -> list[Problem]:
-        """Mistakes in this text, not in other files."""
+        """Mistakes in the edited file, without those in other files."""
         return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
@@ -137,7 +137,7 @@ class TextScreen(screen.DraftScreen):
         return retyped(self._begun, self.text_area.document.lines)
 
     def show_draft(self) -> None:
-        """Load the draft again, keeping the cursor on its line."""
+        """Load the draft again; the cursor stays on its line."""
         area, text = self.text_area, self.session.draft.text
         self._begun, self._edited, self._next = text, False, 0
         row, column = area.cursor_location
@@ -147,7 +147,7 @@ class TextScreen(screen.DraftScreen):
         self.show_view()
 
     def find(self, words: str = "") -> None:
-        """Select the next match after the cursor, then from the top; case is ignored.
+        """Select the next match after the cursor, continuing from the top; case is ignored.
 
         Without words, repeat the last search.
         """
@@ -197,6 +197,8 @@ class TextScreen(screen.DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Return the row of a line of the file in the editor, which knows more line breaks."""
+    """Convert a line number of the file to an editor row; the editor splits at additional line
+    breaks.
+    """
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

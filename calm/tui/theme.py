@@ -69,11 +69,11 @@ PICTURE_DARK = _palette(
 PICTURE_LIGHT = _palette(
     "f7f9fa", "16222b", "16222b b3261e 1e7d34 8a6100 1f56a8 6a3fa0 0c7a70 e6ecf0"
 )
-"""The eight colours of pictures and verdict in these themes."""
+"""The eight colours of pictures and verdict in a theme."""
 
 
 def choose_theme(environ: Mapping[str, str]) -> str:
-    """Return the name of the theme for a terminal.
+    """Choose the theme for a terminal; return its name.
 
     A terminal with 256 colours or more gets the colours of the application; any other keeps its own
     sixteen colours, which its owner has chosen to be legible. The background is light if the last
@@ -91,14 +91,15 @@ _LEAST_CONTRAST = 4.5
 _OWN = Ink.default()
 _ON_DARK = {1: 9, 2: 2, 3: 11, 4: 6, 6: 6, 7: 7, 9: 9, 10: 10, 11: 11, 12: 6, 14: 14, 15: 15}
 _ON_LIGHT = {0: 0, 1: 1, 4: 4}
-"""Displayed colour for each of the sixteen colours; all others become the terminal's text colour.
+"""Replacement for each of the sixteen terminal colours; any other colour becomes the terminal's
+text colour.
 
 A terminal of eight colours does not know the bright ones, and also keeps its own colours.
 """
 
 
 class Legible(LineFilter):
-    """Line filter that keeps text legible for any colours of a theme or a picture.
+    """Line filter that makes text legible on any background colour of a theme or a picture.
 
     Parameters
     ----------
@@ -111,7 +112,7 @@ class Legible(LineFilter):
         self._dark, self._sixteen = dark, sixteen
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments in legible colours."""
+        """Return text segments with legible colours."""
         ground = background.rich_color
 
         def style(given: Style) -> Style:
@@ -127,7 +128,9 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a background, cached because strips cache its output."""
+    """Return the filter for a background. Filters are cached, because Textual caches their output
+    by filter.
+    """
     return Legible(dark=dark, sixteen=sixteen)
 
 
@@ -161,7 +164,7 @@ def _is_legible(ink: ColorTriplet, on: ColorTriplet) -> bool:
 
 
 def contrast(one: ColorTriplet, other: ColorTriplet) -> float:
-    """Return the contrast of two colours, from 1 to 21 (WCAG 2.2, *contrast ratio*)."""
+    """Contrast ratio of two colours, from 1 to 21 (WCAG 2.2)."""
     less, more = sorted(map(_luminance, (one, other)))
     return (more + 0.05) / (less + 0.05)
 
@@ -184,7 +187,7 @@ LOOKS = {
     State.NOT_JUDGED: "dim",
     State.PASS: "green",
 }
-"""Rich styles of the signs of the states."""
+"""Rich styles of the signs for states."""
 
 ROLES = {
     "float": "o",
@@ -194,7 +197,7 @@ ROLES = {
     "line": "│",
     "anchor": "█",
 }
-"""Sign in front of a row, by the role of its component."""
+"""Sign in front of a row, by role of the component."""
 
 UNKNOWN_ROLE = "?"
 UNKNOWN_USE = "?"

@@ -1,4 +1,4 @@
-"""The verdict next to the picture, with lines that lead to the rows concerned."""
+"""Verdict next to the picture, with lines that link to the affected rows."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """Pane with the values of anchor and top, and with passes, failures and reasons.
+    """Pane with values of anchor and top, passes, failures and reasons.
 
     Parameters
     ----------
@@ -66,19 +66,19 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         return len(rows if size and size.width == width else self._wrapped(width))
 
     def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
+        """Return a line of the screen."""
         strip, at = super().render_line(y), y + self.scroll_offset.y
         if self.has_focus and self._numbers[at : at + 1] == [self._chosen]:
             return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
         return strip
 
     def on_focus(self) -> None:
-        """Select a line that leads to a row."""
+        """Select the first line that links to a row."""
         if not self._is_a_way(self._chosen):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Go to the next line that leads to a row, or scroll."""
+        """Move to the next line that links to a row, or scroll."""
         number = self._chosen + by
         while 0 <= number < len(self._lines) and not self._is_a_way(number):
             number += by
@@ -90,18 +90,18 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.scroll_relative(y=by, animate=False)
 
     def action_go(self) -> None:
-        """Go to the row of the selected line."""
+        """Go to the row that the selected line links to."""
         if self._is_a_way(self._chosen):
             line = self._lines[self._chosen]
             text = f"{line.sign} {line.heading}: ".replace(" : ", " ") + line.text
             self._go_to(line.places, text)
 
     def action_leave(self) -> None:
-        """Go back to the line."""
+        """Return to the line table."""
         self._go_to(())
 
     def on_click(self, event: events.Click) -> None:
-        """Go to the row of the clicked line."""
+        """Go to the row that the clicked line links to."""
         place = event.get_content_offset(self)
         at = len(self._numbers) if place is None else place.y + self.scroll_offset.y
         if at < len(self._numbers) and self._is_a_way(self._numbers[at]):
@@ -138,6 +138,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, Renderab
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """Return the headline with its sign, or an ellipsis as sign if it is `old`."""
+    """Return the headline with its sign; an `old` verdict has an ellipsis as its sign."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

@@ -1,4 +1,4 @@
-"""Text of the verdict: values and findings, or missing parts."""
+"""Text of the verdict: values and findings, or the missing parts of a line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MOST_PROBLEMS = 6
 
 @dataclass(frozen=True)
 class VerdictLine:
-    """A line of the verdict with its sign, heading, text and state.
+    """A line of the verdict: sign, heading, text and state.
 
     `pending` marks a state that may still change; `places` are the rows concerned.
     """
@@ -37,7 +37,7 @@ class VerdictLine:
 
     @property
     def sign(self) -> str:
-        """Sign in front of the line."""
+        """Sign before the line."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else self.state.sign
@@ -103,7 +103,9 @@ def verdict_lines(view: View | None) -> Iterator[VerdictLine]:
 
 
 def _placed(finding: Finding, view: View) -> Finding:
-    """Add the environment to the situation of a finding, unless it is the current one."""
+    """Append the environment to the situation of a finding, unless it is the current
+    environment.
+    """
     if finding.environment == view.here:
         return finding
     there = _environment(finding.environment)
@@ -149,7 +151,9 @@ def _figures(
 def _mooring(
     result: LegResult, findings: Sequence[Finding], pending: bool
 ) -> Iterator[VerdictLine]:
-    """Yield anchor and top values as given; judged values show their most severe finding."""
+    """Yield anchor and top values of the mooring as specified; values with a limit show their
+    most severe finding.
+    """
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
 
@@ -192,13 +196,17 @@ def _holds(result: LegResult, worst: Finding | None, pending: bool) -> VerdictLi
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
-    """Return the most severe finding of a rule, and among equals the one with the highest use."""
+    """Return the most severe finding of a rule; among equal findings, the one with the highest
+    utilisation.
+    """
     own = [each for each in findings if each.rule == rule.name]
     return min(own, key=lambda each: each.rank, default=None)
 
 
 def _at_worst(worst: Finding, figure: str) -> str:
-    """Return the value of the governing situation, unless that is the mooring as given."""
+    """Return the value in the governing situation, unless that situation is the mooring as
+    specified.
+    """
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 
 
@@ -207,7 +215,7 @@ def _situation(finding: Finding) -> str:
 
 
 def _figure(text: str, heading: str, worst: Finding | None) -> VerdictLine:
-    """Return a value with the state of its finding if that is a failure or warning."""
+    """Return a value, with the state of its finding if the state is failure or warning."""
     state = worst.state if worst is not None and _graver(worst) else None
     return VerdictLine(text, heading, state, places=_places([worst]))
 
@@ -275,7 +283,7 @@ def _used(finding: Finding) -> str:
 
 
 def why(view: View, row: Place) -> list[VerdictLine]:
-    """Return all findings of a row with their remedies, the most severe first."""
+    """Return all findings for a row with their remedies, the most severe first."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if row in _places([each])]
     return [_finding_line(each) for each in sorted(own, key=lambda each: each.rank)]

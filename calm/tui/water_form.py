@@ -1,4 +1,4 @@
-"""Form of the water: reading and writing the keys of an environment in a file."""
+"""Read and write the environment keys of a file in the water form."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from calm.units import QuantityError, QuantityRange
 CURRENT_FORMS = ("still", "uniform", "table", "file")
 DENSITY_FORMS = ("constant", "table", "temperature and salinity")
 TITLE = 24
-"""Width of the names of the fields [cells]."""
+"""Width of field names [cells]."""
 PROFILE_FORMS = ("constant", "table")
-"""Forms of temperature and salinity."""
+"""Possible forms of temperature and salinity."""
 
 _CURRENT = ("0.5", "90")
 _CONSTANTS = {
@@ -44,14 +44,14 @@ _CONSTANTS = {
     ("density", "temperature"): (profile_tables.TEMPERATURE, "degC", "10"),
     ("density", "salinity"): (profile_tables.SALINITY, "", "35"),
 }
-"""Quantities that can be a constant or a table: kind, unit, and initial value."""
+"""Quantities that are either constant or tabulated: kind, unit, and initial value."""
 
 Place = tuple[str, ...]
 """Path of a key within an environment: ``("density", "salinity")``."""
 
 
 class WaterForm:
-    """Access to the water of one environment of a file.
+    """Access to one environment in a file.
 
     Parameters
     ----------
@@ -69,21 +69,21 @@ class WaterForm:
         self.place: Location = ("environments", variant) if variant else ("environment",)
 
     def at(self, *keys: str) -> Location:
-        """Return the location of a key."""
+        """Return the location of an environment key in the file."""
         return (*self.place, *keys)
 
     def own(self, *keys: str) -> Any:
-        """Return the value of a key in this environment alone, or None."""
+        """Return the value of a key set in this environment itself, or None."""
         return self.draft.value(self.at(*keys))
 
     def value(self, *keys: str) -> Any:
-        """Return the value of a key here or, if unset, in the default environment."""
+        """Return the value of a key in this environment, else in the default environment."""
         if self.own(keys[0]) is not None:
             return self.own(*keys)
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """Return the typed form of a value."""
+        """Return a value in typed form."""
         return text_of(self.value(*keys))
 
     def is_own(self, key: str) -> bool:
@@ -96,7 +96,7 @@ class WaterForm:
         return _read(POSITIVE_LENGTH, self.text("depth"))
 
     def form(self, *keys: str) -> str:
-        """Return the form of the current, the density, the temperature or the salinity."""
+        """Return the form in which the current, density, temperature or salinity is given."""
         value = self.value(*keys)
         if isinstance(value, dict) and {"columns", "rows"} & set(value):
             return "table"
@@ -109,7 +109,7 @@ class WaterForm:
         return "file" if CurrentFile.model_fields.keys() & set(value) else "uniform"
 
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        """Return columns and rows of a table as texts, with missing cells empty.
+        """Return the columns and rows of a table as text; missing cells are empty.
 
         Both are empty if there is no table, or if only the text view can show it: rows that are
         longer than the columns, or that contain anything but texts.
@@ -126,7 +126,9 @@ class WaterForm:
     # changes, which return the new draft
 
     def put(self, keys: Sequence[str], text: str, *, is_needed: bool = False) -> Draft:
-        """Set a value; an empty text deletes the key, and its parent if the key is required."""
+        """Set a value. An empty text deletes the key; if the key is required, it deletes the
+        parent, too.
+        """
         if is_needed and len(keys) > 1 and not text:
             return self.draft.put_at(self.at(*keys[:-1]), None)
         return self.put_form(keys, value_of(text))
@@ -134,7 +136,7 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """Set a table; unchanged rows keep their text."""
+        """Write a table; unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
@@ -143,11 +145,11 @@ class WaterForm:
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
-        """Set the current or the density as a whole; None deletes it."""
+        """Replace the current or the density; None deletes it."""
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return the initial value of another form: known or typical values.
+        """Return initial values for another form, from known or typical values.
 
         None means that the key can be omitted.
         """
@@ -200,7 +202,7 @@ class WaterForm:
 
 
 def _read(kind: QuantityRange, text: str) -> float | None:
-    """Return a quantity in SI units, or None if it is invalid."""
+    """Parse a quantity to SI units; None if it is invalid."""
     try:
         return kind.read(text) if text else None
     except QuantityError:
@@ -211,7 +213,7 @@ _ACCEPT_HINT = "Enter accepts"
 
 
 class FormChoice(Cycle):
-    """Choice of a form: the arrows show other forms, Enter accepts the form shown.
+    """Selector of a form: arrows show other forms, Enter accepts the form shown.
 
     When the focus leaves without Enter, the current form is shown again.
     """
@@ -220,7 +222,7 @@ class FormChoice(Cycle):
 
     @dataclass
     class Taken(Message):
-        """Another form was chosen."""
+        """Another form was accepted."""
 
         choice: FormChoice
         form: str
@@ -239,7 +241,7 @@ class FormChoice(Cycle):
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
-        """Choose the form shown, or move on."""
+        """Accept the form shown, or move to the next field."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:
@@ -260,12 +262,12 @@ class FormChoice(Cycle):
 
     @property
     def hint(self) -> str:
-        """Hint how to accept the form shown, if it is not the current form."""
+        """Hint on how to accept the form shown, if it differs from the current form."""
         return _ACCEPT_HINT if self.word != self._given else super().hint
 
 
 class ProfileGrid(Grid):
-    """A table of the water: numbers by depth, whose columns carry their units."""
+    """Table of water properties by depth, in the units of the column headings."""
 
     LEAST_ROWS = 1
     EDITS_ON = False
@@ -285,7 +287,7 @@ class ProfileGrid(Grid):
     def show_profile(
         self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None
     ) -> None:
-        """Show other rows; new rows are not proposed below the `seabed` [m]."""
+        """Replace the rows; new rows are not proposed below the `seabed` [m]."""
         self._seabed = seabed
         self.show(
             [FormColumn("", heading, water_tables.check_of(heading)) for heading in columns], rows
@@ -324,7 +326,7 @@ class ProfileGrid(Grid):
             return False
 
     def take_text(self, text: str) -> None:
-        """Read the rows of a text by its headings, and show a preview."""
+        """Read rows from a text with headings, and show a preview."""
         columns = self.cells.headings
         try:
             copied = copied_table(text)
@@ -339,12 +341,12 @@ class ProfileGrid(Grid):
 
 
 _STEP = 10.0
-"""Depth step [m] of a row below the last."""
+"""Depth step from the last row to a new row [m]."""
 _FIRST = ("depth", "density", "current", "wind")
 
 
 def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """Yield the widgets of an environment form; their ids are the paths of their keys."""
+    """Yield the widgets of an environment form; widget ids are the paths of the keys."""
     fields = form_of(TowEnvironmentKeys if towed else EnvironmentKeys, needed=False)
     fields = [each for each in fields if each.key != "fluid" or towed]
     groups = {each.key.partition(".")[0]: [] for each in fields}  # type: dict[str, list[FormField]]

@@ -1,4 +1,4 @@
-"""Screen of the water: a form for each environment, with the profile of its current."""
+"""Water screen: a form for each environment, with its current profile."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -50,7 +50,9 @@ _INHERITED = "as in the default environment"
 
 
 class WaterScreen(screen.DraftScreen):
-    """Depth, density, current and wind of each environment; the line is solved in the one shown."""
+    """Depth, density, current and wind of each environment; the line is solved in the environment
+    shown.
+    """
 
     BINDINGS = key_table.bindings("water")
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
@@ -75,7 +77,7 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def parts(self) -> ComposeResult:
-        """Yield the form at the left and the profile of the current at the right."""
+        """Yield the form on the left and the current profile on the right."""
         with Horizontal():
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
@@ -99,7 +101,7 @@ class WaterScreen(screen.DraftScreen):
 
     @property
     def environment_file(self) -> str | None:
-        """The environment file given with the command, if it is the current environment."""
+        """Environment file given on the command line, if it is the current environment."""
         standing, draft = self.session.standing, self.session.draft
         here = standing.environment
         return None if here in standing.environments or draft.problems else here
@@ -110,7 +112,7 @@ class WaterScreen(screen.DraftScreen):
         return f"The water of {self.workspace.called}", state
 
     def show_view(self) -> None:
-        """Show the profile of the last view, dimmed if it is of an earlier draft."""
+        """Show the current profile of the last view, dimmed if it belongs to an earlier draft."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
         self.query_one(pictures.ProfilePicture).show(view, old=self.workspace.is_old)
@@ -125,7 +127,7 @@ class WaterScreen(screen.DraftScreen):
         shown.update(Content("\n").join(notes))
 
     def show_draft(self) -> None:
-        """Show the current draft, except in fields in which text is typed."""
+        """Show the current draft, except in fields that are being edited."""
         self.show_view()
         water = self.water
         file = self.environment_file
@@ -155,7 +157,7 @@ class WaterScreen(screen.DraftScreen):
             grid.show_profile(*water.table(*place), water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Return whether a part of the form applies to the current forms of the water."""
+        """Return whether a part of the form applies to the current input forms."""
         water, key = self.water, place[0]
         if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
             return False
@@ -174,7 +176,7 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file, or report why this failed; return whether it was changed."""
+        """Change the file; return whether this succeeded, and report any failure."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -183,14 +185,14 @@ class WaterScreen(screen.DraftScreen):
         return is_made
 
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
-        """Set the current to a table of these rows."""
+        """Replace the current by a table with the given rows."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
     # typed text
 
     @property
     def is_typing(self) -> bool:
-        """Return whether something is typed that is not in the draft yet."""
+        """Whether typed text has not been written to the draft yet."""
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
@@ -211,7 +213,7 @@ class WaterScreen(screen.DraftScreen):
         return True
 
     def discard_typing(self) -> None:
-        """Discard typed text that is not in the draft."""
+        """Discard typed text that has not been written to the draft."""
         for field in self.query(Field):
             field.reset(field.begun)
         for grid in self.query(ProfileGrid):
@@ -261,7 +263,9 @@ class WaterScreen(screen.DraftScreen):
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Use a table pasted outside the tables of the form as the current, in any form."""
+        """Use a pasted table as the current, in any form, unless it is pasted into a table of the
+        form.
+        """
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
@@ -315,12 +319,12 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def action_next_environment(self) -> None:
-        """Show the next environment, and solve the line in it."""
+        """Show the next environment, and solve the line in this environment."""
         if self.settle():
             self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
-        """Add a named environment with the current of the one shown."""
+        """Add a named environment with the current of the displayed environment."""
 
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
@@ -343,7 +347,7 @@ class WaterScreen(screen.DraftScreen):
             dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
-        """Delete the named environment from the file."""
+        """Delete the displayed named environment from the file."""
         name = self.water.variant
         if name is None:
             self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
@@ -377,7 +381,9 @@ class WaterScreen(screen.DraftScreen):
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
-        """Read a current from CSV or NetCDF: as a reference, or as a copy of its profile."""
+        """Read a current from CSV or NetCDF; the file then refers to it, or holds a copy of its
+        profile.
+        """
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
@@ -397,7 +403,7 @@ class WaterScreen(screen.DraftScreen):
             self.app.push_screen(import_sheet(self._folder), take)
 
     def _read(self, water: WaterForm, path: str, time: str) -> None:
-        """Read a current file in a thread, and put its profile into the form."""
+        """Read a current file in a thread, and write its profile to the form."""
         tell = self.workspace.tell
 
         def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -422,7 +428,7 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Undo the last change, or discard typed text that is invalid."""
+        """Discard invalid typed text, or undo the last change."""
         if self.settle():
             super().action_undo()
         else:

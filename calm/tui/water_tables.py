@@ -1,4 +1,4 @@
-"""Initial tables: typical currents, currents of files, and pasted rows.
+"""Initial tables of the water form: typical currents, currents from files, and pasted rows.
 
 Rows copied from a spreadsheet, a CSV file or a web page are read like files, by headings, units and
 sense of directions.
@@ -28,7 +28,7 @@ from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
 
 USUAL_DEPTH = 100.0
-"""Depth [m] of the last row of new tables if the water depth is not set."""
+"""Depth of the last row in new tables if the water depth is unknown [m]."""
 
 SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 _POWER = 1 / 7
@@ -43,7 +43,8 @@ PRESETS: Mapping[str, Callable[[float], float]] = {
     "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
         lambda share: 0.05 + 1.15 * exp(-share / 0.2),
 }  # fmt: skip
-"""Typical profiles: speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
+"""Typical current profiles: speed [m/s] by relative depth, from 0 at the surface to 1 at the
+seabed.
 """
 
 
@@ -52,7 +53,7 @@ _NOISE = 1e-12  # rounding of speed and direction in doubles, with a margin
 
 
 def import_sheet(folder: Path) -> InputSheet:
-    """Return the sheet for a current file: name, time, and reference or copy."""
+    """Create the sheet for importing a current file: name, time, and reference or copy."""
     return InputSheet(
         "A current from a file",
         f"CSV or CF NetCDF, relative to {folder}. `refer` keeps the file's "
@@ -66,7 +67,7 @@ def import_sheet(folder: Path) -> InputSheet:
 
 
 def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
-    """Read the profile of a file as columns and rows of a table.
+    """Read the current profile in a file as columns and rows of a table.
 
     Parameters
     ----------
@@ -103,7 +104,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
 
 def _written(value: float) -> str:
-    """Format a value with all its digits, as a 32-bit number if it was one, without noise."""
+    """Format a value with all significant digits; a 32-bit number is not extended by rounding
+    noise.
+    """
     short = float32(value)
     if isclose(short, value, rel_tol=_NOISE):
         return f"{float(str(short)) + 0.0:.12g}"
@@ -129,7 +132,7 @@ _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
 
 
 class NoRows(ValueError):
-    """A text is not a table; the message gives the row and the mistake."""
+    """A text is not a table; the message gives the affected row and the mistake."""
 
 
 class UnknownColumns(NoRows):
@@ -137,7 +140,9 @@ class UnknownColumns(NoRows):
 
 
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
-    """Return headings for copied rows: their own, with missing units added, or the table's."""
+    """Return headings for copied rows: those of the copied text, with missing units added, else
+    those of the table.
+    """
     if headings is None:
         return list(columns)
     units = {name: unit for name, unit in map(heading, columns)}
@@ -171,7 +176,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
 
 
 def previewed(columns: Sequence[str], rows: Rows) -> str:
-    """Format rows for a preview; long tables show the first rows and the last."""
+    """Format rows for a preview; a long table is reduced to its first rows and the last row."""
     lines: list[Sequence[str]] = [columns, *rows]
     if len(rows) > _MOST_SHOWN:
         between = f"{theme.ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
@@ -237,7 +242,7 @@ def _by_name(
 
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
-    """Return the values of a column in its unit, or with units if the column has none."""
+    """Return column values in the unit of the heading, or with units if the heading has none."""
     name, unit = heading(column)
     dimension = _KINDS[name].dimension
     usual = DIMENSIONS[dimension].unit
@@ -263,7 +268,9 @@ _KINDS: dict[str, QuantityRange] = {
 
 
 def check_of(column: str) -> Check:
-    """Return the check of a column: numbers if it has a unit, else quantities."""
+    """Return the check for a column: numbers if the heading has a unit, else quantities with
+    units.
+    """
     name, unit = heading(column)
     kind = _KINDS.get(name)
     if kind is None:
@@ -281,7 +288,9 @@ def check_of(column: str) -> Check:
 
 
 def half_way(column: str, one: float, other: float) -> float:
-    """Return the mean of two values; for directions, on the shorter arc."""
+    """Return the mean of two values; for directions, the direction halfway along the shorter
+    arc.
+    """
     name, unit = heading(column)
     half = (one + other) / 2
     if name != "toward":

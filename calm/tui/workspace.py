@@ -1,4 +1,6 @@
-"""State shared by all screens: the edited file, its mistakes, its view, and the judging workers."""
+"""State shared by all screens: edited file, mistakes, results, and the workers that judge the
+draft.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ def is_elsewhere(problem: Problem, path: Path) -> bool:
 
 
 def place_of(problem: Problem, path: Path) -> str:
-    """Return the position of a mistake, ``line 4:2``, with the name of any other file."""
+    """Format the position of a mistake, ``line 4:2``, with the file name if it is another file."""
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
         return place
@@ -35,13 +37,13 @@ def place_of(problem: Problem, path: Path) -> str:
 
 
 def problem_text(problem: Problem, path: Path) -> Content:
-    """Return a mistake with its sign and its position."""
+    """Format a mistake with its sign and its position."""
     parts = filter(None, (place_of(problem, path), problem.message))
     return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:
-    """Return the number of mistakes and their files, or ""."""
+    """Format the number of mistakes and the files that contain them; "" if there are none."""
     count = len(problems)
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:
@@ -84,12 +86,12 @@ class Workspace:
         self._defined: Any = None
 
     def take_catalogue(self, catalogue: Catalogue) -> None:
-        """Use a catalogue, with the components of the file."""
+        """Switch to a catalogue, and add the components of the file."""
         self._catalogue, self.index = catalogue, None
         self.refresh_index()
 
     def refresh_index(self) -> None:
-        """Rebuild the index if the components of the file have changed."""
+        """Rebuild the search index if the components of the file have changed."""
         draft = self.session.draft
         defined = draft.value(("components",))
         if self._catalogue is not None and (self.index is None or defined != self._defined):
@@ -98,14 +100,14 @@ class Workspace:
 
     @property
     def is_fresh(self) -> bool:
-        """Whether the view is of the current text, path and environment."""
+        """Whether the results belong to the current text, path and environment."""
         session, view = self.session, self.view
         return view is not None and view.is_of(
             session.draft.text, session.file.path, session.standing.environment
         )
 
     def judged(self, otherwise: str) -> View | None:
-        """Return the current view, or None with the message `otherwise`."""
+        """Return up-to-date results, or None after showing the message `otherwise`."""
         if not self.is_fresh:
             self.tell(otherwise)
             return None
@@ -113,12 +115,12 @@ class Workspace:
 
     @property
     def is_old(self) -> bool:
-        """Whether values should be dimmed because they are of an earlier draft."""
+        """Whether values should be dimmed because they belong to an earlier draft."""
         return self.is_late and not self.is_fresh
 
     @property
     def path(self) -> Path:
-        """Path of the file, as in its mistakes."""
+        """Path of the file, as given in its mistakes."""
         return Path() if self.view is None else self.view.path
 
     @property
@@ -127,7 +129,9 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change, or report why it failed; return whether it was made, and its row."""
+        """Make a change, or report why it failed; return whether it was made, and the resulting
+        row.
+        """
         try:
             spot = change()
         except CalmError as error:
@@ -141,7 +145,7 @@ _FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and 
 
 
 class Judging:
-    """Judges the draft of a workspace in workers of the application.
+    """Workers of the application that judge the draft of a workspace.
 
     Parameters
     ----------
@@ -166,21 +170,21 @@ class Judging:
         return not busy and self._workspace.view is not None
 
     def after_an_edit(self) -> None:
-        """Judge the new draft after the screen shows the typed text."""
+        """Judge the new draft, after the screen has shown the typed text."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
             self._dimming = self._app.set_timer(_DIM_DELAY, self.dim)
 
     def dim(self) -> None:
-        """Dim values that are still of an earlier draft."""
+        """Dim values that still belong to an earlier draft."""
         self._dimming = None
         if not self._workspace.is_fresh:
             self._workspace.is_late = True
             self._show()
 
     def ask(self) -> None:
-        """Judge the draft now or when the worker returns; intermediate states are skipped."""
+        """Judge the draft now, or when the worker is free; intermediate drafts are skipped."""
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:
@@ -195,7 +199,7 @@ class Judging:
             )
 
     def ask_fully(self) -> None:
-        """Also judge launch, recovery and breaks."""
+        """Judge the draft including launch, recovery and breaks."""
         self._stop_waiting()
         view = self._workspace.view
         is_free = not self._is_judging and self._checked is None

@@ -787,7 +787,7 @@ def test_an_anchor_up_the_slope_stands_in_water(tmp_path: Path) -> None:
     text = SLOPE.replace("slope: 10 deg", "slope: 25 deg")
     at = re.search(r"at: \[.*?\]", text)
     assert at is not None
-    with pytest.raises(InputError, match=r"the seabed is \d+ m above the water here"):
+    with pytest.raises(InputError, match=r"the seabed \d+ m above the surface here"):
         load(tmp_path / "slope.yaml", text=text.replace(at[0], "at: [-500 m, 0 m]"))
 
 

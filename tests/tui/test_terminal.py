@@ -19,7 +19,7 @@ from tests.tui.test_stories import (
     PASTED,
     SURFACE,
     SURFACE_MEANT,
-    assert_is_meant,
+    assert_file_is,
 )
 
 ESCAPE_DELAY = 0.1  # seconds; as textual has it
@@ -106,7 +106,7 @@ def test_build_a_mooring_from_nothing(tmp_path, monkeypatch, story, name, meant)
     terminal.press("q")
     terminal.end()
     assert terminal.child.exitstatus == 0
-    assert_is_meant(tmp_path / name, meant)
+    assert_file_is(tmp_path / name, meant)
 
 
 def test_keys_that_come_in_one_parcel_are_not_mixed_up(tmp_path):

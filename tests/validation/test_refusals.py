@@ -33,7 +33,7 @@ def test_a_release_laid_down_by_the_current_is_named(tmp_path: Path) -> None:
     with pytest.raises(NoEquilibrium) as caught:
         calm.load(tmp_path / "m.yaml").solve()
     assert caught.value.status == "grounded"
-    assert caught.value.message.startswith("The current lays release on the seabed")
+    assert caught.value.message.startswith("The current puts release on the seabed")
     heavy = LAID_DOWN.replace("buoyancy: 1000 N", "buoyancy: 700 N")
     (tmp_path / "m.yaml").write_text(heavy)
     with pytest.raises(NoEquilibrium, match="700 N net, weight of the other pieces in water 780"):

@@ -1,4 +1,4 @@
-"""The parts of a line in a column, with symbols, wrapped texts and values.
+"""Draw the parts of a line in a column, with symbols, wrapped texts and values.
 
 The schematic is one such column, an SVG picture in order from the top and not to scale; the pages
 of a mooring diagram hold several columns. Lengths are in points (1/72 inch).
@@ -21,12 +21,12 @@ from calm.files import MooringFile
 from calm.quantities import QUANTITIES
 
 FONT = 8.0
-"""Size of the texts, the smallest in a column."""
+"""Text size, and minimum text size in a column."""
 LEADING = 10.0
 """Distance between two lines of text."""
 SYMBOL_SCALE, CLAMP_SCALE = 0.6, 0.42
 HEAD = 38.0
-"""Height of the headings, from the top of the column."""
+"""Distance from the top of the column to the end of the headings."""
 _PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
 _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
@@ -48,8 +48,8 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
 
     The picture has no external references, identifiers or style sheets, so that it can be placed on
     a page with others. Long texts wrap and are never cut. The same line gives the same text. With a
-    result, depths are under load and in the current; without, they are those of the upright,
-    unstretched line, and unknown for a tow and for a float at the surface.
+    result, depths are under load and in the current; without a result, they refer to the upright,
+    unstretched line, and are unknown for a tow and for a float at the surface.
     """
     shown = schematic_of(file, result)
     rows = [row for part in shown.parts for row in part.rows]
@@ -117,7 +117,7 @@ def _draw_scene(
 
 @dataclass(frozen=True)
 class LineColumn:
-    """Geometry of a column with its line, texts and values.
+    """Layout of a column: positions of line, texts and values.
 
     Attributes
     ----------
@@ -141,7 +141,7 @@ def column_of(
     width: float,
     line_at: float = 26.0,
 ) -> LineColumn:
-    """Lay out a column of a width, with room for the widest value in each of its columns of values.
+    """Compute the layout of a column, with room for the widest entry in each column of values.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text next to a part, a second text `side_text` at distance `at`, and values."""
+    """A line of text next to a part, with values and an optional `side_text` at distance `at`."""
 
     text: str
     colour: str = INK
@@ -178,7 +178,7 @@ class TextLine(NamedTuple):
 
 @dataclass(frozen=True)
 class PlacedPart:
-    """A part with its position and texts; `ends` are the ends of the line through it."""
+    """A part with its position and texts; `ends` are the ends of its section of the line."""
 
     part: ShownPart
     top: float
@@ -188,7 +188,7 @@ class PlacedPart:
 
     @property
     def middle(self) -> float:
-        """Position of its symbol."""
+        """Vertical position of the symbol."""
         return self.top + self.height / 2
 
 
@@ -226,7 +226,7 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Put label and name on one line if they fit, else wrap them one below the other."""
+    """Place label and name on one line if they fit, otherwise below each other with wrapping."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
@@ -280,7 +280,7 @@ def draw_ground(page: Pen, column: LineColumn, left: float, y: float, row: TextR
 
 
 def draw_row(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
-    """Write a text that belongs to no part, with its values."""
+    """Write a row of text without a part, with its values."""
     page.letters(left + column.text[0], y, row.label, size=FONT, colour=SOFT)
     for text, right in zip(row.cells, column.rights, strict=False):
         page.letters(left + right, y, text, size=FONT, colour=SOFT, anchor="end")
@@ -313,7 +313,7 @@ def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
 
 
 def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> None:
-    """Write the texts of a part, with dots that lead from its symbol to its values."""
+    """Write the texts of a part, with a dotted line from its symbol to its values."""
     start = left + column.text[0] + (_INDENT if one.part.clamped else 0.0)
     levels = [
         one.middle + LEADING * (number - (len(one.lines) - 1) / 2)

@@ -1,4 +1,4 @@
-"""Parts of a deck that the mooring diagram shows, from the top down."""
+"""Select and list the parts in a mooring diagram for the deck, from the top down."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -16,13 +16,14 @@ from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
-"""Function that returns the values next to items, given their cut and stretched length."""
+"""Function that returns the values next to items from their cut and stretched lengths."""
 
 
 def parts_of_deck(
     deck: Deck, listed: Sequence[DeckItem], *, surface: bool
 ) -> tuple[ShownPart, ...]:
-    """Return the listed parts of a line or leg, whose top is at the `surface` or submerged.
+    """Convert the listed items of a line or leg to parts with values; its top is at the `surface`
+    or submerged.
 
     The values of each part are its number, cut length or position on the wire, stretched length,
     depth, planned depth if any part has one, height, tension and net buoyancy.
@@ -40,14 +41,15 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """Return the parts of a line or a leg from its top, which may be at the `surface`.
+    """Convert the listed items of a line or leg to parts, from its top, which may be at the
+    `surface`.
 
     Consecutive connectors form one junction, unless they are listed separately. A part has the
     labels of all items that it represents.
 
     Parameters
     ----------
-    every : all of the line, among which a label is a person's own or not
+    every : all items of the line, to find labels that were chosen by the user
     cells : values next to the items of a part
     """
     own = _own_labels(every)
@@ -75,7 +77,7 @@ def parts_of(
 
 
 def has_plans(deck: Deck) -> bool:
-    """Whether at least one part of a deck has a planned depth."""
+    """Return whether any part on deck has a planned depth."""
     return any(one.planned_depth is not None for one in deck.parts)
 
 
@@ -132,7 +134,9 @@ def _piece(
 
 
 def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
-    """Codes of a release, or of each release of a pair after its serial number."""
+    """Return the codes of a release; for a pair, the codes of each release after its serial
+    number.
+    """
     known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
     if len(one.serials) < 2:
         return "".join(known.values())

@@ -86,7 +86,7 @@ class TerminalSchematic:
 
 
 def _table(schematic: Schematic, width: int) -> Iterator[str]:
-    """Yield headings and rows; columns are as wide as their texts need and the terminal allows."""
+    """Yield headings and rows; column widths fit the texts, limited by the terminal."""
     drawn = list(_drawn(schematic))
     rows = [row for _, row in drawn if row is not None]
     figures = []
@@ -112,7 +112,7 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
 
 
 def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
-    """Yield the lines of the picture from the top, each with its row of text."""
+    """Yield the lines of the drawing from the top, each with its row of text."""
     if schematic.towed_by is not None:
         yield (_SHIP if schematic.sea else _HELICOPTER), schematic.towed_by
         if schematic.sea is not None:
@@ -141,7 +141,7 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
 
 
 def _art(sign: Sign) -> str:
-    """A symbol, with the direction of view in the middle of an ADCP."""
+    """Draw a symbol; an ADCP has its viewing direction in the middle."""
     art = _PACK if sign.symbol in BALLS and sign.count > 1 else _SYMBOLS[sign.symbol]
     if not sign.sounding:
         return art

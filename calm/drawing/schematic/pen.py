@@ -1,4 +1,4 @@
-"""Elements of an SVG picture; texts and attributes are escaped when the picture is written."""
+"""Write elements of an SVG picture; texts and attributes are escaped."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Pen:
         self.element = element
 
     def draw(self, tag: str, **attributes: float | str) -> Pen:
-        """Add an element, and return a pen for the element; ``_`` in attribute names becomes
+        """Add an element and return a pen that draws inside it; ``_`` in attribute names becomes
         ``-``.
         """
         written = {name.replace("_", "-"): _text(value) for name, value in attributes.items()}
@@ -61,8 +61,8 @@ class Pen:
     def write(
         self, x: float, y: float, text: str, width: float, *, size: float, bold: bool = False
     ) -> None:
-        """Write a text within a width, centred at `y`. A text that is cut gets the whole text as
-        its tooltip.
+        """Write a text, vertically centred at `y`. A text wider than `width` is shortened, with the
+        whole text as its tooltip.
         """
         shown = shortened(text, width, size, bold=bold)
         pen = self.letters(x, y, shown, size=size, bold=bold)
@@ -82,7 +82,9 @@ class Pen:
         bold: bool = False,
         anchor: str = "start",
     ) -> Pen:
-        """Write a whole text, centred at `y`, unless it is empty."""
+        """Write a text without shortening, vertically centred at `y`; an empty text draws
+        nothing.
+        """
         if not text:
             return self
         weight = {"font_weight": "bold"} if bold else {}
@@ -99,7 +101,8 @@ def _text(value: float | str) -> str:
 
 
 def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
-    """Create a pen for an empty white picture, with its origin in the upper left corner.
+    """Create an empty picture with a white background; return its pen, with the origin in the upper
+    left corner.
 
     Parameters
     ----------
@@ -140,13 +143,13 @@ _BOLD = 1.19
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """Upper bound for the width of a text, in the unit of the font size."""
+    """Return an upper bound for the width of a text, relative to the font size."""
     ems = sum(map(_ems, text))
     return size * ems * (_BOLD if bold else 1.0)
 
 
 def shortened(text: str, width: float, size: float, *, bold: bool = False) -> str:
-    """Return the text, or its beginning with an ellipsis, to fit a width."""
+    """Shorten a text with an ellipsis, if necessary, to fit a width."""
     if text_width(text, size, bold=bold) <= width:
         return text
     room = width - text_width(ELLIPSIS, size, bold=bold)
@@ -160,9 +163,7 @@ def shortened(text: str, width: float, size: float, *, bold: bool = False) -> st
 
 
 def wrapped(text: str, width: float, size: float, *, bold: bool = False) -> list[str]:
-    """Break a text into lines that fit a width, without cutting; words that are too wide are
-    divided.
-    """
+    """Break a text into lines that fit a width; words that are too wide are divided."""
     lines: list[str] = []
     line = ""
     for word in text.split():

@@ -1,4 +1,4 @@
-"""The parts of a line in a schematic, from the top, with their rows of text and lengths."""
+"""Parts of a line in a schematic, from the top down, with rows of text and lengths."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 
 @dataclass(frozen=True)
 class TextRow:
-    """Text next to a part: its label, its component's name, and a cell for each column."""
+    """Row of text next to a part: label, component name, and a cell per column."""
 
     label: str
     name: str
@@ -33,7 +33,8 @@ class TextRow:
 
 @dataclass(frozen=True)
 class ShownPart:
-    """A part drawn as a unit: a piece or several equal ones, a junction, or a clamped instrument.
+    """A part drawn with one symbol: one or several equal pieces, a junction, or a clamped
+    instrument.
 
     Attributes
     ----------
@@ -120,11 +121,11 @@ def one_line(text: str) -> str:
 
 
 Cells = Callable[[str, float], tuple[str, ...]]
-"""Function that returns the values of a row from its length or position, and its depth [m]."""
+"""Function that returns the values of a row, given its length or position and its depth [m]."""
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield the parts from the top; pieces that are drawn together form one part."""
+    """Yield the parts from the top; pieces drawn with one symbol form one part."""
     run: list[Piece] = []
     for piece in pieces:
         if run and not _goes_with(run, piece, levels):
@@ -150,7 +151,7 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the sign of a part that floats at the surface."""
+    """Return the sign with a buoy as its symbol, unless the symbol is a sphere."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
@@ -205,7 +206,7 @@ _UNKNOWN = "Not to scale. Depths are unknown until the line is solved."
 
 @dataclass(frozen=True)
 class Levels:
-    """Lengths and depths of the pieces; NaN for unknown values.
+    """Lengths of pieces, and depths of their ends; NaN if unknown.
 
     Attributes
     ----------
@@ -263,5 +264,7 @@ def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
 
 
 def place_text(at: float) -> str:
-    """Text for the position of a clamp from the top of its piece [m], in the column of lengths."""
+    """Format the distance of a clamp from the upper end of its piece [m], for the column of
+    lengths.
+    """
     return f"at {QUANTITIES['at'].format(at)}"

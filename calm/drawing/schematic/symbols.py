@@ -1,4 +1,4 @@
-"""Symbols of a schematic: choice by kind, role and name of a component, and their SVG.
+"""Symbols of a schematic: chosen by kind, role and name of a component, and drawn as SVG.
 
 Each symbol is drawn about an origin; the line runs vertically through the origin.
 """
@@ -17,7 +17,7 @@ from calm.physics.materials import fibre_of
 
 
 class Symbol(StrEnum):
-    """Symbol of a schematic, with its name in a legend."""
+    """Symbol in a schematic, with its name for a legend."""
 
     SPHERE = "float"
     BALL = "ball"
@@ -49,7 +49,7 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 
 @dataclass(frozen=True)
 class Sign:
-    """A symbol, the number of its copies, and whether it contains an ADCP, looking up or down."""
+    """A symbol, how often it is repeated, and the ADCP it contains, if any (looking up or down)."""
 
     symbol: Symbol
     count: int = 1
@@ -130,7 +130,7 @@ def _sphere(diameter: float) -> Symbol:
 
 
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
-    """First symbol whose pattern matches the words, or `other`."""
+    """Return the first symbol whose pattern matches the words, or `other`."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
 
 
@@ -151,7 +151,7 @@ _BEAM = 11.0
 
 @dataclass(frozen=True)
 class SymbolFigure:
-    """A symbol with its height, and the function that draws it about the origin of a pen."""
+    """A symbol with its height and its drawing function, which draws about the origin of a pen."""
 
     height: float
     draw: Callable[[Pen], None]
@@ -171,7 +171,7 @@ def figure_of(sign: Sign) -> SymbolFigure:
 
 
 def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
-    """Add the ADCP to a figure: sound that goes up or down, or its transducers alone."""
+    """Add an ADCP to a symbol: acoustic beams upward or downward, or only the transducers."""
     shift = _BEAM / 2 * (sign.up - sign.down)
 
     def draw(pen: Pen) -> None:
@@ -233,7 +233,7 @@ _BARE: dict[str, Any] = {"fill": "none"}
 
 
 def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
-    """Build a figure of a height from parts about its origin, from back to front."""
+    """Create a symbol of given height from SVG shapes about its origin, from back to front."""
 
     def draw(pen: Pen) -> None:
         for part in parts:
@@ -243,7 +243,7 @@ def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
 
 
 _REPEATED = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
-"""Symbols that are repeated for each item."""
+"""Symbols drawn once for each item."""
 _FIGURES = {
     Symbol.SPHERE: _figure(36.0,
         _circle(0.0, 0.0, 17.0, fill=_FLOAT), _path("M-17 0Q0 7 17 0", **_BARE, stroke_width=0.9)),
@@ -303,7 +303,7 @@ _FIGURES = {
         _box(0.0, 0.0, 28.0, 24.0, rx=2.0, fill=_INSTRUMENT),
         _path("M-14 -12L14 12M14 -12L-14 12", **_BARE, stroke_width=0.7)),
 }  # fmt: skip
-"""Heights and parts of the symbols with a fixed drawing."""
+"""Heights and SVG shapes of symbols that always look the same."""
 
 
 SEABED_ROOM = 22.0
@@ -367,7 +367,9 @@ def draw_seabed(pen: Pen, width: float, y: float) -> None:
 
 
 def draw_ship(pen: Pen) -> None:
-    """Draw a ship that tows from its A-frame, with the sheave at the origin, 26 above the water."""
+    """Draw a ship that tows from its A-frame; the sheave is at the origin, 26 units above the
+    water.
+    """
     pen.path("M-62 16L-14 16L-12 32Q-36 36 -56 32Z", fill=_HULL)
     pen.path("M-50 16L-50 3L-30 3L-30 16Z", fill="white")
     pen.path("M-46 7L-34 7", stroke_width=2.2)
@@ -388,6 +390,6 @@ def draw_helicopter(pen: Pen) -> None:
 
 
 def draw_clamp(pen: Pen, reach: float) -> None:
-    """Draw the clamp that holds an instrument next to the line, which is at the origin."""
+    """Draw the clamp between an instrument and the line, which is at the origin."""
     for y in (-3.5, 3.5):
         pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

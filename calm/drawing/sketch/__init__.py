@@ -1,4 +1,4 @@
-"""A solved line for a terminal: side view, plan, tension, and current by depth.
+"""Draw a solved line in a terminal: side view, plan, tension, and current by depth.
 
 Each picture is drawn with braille dots, as a text for each row, in any number of cells. From 20 by
 6 cells it shows a scale; larger pictures show more.
@@ -34,13 +34,15 @@ from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of, bearing_text, say
 
 _LEAST_SPAN = 0.1
-"""Smallest horizontal range, as a share of the height, so that a vertical line looks vertical."""
+"""Minimum horizontal range relative to the height, so that a vertical line looks vertical."""
 
 _NAMED_FROM = 50
 _SHARE_OF_NAMES = 0.36
 _LONGEST_NAME = 22
 _FARTHEST = 1.5
-"""Largest distance between a name and its part [rows]; if more names crowd, some are omitted."""
+"""Maximum distance between a name and its part [rows]; names without a place within this distance
+are omitted.
+"""
 
 _NEED = ("float", "release", "anchor", "instrument")
 
@@ -48,7 +50,7 @@ _NEED = ("float", "release", "anchor", "instrument")
 def elevation(
     result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()
 ) -> list[Text]:
-    """Draw a line in the vertical plane of its excursion or its tow.
+    """Draw a line in the vertical plane of its excursion or tow direction.
 
     Distances are from the anchor towards the free end, or from the ship backward; their scale
     differs from that of the depths. The line in still water is dotted. From a width of 50 cells,
@@ -114,7 +116,7 @@ def _distance(result: AnyResult) -> str:
 
 
 def _span(side: LinePicture) -> tuple[float, float]:
-    """Return the distances at the edges; an almost vertical line is centred."""
+    """Return the horizontal range of the picture; an almost vertical line is centred."""
     low, high = side.span()
     spare = max(_LEAST_SPAN * (side.bottom - side.top) - (high - low), 0.0)
     margin = 0.04 * (high - low + spare) + spare / 2.0
@@ -122,7 +124,7 @@ def _span(side: LinePicture) -> tuple[float, float]:
 
 
 def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
-    """Choose rows for the names of parts, each close to its part."""
+    """Choose the rows of part names, each close to its part."""
     height = (side.bottom - side.top) / rows
     found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
@@ -140,7 +142,7 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
 
 
 def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
-    """Index of the most dispensable name in a crowd: an instrument, the farthest from the
+    """Return the index of the name to omit among crowded names: an instrument, farthest from the
     others.
     """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
@@ -151,7 +153,7 @@ def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: i
 LINE = "bold cyan"
 STILL = "white"
 OTHER = "magenta"
-"""Style of a line in another environment, or of another design, drawn for comparison."""
+"""Style of a comparison line: in another environment, or of another design."""
 SURFACE = "blue"
 LIMIT = "red"
 SHIP = ("▲", "bold")
@@ -170,13 +172,13 @@ STROKES = {
     LineKind.BESIDE: (OTHER, 3, 2),
     LineKind.SEABED: (canvas.SEABED, 0, 0),
 }
-"""Style, dots drawn and dots skipped for each kind of line."""
+"""Style, dash length and gap length [dots] for each kind of line."""
 
 
 _HIGHEST_LOAD = 2.5
-"""Largest allowable load drawn, as a multiple of the maximum tension."""
+"""Maximum allowable load that is drawn, relative to the maximum tension."""
 _KILO = 1e4
-"""Tension from which kilonewtons are used [N]."""
+"""Tension from which labels use kilonewtons [N]."""
 
 
 def tension(result: LegResult, width: int, height: int) -> list[Text]:
@@ -269,7 +271,7 @@ _MARGIN = 0.06
 
 
 def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()) -> list[Text]:
-    """Draw a line from above, with its anchor or the ship at zero.
+    """Draw a line from above, with its anchor or the ship at the origin.
 
     The shapes `overlays`, from other environments or designs, are dashed.
     """
@@ -278,7 +280,7 @@ def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] =
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
     gutter = 1
-    for _ in range(2):  # the numbers next to it take room, which changes the numbers
+    for _ in range(2):  # the width of the numbers affects the scale and the numbers
         columns = width - gutter - 1
         metres = max((east - west) / (columns * DOTS_ACROSS), (north - south) / (rows * DOTS_DOWN))
         bottom, top = _centred(south, north, metres * rows * DOTS_DOWN)

@@ -1,4 +1,4 @@
-"""A picture in the cells of a terminal: braille dots and characters, with axes around it."""
+"""Draw in terminal cells with braille dots and characters, and with axes around the drawing."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _MOST_STEPS = 4000
 
 
 class Canvas:
-    """Cells to draw on, `width` by `height`; parts outside are clipped.
+    """Drawing area of `width` by `height` cells; parts outside are clipped.
 
     Dots, columns and rows are counted from the upper left corner.
     """
@@ -33,7 +33,7 @@ class Canvas:
         self._signs: list[list[str | None]] = [[None] * width for _ in range(height)]
 
     def dot(self, x: float, y: float, style: str) -> None:
-        """Draw a dot; its cell takes the style."""
+        """Draw a dot, and set the style of its cell."""
         column, row = int(x // DOTS_ACROSS), int(y // DOTS_DOWN)
         if 0 <= column < self.width and 0 <= row < self.height:
             self._bits[row][column] |= _BITS[int(y) % DOTS_DOWN][int(x) % DOTS_ACROSS]
@@ -41,7 +41,7 @@ class Canvas:
                 self._styles[row][column] = style
 
     def line(self, points: Points, style: str, dash: int = 0, gap: int = 0) -> None:
-        """Draw straight lines from point to point, alternating `dash` dots and a `gap`."""
+        """Draw a polyline with dashes of `dash` dots, separated by `gap` dots."""
         drawn = 0
         last: tuple[int, int] | None = None
         for (x0, y0), (x1, y1) in pairwise(points):
@@ -59,7 +59,7 @@ class Canvas:
                 drawn += 1
 
     def text(self, column: int, row: int, text: str, style: str = "") -> None:
-        """Write characters over the dots, clipped at the edges."""
+        """Write characters over the dots; text outside the canvas is clipped."""
         if not 0 <= row < self.height or column >= self.width:
             return
         if column < 0:
@@ -77,11 +77,11 @@ class Canvas:
             column += width
 
     def sign(self, column: int, row: int) -> str | None:
-        """Character in a cell of the canvas, if any."""
+        """Return the character in a cell, if any."""
         return self._signs[row][column]
 
     def rows(self) -> list[Text]:
-        """Return the picture, one text of full width for each row of cells."""
+        """Return the drawing, one text of full width per row of cells."""
         found = [Text(no_wrap=True, end="") for _ in range(self.height)]
         for text, *cells in zip(found, self._signs, self._bits, self._styles, strict=True):
             for sign, bits, style in zip(*cells, strict=True):
@@ -93,7 +93,7 @@ class Canvas:
 AXIS, SEABED = "white", "yellow"
 """Styles of scales and of the seabed."""
 _HEADED = 9
-"""Smallest height of a picture with a caption [rows]."""
+"""Minimum height of a picture with a caption [rows]."""
 
 COLUMNS_PER_TICK = 8
 """Number of columns per tick of a horizontal scale."""
@@ -110,7 +110,7 @@ class CellScale:
     dots: int
 
     def dot(self, value: float) -> float:
-        """Position of a value, in dots from the start of the range."""
+        """Return the position of a value, in dots from the start of the range."""
         return (value - self.low) / (self.high - self.low) * (self.dots - 1)
 
 
@@ -127,12 +127,12 @@ class PlotFrame:
     down: CellScale
 
     def point(self, x: float, y: float) -> tuple[float, float]:
-        """Dot of the canvas for two values."""
+        """Return the dot for a pair of values."""
         column = self.column * DOTS_ACROSS + self.across.dot(x)
         return column, self.row * DOTS_DOWN + self.down.dot(y)
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Column and row for two values, limited to the frame."""
+        """Return column and row for a pair of values, limited to the frame."""
         dot_x, dot_y = self.point(x, y)
         column, row = int((dot_x + 0.5) // DOTS_ACROSS), int((dot_y + 0.5) // DOTS_DOWN)
         return (
@@ -141,12 +141,12 @@ class PlotFrame:
         )
 
     def line(self, points: Points, style: str, dash: int = 0, gap: int = 0) -> None:
-        """Draw a line through points given in the two quantities."""
+        """Draw a polyline through points in units of the two scales."""
         self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
-        """Draw a mark at a point; next to it if the cell is taken, and only once if the same mark
-        is there.
+        """Draw a mark at a point, or next to it if another mark is in this cell; an equal mark is
+        not repeated.
         """
         column, row = self.cell(x, y)
         for shift in (0, 1, -1, 2):
@@ -203,12 +203,12 @@ def _end(labels: list[tuple[int, str]]) -> int:
 
 
 def levels(low: float, high: float, rows: int) -> list[float]:
-    """Ticks for a scale with a number of rows."""
+    """Return round tick values for a scale with a number of rows."""
     return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))
 
 
 def header_rows(height: int) -> int:
-    """Number of rows for a caption above a picture; 0 for a low picture."""
+    """Return the number of caption rows above a picture; 0 for a low picture."""
     return int(height >= _HEADED)
 
 
@@ -222,7 +222,7 @@ def scaled_frame(
     margin: int = 0,
     per_tick: int = COLUMNS_PER_TICK,
 ) -> PlotFrame:
-    """Create a frame with its scales on a new canvas.
+    """Create a canvas with scales along two edges; return its frame.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ _SLIGHT = 1e-9
 
 @dataclass
 class ComponentMaker:
-    """Converter of components in the water of the problem; unsupported keys are added to
+    """Converter of components for the water of the problem; unsupported keys are added to
     `dropped`.
     """
 
@@ -37,8 +37,8 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """Convert a material to a cable of a length [m], with its drag at a depth [m] and a speed
-        [m/s].
+        """Convert a material to a cable of given length [m], with its drag at a given depth [m] and
+        speed [m/s].
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class ComponentMaker:
             component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """Convert a connector to a sphere with its drag, with the length in the file."""
+        """Convert a connector to a sphere with the drag and length of the connector."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         across, drag = values.number("d", "diam"), values.number("cdn")
@@ -114,7 +114,7 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """Convert an anchor; it has no weight if the file has none.
+        """Convert an anchor; its weight is undefined if the file has none.
 
         Parameters
         ----------
@@ -142,7 +142,8 @@ class ComponentMaker:
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
         """Convert the float at the upper end, or a towed body.
 
-        The hull is that of the file. If it does not float, the body is a point, as in WHOI Cable.
+        The hull is taken from the file. If the buoy does not float, the body is a point, as in WHOI
+        Cable.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"
@@ -185,7 +186,8 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight to that in CALM's reference water; the mass is 0 if it is impossible.
+        """Convert a weight to CALM's reference water; the mass is 0 if the specified mass is
+        impossible.
 
         The displaced volume follows from both, so that the weight in the file's own water is
         unchanged.
@@ -204,7 +206,9 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """Whether a drag depends on depth; a table limited to realistic speeds depends on speed."""
+    """Whether a drag coefficient depends on depth. A table that ends at a realistic speed depends
+    on speed instead.
+    """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
@@ -213,7 +217,7 @@ def _drag(value: KeyValue | None, depth: float, speed: float) -> float:
 
 
 def varies(definition: CableDefinition) -> bool:
-    """Whether a drag of a material is a function of depth."""
+    """Whether a drag coefficient of a material depends on depth."""
     given = [definition.values[key] for key in ("cdn", "cdt") if key in definition.values]
     deep = [value for value in given if counts_on_depth(value)]
     return any(value.rows or (value.formula and value.formula.names) for value in deep)
@@ -249,7 +253,7 @@ def _displacement(
 
 
 def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Rows of a hull given by its diameters at levels above its keel."""
+    """Convert diameters at heights above the keel to the displacement table of the hull."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")

@@ -1,4 +1,4 @@
-"""Parse formulas of problem files to functions; formulas may depend on the depth `H`."""
+"""Parse formulas of problem files to functions; a formula may depend on the depth `H`."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -9,7 +9,7 @@ from calm.errors import InputError, Problem, one_line
 from calm.exchange.cbl.words import SourceLine, Token, tokens_of
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
-"""Function that computes a value from the values of the names it depends on."""
+"""Function that evaluates a formula, given the values of its names."""
 
 _DEEPEST = 40  # nesting depth of parentheses
 _FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
@@ -24,7 +24,7 @@ _LOGICAL: dict[str, Callable[[Formula, Formula], Formula]] = {
     "||": lambda left, right: lambda at: float(bool(left(at)) or bool(right(at))),
     "&&": lambda left, right: lambda at: float(bool(left(at)) and bool(right(at))),
 }
-"""Operators whose right side is not evaluated if the left side decides."""
+"""Operators whose right operand is not evaluated if the left operand decides the result."""
 
 _BINARY: dict[str, Callable[[float, float], float]] = {
     "|": lambda a, b: float(int(a) | int(b)),
@@ -73,11 +73,11 @@ class TokenStream:
         return self.next.kind == "sign" and self.next.text in signs
 
     def comes(self, sign: str) -> bool:
-        """Whether the next token is a given sign, which is then consumed."""
+        """Consume the next token if it is a given sign; return whether it is."""
         return self.is_next(sign) and bool(self.take())
 
     def expect(self, sign: str) -> None:
-        """Consume a sign, which must be the next token."""
+        """Consume the next token, which must be a given sign."""
         if not self.comes(sign):
             raise self.next.refuse(f"`{sign}` is missing before `{self.next.text}`")
 
@@ -96,14 +96,14 @@ class UnknownNameError(InputError):
 
 @dataclass
 class Expression:
-    """A formula, the names it depends on, and its first token."""
+    """Parsed formula, with its names and its first token."""
 
     formula: Formula
     names: frozenset[str]
     token: Token
 
     def at(self, **values: float) -> float:
-        """Return the value of the formula.
+        """Evaluate the formula.
 
         Raises UnknownNameError for other names, and InputError if there is no value.
         """
@@ -120,7 +120,7 @@ class Expression:
 
 
 def constant(text: str) -> float:
-    """Return the value of a formula without names."""
+    """Evaluate a formula without names."""
     words = TokenStream(list(tokens_of([SourceLine(text, "", 1)])))
     value = read_expression(words).at()
     if words.next.kind != "end":

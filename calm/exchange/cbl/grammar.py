@@ -18,17 +18,17 @@ _TEXTS = frozenset([
     "forcing-method", "input-type", "static-solution", "static-initial-guess",
     "dynamic-integration", "static-outer-method",
 ])  # fmt: skip
-"""Keys with a word as value."""
+"""Keys whose value is a word."""
 
 _SECTIONS = {
     "environment": "environment", "buoys": "buoys", "platforms": "buoys", "anchors": "anchors",
     "connectors": "connectors", "materials": "materials", "layout": "layout", "end": "",
     "problem": "description", "analysis": "analysis",
 }  # fmt: skip
-"""Part of a problem for each section."""
+"""Attribute of a problem that holds each section."""
 
 _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
-"""Second words of the section names with two words."""
+"""Second words of two-word section names."""
 
 _MOST_NODES = 1_000_000
 _LAYOUT = frozenset(["terminal", "segment", "branch"])
@@ -45,7 +45,7 @@ class KeyValue:
     repeats: bool = False
 
     def number(self, **values: float) -> float:
-        """Return the value of a formula; `values` are the values of its names."""
+        """Evaluate a formula; `values` are the values of its names."""
         if self.formula is None:
             raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
         return self.formula.at(**values)
@@ -72,10 +72,10 @@ class KeyValue:
 
 
 class KeyValues(dict[str, KeyValue]):
-    """The values of a section, a definition or a block, by key."""
+    """Values by key, in a section, a definition or a block."""
 
     def number(self, *keys: str, default: float = 0.0) -> float:
-        """Return the first nonzero number of some keys, at time 0.
+        """Return the first nonzero value among synonymous keys, at time 0.
 
         The keys are synonyms; `default` is returned if all are missing.
         """
@@ -90,20 +90,20 @@ class KeyValues(dict[str, KeyValue]):
 
 @dataclass
 class CableDefinition:
-    """Represent the definition of a buoy, an anchor, a connector or a material."""
+    """Definition of a buoy, an anchor, a connector or a material."""
 
     token: Token
     values: KeyValues
 
     @property
     def name(self) -> str:
-        """Name used in the layout."""
+        """Name by which the layout refers to this definition."""
         return self.token.text
 
 
 @dataclass
 class CableSegment:
-    """A length of one material, and the connector to the next segment up.
+    """Length of a single material, with the connector to the next segment above.
 
     `attachments` are connectors attached to it, each with its nodes.
     """
@@ -117,24 +117,24 @@ class CableSegment:
 
 @dataclass
 class CableTerminal(CableDefinition):
-    """An end of the line."""
+    """An end of the line: anchor, buoy or platform."""
 
     @property
     def buoy(self) -> KeyValue | None:
-        """The buoy or platform of this end."""
+        """Buoy or platform at this end."""
         return self.values.get("buoy") or self.values.get("platform")
 
 
 @dataclass
 class CableBranch:
-    """A side line: its segments from the junction, and its terminal."""
+    """A side line, with its segments from the junction outward, and its terminal."""
 
     token: Token
     layout: CableItems
 
 
 CableItems = list[CableTerminal | CableSegment | CableBranch]
-"""Terminals, segments and branches in the order of the file."""
+"""Terminals, segments and branches, in file order."""
 
 
 @dataclass
@@ -223,7 +223,7 @@ def _section_name(words: TokenStream) -> str | None:
 
 
 def _values(words: TokenStream) -> KeyValues:
-    """Parse successive keys and their values; the last value of a key counts."""
+    """Parse successive keys and values; the last value of a repeated key counts."""
     values = KeyValues()
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
@@ -257,7 +257,9 @@ def _word(words: TokenStream, key: Token) -> str:
 
 
 def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
-    """Parse rows such as ``(0, 0.5) (100, 0.2)``; empty if the parenthesis belongs to a formula."""
+    """Parse rows such as ``(0, 0.5) (100, 0.2)``; return none if the parenthesis belongs to a
+    formula.
+    """
     rows: list[tuple[Expression, ...]] = []
     while True:
         back = words.at

@@ -16,7 +16,7 @@ _PARTS = 12  # number of lengths of a segment whose drag changes with depth
 _CHANGE = 0.02  # relative change of a drag coefficient above which a segment is divided
 _MOST_NODES = 1_000_000
 _ON_THE_BED = 0.05
-"""Share of the depth: an anchor closer to the seabed stands on the seabed."""
+"""Height of an anchor, relative to the water depth, below which the anchor stands on the seabed."""
 
 
 _End = grammar.CableTerminal | str
@@ -25,7 +25,7 @@ _End = grammar.CableTerminal | str
 
 @dataclass
 class CableLayout:
-    """Converter of the line of a problem.
+    """Converter of the layout of a problem.
 
     Attributes
     ----------
@@ -67,8 +67,8 @@ class CableLayout:
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
 
     def lay_tow(self) -> None:
-        """Convert the line from the ship down; a ship at rest in a current is replaced by a moving
-        ship.
+        """Convert the line from the ship down. A ship at rest in a current becomes a moving ship in
+        still water.
         """
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals
@@ -139,7 +139,8 @@ class CableLayout:
         length: float,
         lower: float,
     ) -> list[model.ImportedPiece]:
-        """Convert a segment, whose upright lower end is at a given depth, to pieces from below.
+        """Convert a segment to pieces from below; the depth of its lower end is that of an upright
+        line.
 
         There are several pieces if the drag changes with depth.
         """
@@ -178,8 +179,8 @@ class CableLayout:
     def _clamps(
         self, segment: grammar.CableSegment, length: float
     ) -> list[tuple[float, model.ImportedComponent]]:
-        """Return the items attached to the nodes of a segment, with their heights above its lower
-        end.
+        """Return the items attached to nodes of a segment, with heights above the lower end of the
+        segment.
         """
         heights = _heights(segment, length) if segment.attachments else []
         found = []
@@ -241,7 +242,9 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return the pieces at an end, its support, and whether it is a lower end."""
+        """Convert an end of the layout: return its pieces, its support, and whether it is a lower
+        end.
+        """
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token
@@ -257,7 +260,7 @@ class CableLayout:
 
 
 def _turned(item: model.ImportedPiece) -> model.ImportedPiece:
-    """Return a piece with its clamps counted from the other end."""
+    """Reverse a piece, so that its clamps are counted from the other end."""
     clamps = [replace(each, at=item.extent - each.at) for each in item.clamps[::-1]]
     return replace(item, clamps=clamps)
 
@@ -268,7 +271,7 @@ def _alike(one: model.ImportedComponent, other: model.ImportedComponent) -> bool
 
 
 def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
-    """Heights of the nodes of a segment above its lower end [m]."""
+    """Return node heights above the lower end of a segment [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
         raise segment.token.refuse("attachments need `nodes = (count, share)`")
@@ -288,7 +291,7 @@ def _defined(
     value: grammar.KeyValue | None,
     token: Token,
 ) -> grammar.CableDefinition:
-    """Return the definition named by a value; errors point to the value, or to `token`."""
+    """Return the definition that a value names; errors refer to the value, or to `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
     found = definitions.get(value.text)

@@ -77,7 +77,7 @@ class Preprocessor:
             raise refused(shown, "an `#if` has no `#endif`", line=len(text.splitlines()))
 
     def _condition(self, word: str, rest: str, conditions: list[tuple[bool, bool]]) -> bool:
-        """Process `#if` and related directives; returns False for other directives."""
+        """Process `#if` and related directives; return False for other directives."""
         if word in ("if", "ifdef", "ifndef"):
             if len(conditions) >= _DEEPEST:
                 raise ValueError("conditions are nested too deeply")
@@ -162,7 +162,7 @@ class Preprocessor:
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
-        """Return a text with its macros expanded, except in quoted texts."""
+        """Expand the macros in a text, except in quoted texts."""
         pieces: list[str] = []
         size, at = 0, 0
         while found := _PIECE.match(text, at):
@@ -179,7 +179,7 @@ class Preprocessor:
     def _replaced(
         self, macro: _Macro, name: re.Match[str], text: str, hidden: frozenset[str]
     ) -> tuple[str, int]:
-        """Return the expansion of a macro, and the position after it."""
+        """Expand one macro call; return the expansion, and the position after the call."""
         self._expansions += 1
         if self._expansions > _MOST_EXPANSIONS or len(hidden) > _DEEPEST:
             raise ValueError(f"the macro `{name[0]}` grows without limit")
@@ -216,8 +216,8 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 
 
 def _without_comments(text: str, path: str) -> list[str]:
-    """Return the lines without comments, in the same number; lines joined by a backslash go into
-    the first.
+    """Remove comments, keeping the number of lines; lines joined by a backslash are moved into the
+    first of them.
     """
     pieces: list[str] = []
     at = 0

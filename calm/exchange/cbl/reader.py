@@ -1,4 +1,4 @@
-"""Read a problem file of WHOI Cable as a design, with its environment and its current file."""
+"""Read a WHOI Cable problem file as a design, with its environment and its current file."""
 
 import math
 import re
@@ -58,16 +58,18 @@ _WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
 _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
 _Profile = tuple[Callable[[float], float], list[float]]
-"""A speed by depth, and depths between which it is linear."""
+"""Speed as a function of depth, and depths between which this function is linear."""
 
 _LARGEST = 20_000_000  # bytes
 _MOST = 2_000_000  # speeds
 _Grid = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Depths of the levels, increasing [m], and (n, 3) speeds in x, y and z [m/s]."""
+"""Increasing depths of the levels [m], and (n, 3) velocities in x, y and z [m/s]."""
 
 
 def is_cbl(content: bytes) -> bool:
-    """Whether a file looks like a problem, with at least two of the section names."""
+    """Return whether a file looks like a WHOI Cable problem: it has at least two of the section
+    names.
+    """
     text = content.decode("latin-1").lower()
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
@@ -312,7 +314,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Value of the grid at 0 of its first axis, or at its closest end."""
+    """Interpolate the grid at 0 along its first axis, or return the value at the closest end."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])

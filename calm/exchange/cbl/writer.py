@@ -1,4 +1,4 @@
-"""Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
+"""Write a mooring or a tow as a WHOI Cable problem, for static and dynamic analysis."""
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -29,7 +29,7 @@ _LEAST = 1e-3  # smallest diameter in m and mass in kg
 
 @dataclass
 class _Problem:
-    """Sections of the file, built from the lower end up, for water of one density."""
+    """Sections of a problem file, built from the lower end up, for water of uniform density."""
 
     density: float
     materials: dict[str, str] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class _Problem:
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
-        """Add a length of a material, after the load at its lower end."""
+        """Add a segment of a material, above the load at its lower end."""
         if length <= 0.0:
             return
         if self.load is None and self.last[0] == name:
@@ -74,7 +74,7 @@ class _Problem:
 
 
 def write_cbl(exported: ExportedDesign) -> Exported:
-    """Write a line as a problem."""
+    """Write the only leg of a design as a problem file for WHOI Cable."""
     (design,) = exported.legs
     lost: list[str] = []
     if design.tow is not None:
@@ -117,8 +117,8 @@ def write_cbl(exported: ExportedDesign) -> Exported:
 
 
 def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
-    """Return a tow in axes of its ship, x ahead and y to port, since the statics only use x
-    and z.
+    """Rotate a tow to the axes of the ship, x ahead and y to port, since the statics only use x and
+    z.
     """
     assert design.tow is not None
     speed = hypot(design.tow.east, design.tow.north)
@@ -140,7 +140,7 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
 
 
 def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
-    """Write a part from its lower end up."""
+    """Write a part, beginning at its lower end."""
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
         below = part.length
@@ -243,7 +243,9 @@ def _text(design: ExportedLine, problem: _Problem, buoy: str, density: float) ->
 
 
 def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
-    """Size, mass, buoyancy and drag in the keys of WHOI Cable; losses are added to `lost`."""
+    """Return size, mass, buoyancy and drag under the keys of WHOI Cable; losses are added to
+    `lost`.
+    """
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
     floating, gravity = design.afloat, design.gravity
@@ -295,7 +297,7 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
 
 
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
-    """Factor on the drag coefficient of a hull that gives the same drag at its draft as in CALM.
+    """Factor on the hull drag coefficient, for the same drag as in CALM at the present draft.
 
     `net` is its net buoyancy, `most` the buoyancy of its whole displacement [N].
     """
@@ -306,7 +308,7 @@ def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most:
 
 
 def _turned(form: Displacement) -> tuple[str, list[tuple[float, float, float]]]:
-    """Levels and diameters of a hull of revolution with the displacement of a table.
+    """Convert a displacement table to levels and diameters of a hull of revolution.
 
     Also returns the rows of draft [m], displaced volume [m³] and area [m²] of this hull.
     """

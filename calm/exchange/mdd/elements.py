@@ -1,4 +1,6 @@
-"""Convert elements of Mooring Design & Dynamics to components, with the drag of that program."""
+"""Convert elements of Mooring Design & Dynamics (MDD) to components, with the drag computed by
+MDD.
+"""
 
 from __future__ import annotations
 
@@ -14,30 +16,30 @@ from calm.exchange.part_names import role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
+_SLIGHT = 1e-6  # relative excess of hull volume over net buoyancy
 _FLAT = 1e-3  # m: height assumed for a float without one
-_SOFT = 1e10  # Pa: the modulus of a rope is lower, that of a wire higher
+_SOFT = 1e10  # Pa: ropes have a lower modulus, wires a higher one
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
 _ROWS = ("B", "Cd", "ME", "Wt")
 GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
-"""The variables of a library that hold elements."""
+"""Library variables that hold elements."""
 
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Moduli of elasticity of the materials that the program numbers from 1: steel, nylon, Dacron,
-polypropylene, polyethylene, Kevlar, aluminium, Dyneema [Pa].
+"""Elastic moduli of the materials numbered from 1 in the files [Pa]: steel, nylon, Dacron,
+polypropylene, polyethylene, Kevlar, aluminium, Dyneema.
 """
 
 
 def piece_of(element: MddElement) -> model.ImportedPiece:
-    """Return the piece of an element other than the anchor."""
+    """Convert an element other than the anchor to a piece."""
     if element.is_line:
         return model.ImportedPiece(_flexible(element), element.length)
     return model.ImportedPiece(rigid(element))
 
 
 def rigid(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of a rigid element, or of an element clamped on.
+    """Convert a rigid or clamped element to a component.
 
     Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
     whatever its length. It treats one with only a width as a cylinder whose Cd is for flow across
@@ -72,8 +74,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
 
 
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
-    """Give a surface float the draft and the drag that Mooring Design & Dynamics computes: both in
-    proportion to the share of its buoyancy that is used.
+    """Set the hull of a surface float so that draft and drag are proportional to the used share of
+    its buoyancy, as in Mooring Design & Dynamics.
 
     Its hull displaces only as much as its net buoyancy requires, in proportion to the draft.
     """
@@ -92,7 +94,7 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """Return whether a float of this size displaces too little water for its buoyancy."""
+    """Return whether a float of this size displaces too little water for its stated buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -101,7 +103,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of a wire, rope or chain; its Cd refers to its width."""
+    """Convert a wire, rope or chain to a component; its Cd refers to its width."""
     figures: dict[str, model.FigureOrWord] = {
         "diameter": element.across,
         "cn": element.cd,
@@ -128,9 +130,7 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of the anchor, the lowest element; its weight has either sign in
-    files.
-    """
+    """Convert the lowest element to an anchor; files give its weight with either sign."""
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -140,7 +140,7 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """An element: a column of ``H``, and the other figures of that element.
+    """An element: a column of ``H`` and the corresponding values of other variables.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ class MddElement:
 
 
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
-    """Return the elements of a line in the order of the file, and messages about mistakes.
+    """Read the elements of a line in file order; also return messages about mistakes.
 
     `suffix` is ``t`` for the matrices of a tow, ``CO`` for clamped elements, and empty for a
     mooring.
@@ -221,7 +221,7 @@ def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement
 
 
 def mistakes_of(element: MddElement, where: str) -> list[str]:
-    """Return a message for each figure of an element that is out of range."""
+    """Return a message for each value of an element that is out of range."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,
@@ -237,9 +237,7 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
 
 
 def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
-    """Return the matrix ``H``, shape (4, elements); the row of flags is 0 if the file has only
-    three rows.
-    """
+    """Return the matrix ``H``, shape (4, elements); a missing row of flags is filled with 0."""
     try:
         size = variables.reals(name)
     except ValueError as error:
@@ -258,7 +256,7 @@ def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArra
 
 
 def _densities(variables: MatVariables, length: RealArray) -> RealArray:
-    """Return the density of the water at each element of a vertical line [kg/m³]."""
+    """Return the water density at each element of a vertical line [kg/m³]."""
     levels, density = variables.row("z"), variables.row("rho")
     if not density.size == levels.size > 0 or not density.min() > 0.0:
         return np.full(length.size, CATALOGUE_DENSITY)
@@ -278,7 +276,7 @@ def _names(variables: MatVariables, name: str, count: int) -> list[str]:
 
 
 def _modulus(value: float) -> float | None:
-    """Return a modulus of elasticity [Pa]; small whole numbers are the numbers of materials."""
+    """Return the elastic modulus [Pa]; a small whole number is a material number."""
     if not value > 0.0:
         return None
     return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value

@@ -35,8 +35,8 @@ _NOTE = (
 def read_mdd(path: Path) -> model.ImportedDesign:
     """Read a mooring or a tow.
 
-    InputError: the file is damaged, is not one of Mooring Design & Dynamics, or holds something
-    that CALM cannot represent.
+    InputError: the file is damaged, is no Mooring Design & Dynamics file, or has features that CALM
+    cannot represent.
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if variables.row(name).size]
@@ -86,9 +86,7 @@ def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path:
 def _lay_tow(
     design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Add the elements of a tow; the file lists them from the body up, and ends with a mark for the
-    ship.
-    """
+    """Add the elements of a tow, which the file lists from the body up to a marker for the ship."""
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
@@ -107,8 +105,8 @@ def _lay_tow(
 def _clamp(
     design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Clamp the clamped elements on their pieces, each at a share of the piece's length from its
-    lower end.
+    """Clamp each clamped element on its piece, at a share of the piece length from the lower
+    end.
     """
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
@@ -131,15 +129,15 @@ def _clamp(
 
 
 def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
-    """Return the index of the piece that an element became, and the distance below its upper end
-    [m] of a share of its length.
+    """Map (element, share of its length) to the piece index and the distance below the upper end of
+    the piece [m].
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:
         number = count - 1 - number
     if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
-    # in a tow the program counts from the body up, and a share from the lower end, too
+    # a tow is counted from the body up, and shares from the lower end
     length = design.items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 

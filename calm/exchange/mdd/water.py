@@ -1,4 +1,4 @@
-"""Read the water in a file of Mooring Design & Dynamics: levels, densities and currents."""
+"""Read levels, densities and currents from a file of Mooring Design & Dynamics."""
 
 import numpy as np
 
@@ -13,7 +13,8 @@ _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this a
 def read_water(
     variables: MatVariables, towed: bool, guessed: list[model.Remark]
 ) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
-    """Return the environment of a file, and the record if it has several profiles.
+    """Read the environment of a file; also return the current record if the file has several
+    profiles.
 
     In a mooring `z` is the height above the seabed, and the largest `z` is the depth of the water;
     in a tow `z` is the depth. The current of the environment is the first profile of the record.
@@ -68,7 +69,9 @@ def read_water(
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
-    """Return speeds, shape (levels, times); in the file either dimension may come first."""
+    """Read current components, shape (levels, times); in the file either dimension may come
+    first.
+    """
     values = variables.reals(name)
     if values.size == 0:
         return None

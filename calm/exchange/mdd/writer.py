@@ -17,7 +17,7 @@ _LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used
 
 
 def write_mdd(exported: ExportedDesign) -> Exported:
-    """Write a line as a file of MATLAB 5."""
+    """Write a line as a `.mat` file of MATLAB version 5."""
     (design,) = exported.legs
     from scipy.io import savemat
 
@@ -110,8 +110,8 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
 
 
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
-    """Return the variables of clamped parts, from the top down: the element and the share of its
-    length from the lower end.
+    """Return the variables of clamped parts, from the top down: element number and share of the
+    element's length from the lower end.
     """
     rows, names, places = [], [], []
     count = len(design.parts)
@@ -143,8 +143,8 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
 
 
 def _name(part: ExportedPart) -> str:
-    """Return the name of an element: the id of the part, with "chain" added to that of a chain, by
-    which the program recognises chains.
+    """Return the element name: the component id, plus "chain" for chains, which the program
+    recognises by this word.
     """
     bare = isinstance(part.component, Chain) and "chain" not in part.use
     return (f"chain {part.use}" if bare else part.use)[:_LONGEST]

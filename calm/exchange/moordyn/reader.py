@@ -17,10 +17,10 @@ from calm.whole_file import read_text
 
 _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
-_STEADY = ("1", "3")  # of `Currents`; the others vary in time
+_STEADY = ("1", "3")  # values of `Currents` for a steady current
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
-"""An upper end nearer the surface than this share of the depth, or this distance [m], is taken as
-one below a float.
+"""Maximum depth of an upper end that is treated as attached to a float, relative to the water
+depth, and in metres if that is more.
 """
 
 _ABOVE = 0.01  # m: a point higher than this is held above the water
@@ -53,8 +53,8 @@ class _File:
     """The tables of a file: points and line types by name, the lines, and the lines `at` each
     point.
 
-    `depth` [m] and `gravity` [m/s²] are those of the water; `design` is the design to which pieces
-    are added.
+    `depth` [m] and `gravity` [m/s²] apply to the water; `design` is the design to which pieces are
+    added.
     """
 
     points: dict[str, _Row]
@@ -81,8 +81,8 @@ class _File:
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
     ) -> tuple[list[str], list[_Row]]:
-        """Return the points and the lines from a point to one of `breaks`; the lines are removed
-        from `left`.
+        """Follow lines from a point to a point in `breaks`; return the points and lines passed, and
+        remove the lines from `left`.
         """
         names, lines = [start], list[_Row]()
         while not lines or names[-1] not in breaks:
@@ -165,7 +165,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
 
 
 def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
-    """Return the points and the lines of a single line from its top down; None for a net."""
+    """Return points and lines of a single line from the top down; None for a net."""
     points, ends = file.points, [name for name, met in file.at.items() if len(met) == 1]
     if len(ends) != 2 or any(len(met) > 2 for met in file.at.values()):
         return None
@@ -211,8 +211,8 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
 
 
 def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
-    """Return the cable of a line type; its weight in water is that of its mass less the water
-    displaced.
+    """Convert a line type to a cable; weight in water is computed from mass and displaced
+    volume.
     """
     across = kind.number("diameter")
     if across <= 0.0:
@@ -231,7 +231,7 @@ def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
 
 
 def _point_of(point: _Row) -> model.ImportedPiece | None:
-    """Return the part at a free point; None if it has neither weight nor drag."""
+    """Convert a free point to a part; return None if the point has neither weight nor drag."""
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
@@ -252,7 +252,7 @@ def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
 
 
 def _upper_end(top: _Row) -> model.ImportedPiece:
-    """Return the float: a free point, or one that is held at the surface and would float there."""
+    """Return the float: a free point, or a point held at the surface that would float there."""
     figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free, and does not float")
@@ -265,14 +265,14 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
 
 
 def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
-    """Return an anchor, as high as its point is above the seabed."""
+    """Create an anchor as high as its point is above the seabed."""
     height = depth + point.number("z")
     return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
 @dataclass(frozen=True)
 class _Row:
-    """A row of a table: its words by heading, and its place in the file."""
+    """A table row: its words by heading, and its position in the file."""
 
     path: str
     line: int
@@ -312,7 +312,7 @@ def is_moordyn(content: bytes) -> bool:
 
 
 def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
-    """Return the tables of a file and its options; rows with too few words are refused."""
+    """Read tables and options of a file; rows with too few words are rejected."""
     tables, options = defaultdict[str, list[_Row]](list), dict[str, str]()
     current, headings, skip = "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
@@ -351,7 +351,9 @@ def _heading(word: str, section: str) -> str:
 
 
 _ON_THE_BED = 0.05
-"""Share of the depth: a fixed point no higher above the seabed is an anchor."""
+"""Maximum height of a fixed point above the seabed, relative to the water depth, at which the point
+is an anchor.
+"""
 
 
 def _lay_net(file: _File, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Write a mooring as an input file of MoorDyn 2, with its points at their places in equilibrium."""
+"""Write a mooring as an input file of MoorDyn 2, with its points at their equilibrium positions."""
 
 from dataclasses import dataclass, field, replace
 from itertools import groupby
@@ -20,7 +20,7 @@ from calm.files.legs import EndKeys
 from calm.physics.line import Floats
 
 _CURRENTS = "current_profile.txt"
-"""The name of the file in the folder of the input from which MoorDyn reads the current."""
+"""Name of the current file, which MoorDyn reads from the folder of the input file."""
 
 _RIGID = 1e7  # N: EA of parts that do not stretch; stiffer lines need shorter time steps
 _SHORT = 0.5  # m: a shorter rigid part has a lower EA in proportion, for the same reason
@@ -33,7 +33,7 @@ _LEAST = 1e-3  # kg/m: least mass, and least mass of displaced water, of a line 
 
 @dataclass
 class _Point:
-    """Represent a point of the file, the loads on it, and whether it is held."""
+    """A point of the file, with the load on it, and whether it is fixed."""
 
     place: Coordinates
     load: PartLoad
@@ -52,7 +52,7 @@ class _Length:
 
 @dataclass
 class _System:
-    """Collect the types, points and lines of the file, leg by leg, each from its lower end up.
+    """Line types, points and lines of the file, collected leg by leg from the lower ends up.
 
     `here` is the point to which the next length is attached.
     """
@@ -71,7 +71,7 @@ class _System:
         self.points.append(self.here)
 
     def begin_at(self, node: str, place: Coordinates) -> None:
-        """Start at the point of a node; the first leg at the node creates the point."""
+        """Start a leg at the point of a node; the first leg at the node creates this point."""
         if node not in self.joined:
             self.begin(place, "Free")
             self.joined[node] = self.here
@@ -97,7 +97,7 @@ class _System:
         self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
-        """Return the rows of the table of points, and those of the table of lines."""
+        """Return the rows of the point table and of the line table."""
         points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
         for number, point in enumerate(self.points, 1):
             load, (x, y, depth) = point.load, point.place
@@ -112,7 +112,7 @@ class _System:
         return points, lines
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
-        """Return the figures of the line type that has a given load per metre."""
+        """Return the values of a line type with a given load per metre."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -123,7 +123,7 @@ class _System:
 
 
 def write_moordyn(exported: ExportedDesign) -> Exported:
-    """Write a line, or the legs of a net, and the current as a second file.
+    """Write a line or the legs of a net, and the current in a second file.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
 
 
 def _lay_line(system: _System, design: ExportedLine) -> None:
-    """Add a line or a leg, from its lower end up."""
+    """Add a line or a leg, beginning at the lower end."""
     paths, (top, bottom) = design.paths(), design.ends or (EndKeys(), None)
     if bottom is not None and bottom.join is not None:
         system.begin_at(bottom.join, place_along(paths[-1], 1.0))
@@ -187,7 +187,7 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
 
 
 def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
-    """Add a cable or chain from its lower end up, divided at its clamps.
+    """Add a cable or chain from the lower end up, divided at its clamps.
 
     It is also divided into short lengths, because MoorDyn starts from the shape of each length in
     still water.
@@ -224,7 +224,7 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 
 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
-    """Add the uppermost piece: a point above a stiff length as long as its draft.
+    """Add the uppermost piece: a point above a stiff line whose length is the draft of the piece.
 
     The length has a share of the piece's mass and is neutral in water, since MoorDyn needs very
     short time steps for a light length.

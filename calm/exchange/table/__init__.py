@@ -1,4 +1,6 @@
-"""Read a list of pieces in CSV or a spreadsheet (`table`), and write a list in CSV (`csv`)."""
+"""Read a list of pieces from CSV or a spreadsheet (`table`), and write such a list as CSV
+(`csv`).
+"""
 
 from calm.exchange.registry import register_format
 from calm.exchange.table.cells import is_table

@@ -1,6 +1,4 @@
-"""Read the cells of a list: its sheets, and numbers and units in the ways that people write
-them.
-"""
+"""Read the cells of a list: sheets, numbers and units in common notations."""
 
 import html
 import io
@@ -44,7 +42,7 @@ _NAMES_OF_UNITS = {
     "in^2": "in² in2",
 }
 _SPELLED = {name: unit for unit, names in _NAMES_OF_UNITS.items() for name in names.split()}
-_AMBIGUOUS = ("ton", "tons")  # of 907, 1000 or 1016 kg
+_AMBIGUOUS = ("ton", "tons")  # may mean 907, 1000 or 1016 kg
 _SUBSTANCES = r"(?:sea ?|salt ?|fresh ?)?(?:water|air|wasser|luft|l'?eau|eau|agua|aire|mer|mar)"
 _IN_WATER = re.compile(
     rf"\b(?:in|im|an|dans|unter|en|el|l['’])(?: the| el| der| la)? {_SUBSTANCES}\b"
@@ -78,18 +76,18 @@ _NOTHING = {
 
 
 class WorkbookNumber(str):
-    """A number of a workbook as text, always with a decimal point."""
+    """A workbook number as text, always with a decimal point."""
 
     __slots__ = ()
 
 
 SheetRows = list[list[str]]
-"""Rows of cells as text, each up to its last nonempty cell."""
+"""Rows of cells as text; each row ends at its last nonempty cell."""
 
 
 @dataclass(frozen=True)
 class ColumnUnit:
-    """Represent a unit: the factor to SI, and whether it is per metre.
+    """A unit: its factor to SI, and whether it is per metre.
 
     `by_mass` is true if a force is given in kilograms or pounds.
     """
@@ -100,10 +98,10 @@ class ColumnUnit:
 
 
 def unit_called(text: str, what: str) -> ColumnUnit | None:
-    """Return the unit in a text, ignoring words such as *wet*; None if the text names no unit.
+    """Parse a unit, ignoring words such as *wet*; return None if the text contains no unit.
 
-    The text comes from brackets, from a row of units, or from behind a number; `what` is what its
-    column holds. ValueError: it is not a unit of `what`.
+    The text comes from brackets, a row of units, or a cell with a number; `what` is the quantity of
+    the column. ValueError: the unit does not fit this quantity.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -124,7 +122,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
 
 
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
-    """Return the unit in a heading, from brackets or from the last word; None if it has none.
+    """Find the unit in a heading, in brackets or as the last word; return None if there is none.
 
     ValueError: the text in brackets is not a unit, or there are two units.
     """
@@ -152,9 +150,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Return the unit that a whole text names; None if it is not a unit of what the column
-    holds.
-    """
+    """Return the unit that a text names; None if the text is no unit of the column's quantity."""
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),
@@ -174,7 +170,7 @@ def _unit(text: str, what: str) -> ColumnUnit | None:
 
 
 def _factor(text: str, dimension: str) -> float | None:
-    """Return the factor of a unit to SI, in any language and with any capitals; None if it is
+    """Return the factor from a unit, in any language and capitalisation, to SI; None if the unit is
     unknown.
     """
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
@@ -190,7 +186,7 @@ def _factor(text: str, dimension: str) -> float | None:
 
 
 class CellNumber(NamedTuple):
-    """The number of a cell, the text behind the number, and a message if it cannot be read.
+    """Number in a cell, its text, and a message if the text cannot be read.
 
     `value` is None if the cell has no number.
     """
@@ -202,7 +198,7 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Return the number of a cell, by the decimal sign of the file or, without one, by its own."""
+    """Parse the number in a cell, with the decimal sign of the file if known, else of the cell."""
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
         return CellNumber(None)
@@ -263,8 +259,7 @@ def _either(digits: str) -> str:
 
 
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
-    """Return the decimal sign of a file, and a remark about how commas are read, empty without
-    commas.
+    """Find the decimal sign of a file; also return a remark about commas, empty if there are none.
 
     `cells` yields the place and the text of each cell that holds a number. ValueError: both signs
     are used, or numbers such as `1,250` remain ambiguous.
@@ -298,7 +293,7 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
 
 
 def is_table(content: bytes) -> bool:
-    """Return whether a file is a workbook, or text whose lines have the same separator."""
+    """Return whether a file is a workbook, or text whose lines share a separator."""
     if content.startswith(_SPREADSHEETS):
         return True
     if content.startswith(_UTF_16):
@@ -309,14 +304,14 @@ def is_table(content: bytes) -> bool:
 
 
 class ReadSheets(NamedTuple):
-    """The rows of each sheet, and its hidden parts, by the name of the sheet."""
+    """Rows and hidden parts of each sheet, by sheet name."""
 
     rows: dict[str, SheetRows]
     hidden: dict[str, str]
 
 
 def read_sheets(path: Path) -> ReadSheets:
-    """Return the rows of each sheet; lines that begin with # are comments.
+    """Read the rows of each sheet; lines that begin with # are comments.
 
     A sheet without cells is left out; a text file has one sheet, whose name is empty. InputError:
     the file cannot be read.
@@ -404,7 +399,7 @@ def _hidden_within(content: bytes) -> dict[str, str]:
 
 
 def _tags(text: bytes, name: str) -> list[dict[str, str]]:
-    """Return the attributes of every element of a name in an XML file."""
+    """Return the attributes of all XML elements with a given name."""
     found = re.findall(rf"<(?:\w+:)?{name}\s([^<>]*)>", text.decode("utf-8", "replace"))
     return [dict(re.findall(r'([\w:]+)="([^"]*)"', each)) for each in found]
 

@@ -1,4 +1,4 @@
-"""Convert rows of a list to components, and note how missing figures were guessed."""
+"""Convert list rows to components, and note guesses for missing values."""
 
 import math
 
@@ -16,9 +16,7 @@ _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
-    """Return the definition of a row in SI units; add what is wrong in the row to its
-    `problems`.
-    """
+    """Convert a row to a component in SI units; mistakes are added to the `problems` of the row."""
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figure(what) < 0.0:
             row.refuse(f"its {what.replace('_', ' ')} is negative")
@@ -28,7 +26,7 @@ def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
 
 
 _Definition = tuple[str, dict[str, model.FigureOrWord]]
-"""The kind of a component, and its figures."""
+"""Kind of a component, and its values."""
 
 
 def _anchor(row: ListRow) -> _Definition:
@@ -87,9 +85,9 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
-    """Return the kind of a rigid piece by its size, and its diameter [m].
+    """Choose the kind of a rigid piece from its size; also return its diameter [m].
 
-    In a list with both widths and diameters, a diameter is that of a sphere. In other lists, a
+    In a list with both widths and diameters, a piece with a diameter is a sphere. In other lists, a
     float that is hardly longer than wide is a sphere.
     """
     width, diameter, length, lift = map(row.figure, ("width", "diameter", "length", "buoyancy"))
@@ -137,14 +135,16 @@ def _line(row: ListRow) -> _Definition:
 
 
 def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
-    """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
+    """Return the drag coefficient in the list, or a typical value for the kind as a guess."""
     key, guess = "cx" if kind == "sphere" else "cn", f"the usual one of a {kind}"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
 def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
-    """Return the mass and other named figures; a mass less than the weight in water is left out."""
+    """Return mass and other optional values; a mass that is too small for the weight in water is
+    omitted.
+    """
     mass = row.figure("mass")
     heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)
     named = {name: row.figure(name) for name in names if row.figure(name) > 0.0}

@@ -17,10 +17,10 @@ COLUMNS = (
     "cd", "area", "drag_area", "tangential_area", "material", "stiffness", "breaking_load", "count",
     "at", "height", "depth",
 )  # fmt: skip
-"""The names of columns, as in `--columns`."""
+"""Column names, as in `--columns`."""
 
 WORDS = ("name", "label", "kind", "role")
-"""Columns that hold words."""
+"""Columns with words instead of numbers."""
 
 _WEIGHT = r"(weight|poids|gewicht|vekt|\bpeso|mass(e|a)?\b|\bmasa\b)"
 _WET = (
@@ -87,12 +87,12 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """Describe a column: its index, its heading, and the factor of its numbers to SI.
+    """A column: its index, heading, and the factor from its numbers to SI.
 
-    `by_mass`: forces are in kilograms; `per_metre`: figures of lines are per metre; `known`: the
-    heading has a unit; `whole`: the heading says that figures are those of whole pieces; `twin`: a
-    second column of the same figure, one of the two per metre and the other of whole pieces;
-    `wrong`: what is wrong with the heading.
+    `by_mass`: forces are in kilograms; `per_metre`: values of lines are per metre; `known`: the
+    heading has a unit; `whole`: according to the heading, values apply to whole pieces; `twin`: a
+    second column of the same quantity (one of the two is per metre, the other per piece); `wrong`:
+    mistake in the heading.
     """
 
     index: int
@@ -106,8 +106,8 @@ class ListColumn:
     twin: ListColumn | None = None
 
     def of(self, row: list[str], *, line: bool) -> tuple[ListColumn, str]:
-        """Return this column or its twin, whichever has a row's figure (of a line per metre), and
-        the cell.
+        """Choose this column or its twin (per metre or per piece) for a row, preferring a value per
+        metre for lines; also return the cell.
         """
         both = [each for each in (self, self.twin) if each and cell_of(row, each)]
         column = min(both, key=lambda each: each.per_metre != line, default=self)
@@ -116,7 +116,7 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """The headings of a sheet: their row, the columns recognised, and the other headings.
+    """Headings of a sheet: their row, recognised columns, and other headings.
 
     `problems` are messages about headings that are not understood and cannot be ignored.
     """
@@ -127,9 +127,7 @@ class ListHeadings:
 
     @property
     def problems(self) -> list[str]:
-        """Messages about headings that are not understood and cannot be ignored, each with its
-        place.
-        """
+        """Messages about unknown headings that cannot be ignored, with their positions."""
         beside = "has lines beside other pieces; a line needs a row of its own"
         from_an_end = "counts lengths from an end of the line; give each piece its own length"
         return [
@@ -152,7 +150,7 @@ class ListHeadings:
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """Return the headings of a sheet; None if no row has a name and a length or a force.
+    """Find the headings of a sheet; None if no row has a name and a length or a force.
 
     Columns in `given` take precedence over those that are recognised.
     """
@@ -176,7 +174,7 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
-    """Check that `--columns` names columns that CALM knows, and headings of the list.
+    """Check that `--columns` refers to known columns and to headings of the list.
 
     Parameters
     ----------
@@ -198,11 +196,13 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
 
 def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
-    """Return the columns of a row of headings; the column of names must have words below it."""
+    """Find the columns in a row of headings; the column of names must have words below its
+    heading.
+    """
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     if any(_SPANISH.search(cell) for cell in plain):
-        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # of French, a count
+        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # a French count
     taken: set[int] = set()
     for what, heading in given.items():
         wanted = _plain(heading)
@@ -233,9 +233,7 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
 
 
 def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -> ListColumn:
-    """Return a column with its twin: a column of the same heading, but one of the two is per
-    metre.
-    """
+    """Pair a column with its twin: two columns with the same heading, of which one is per metre."""
     taken.add(column.index)
     stem = _UNIT.sub("", _plain(column.heading, keep="/"))
     for i, heading in enumerate(row if what in _MEASURES else ()):
@@ -267,7 +265,7 @@ def _resolve(found: dict[str, ListColumn]) -> None:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """Return a row of headings, each with the unit in the row below it.
+    """Append to each heading the unit in the row below.
 
     A row without numbers is a row of units if at least half of its cells are units.
     """
@@ -297,7 +295,7 @@ def _is_unit(cell: str) -> bool:
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """Return the first column without a heading whose cells are words."""
+    """Return the first column that has no heading and contains words."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
@@ -333,7 +331,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """Return a heading without accents and capitals, and with blanks in place of most signs."""
+    """Return a heading in lower case without accents, with blanks in place of most signs."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))
@@ -349,7 +347,7 @@ def cell_of(row: list[str], column: ListColumn | None) -> str:
 
 
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
-    """Return the decimal sign of the columns of numbers, and a remark about commas."""
+    """Find the decimal sign of the number columns; also return a remark about commas."""
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:
         return decimal_sign(

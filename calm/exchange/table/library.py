@@ -1,4 +1,4 @@
-"""Read libraries of elements, which complete the figures of a list.
+"""Read element libraries, which supply values missing in a list.
 
 A library is the table of elements of Mooring Design & Dynamics, in character matrices, or a table
 or workbook whose sheets have headings.
@@ -32,11 +32,11 @@ _METRE = 100.0  # cm: the length of a line whose figures are per metre
 
 
 Library = Mapping[str, ListRow]
-"""Elements by name without capitals and blanks; figures of lines are per metre."""
+"""Elements by name in lower case without blanks; values of lines are per metre."""
 
 
 def read_library(path: Path) -> Library:
-    """Return the elements of `mdcodes.mat` of Mooring Design & Dynamics, or of a table or workbook.
+    """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
     The first of several elements with the same name is used. InputError: the file cannot be read,
     or holds no elements.
@@ -50,7 +50,9 @@ def read_library(path: Path) -> Library:
 
 
 def is_library(sheets: Mapping[str, SheetRows]) -> bool:
-    """Return whether sheets are a library: several with headings, or the table of moords."""
+    """Return whether sheets form a library: several sheets with headings, or the table of
+    moords.
+    """
     headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
     moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
     return len(headed) >= _SHEETS or any(
@@ -59,12 +61,12 @@ def is_library(sheets: Mapping[str, SheetRows]) -> bool:
 
 
 def key_of(name: str) -> str:
-    """Return a name without capitals and blanks, the key of a library."""
+    """Convert a name to a library key: lower case without blanks."""
     return "".join(name.lower().split())
 
 
 def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
-    """Complete the figures missing in rows from the element of the same name.
+    """Fill missing values in rows from the element of the same name.
 
     Parameters
     ----------
@@ -107,8 +109,8 @@ def _of_matrices(path: Path) -> list[ListRow]:
 
 
 def _width(variables: MatVariables) -> int:
-    """Return the number of bytes of a name; the variable `format` gives the columns of each
-    figure.
+    """Return the width of the name column in bytes; the variable `format` gives the columns of all
+    values.
     """
     try:
         columns = variables.reals("format")
@@ -161,7 +163,7 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
 
 
 def _is_line(row: ListRow, title: str) -> bool:
-    """Return whether an element is a line, with figures per metre."""
+    """Return whether an element is a line, with values per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False

@@ -106,10 +106,11 @@ def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
     path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return the name, the cells and the headings of the only sheet with headings, ignoring hidden
-    sheets if another one is visible; None if there is none.
+    """Return name, cells and headings of the only sheet with headings; None if there is none.
+    Hidden sheets count only if no visible sheet has headings.
 
-    Remarks about hidden sheets and parts are added to `remarks`. InputError: there are several.
+    Remarks about hidden sheets and parts are added to `remarks`. InputError: several visible sheets
+    have headings.
     """
     found = [
         (name, cells, headings)
@@ -147,7 +148,7 @@ def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
 
 
 def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
-    """Return remarks about the units assumed for forces whose headings have none."""
+    """Return remarks about assumed force units, for headings without a unit."""
     usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
     return [
         model.Remark(f"column {column.heading}", f"has no unit: read as {usual[what]}")
@@ -159,7 +160,7 @@ def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
 def _names(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
 ) -> list[ListRow]:
-    """Return the rows of the longest sheet of a list that has only names.
+    """Return the rows of the longest sheet, for a list that contains only names.
 
     The first row is the name of the mooring, unless the library has an element of that name.
     """
@@ -198,7 +199,7 @@ def _names_in(cells: SheetRows) -> list[ListRow]:
 def _water(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path
 ) -> model.ImportedWater | None:
-    """Return the environment in a sheet of Mooring Design & Dynamics, whose heights are `z`."""
+    """Read the environment from a sheet of Mooring Design & Dynamics, whose heights are `z`."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
@@ -217,7 +218,7 @@ def _water(
 
 
 def _figure(row: list[str], index: int, path: Path) -> float:
-    """Return a number of the sheet; 0 for an empty cell."""
+    """Parse a number of the sheet; an empty cell is 0."""
     found = number(row[index])
     if found.wrong or found.rest:
         raise refused(path, f"water: {found.wrong or f'`{row[index]}` is not a number'}")
@@ -225,8 +226,8 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 
 
 def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
-    """Return the rows from the top down, with clamps behind their piece; lists may run either
-    way.
+    """Sort rows from the top down, with clamps after their piece; the list may have either
+    direction.
     """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
@@ -252,7 +253,9 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
 
 
 def _go_down(rows: list[ListRow]) -> bool:
-    """Whether depths are those of places on the line: they grow from piece to piece, and differ."""
+    """Return whether depths are positions on the line, which differ and increase from piece to
+    piece.
+    """
     depths = [row.figures["depth"] for row in rows if "depth" in row.figures]
     return len({*depths}) > 1 and all(upper <= lower for upper, lower in pairwise(depths))
 

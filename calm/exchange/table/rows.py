@@ -1,4 +1,4 @@
-"""Read the rows of a list in SI units, and note how each was interpreted."""
+"""Read list rows in SI units, and note how each row was interpreted."""
 
 import math
 import re
@@ -18,7 +18,7 @@ _DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?
 _COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x glass, 6 x 17 in
 _LENGTHS = re.compile(r"^\(?\d+\s?[x\u00d7]\s?\d+([.,]\d+)?\s?m\b", re.I)  # 2 x 200 m wire
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
-_ENOUGH = {"length", "buoyancy", "weight"}  # a row with one of these is a piece
+_ENOUGH = {"length", "buoyancy", "weight"}  # a row with any of these keys is a piece
 _MOST = 1000  # largest count of a row
 # m: largest diameter of a piece, and of a line, in a column without a unit
 _WIDEST, _WIDEST_LINE = 10.0, 0.5
@@ -36,11 +36,10 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 
 @dataclass(eq=False)
 class ListRow:
-    """A row of a list: its name, its figures and count, and the guesses made in it.
+    """A list row: name, values, count, and guesses.
 
-    `metre` names the figures of a line that are per metre, `line` is whether it is a cable or chain
-    (None: by its name), `hint` is a hint for missing figures, and `problems` are messages about
-    what is wrong.
+    `metre`: names of values per metre; `line`: whether the row is a cable or chain (None: to be
+    decided by its name); `hint`: advice on missing values; `problems`: messages about mistakes.
     """
 
     place: int
@@ -58,15 +57,15 @@ class ListRow:
 
     @property
     def where(self) -> str:
-        """The place and the name of the row, for messages."""
+        """Row number and name, for messages."""
         return f"row {self.place}, {self.name}"
 
     def refuse(self, problem: str) -> None:
-        """Add a problem of this row."""
+        """Add a problem about this row."""
         self.problems.append(f"{self.where}: {problem}")
 
     def figure(self, what: str) -> float:
-        """Return a figure; 0 if the list has none."""
+        """Return a value; 0 if the list has none."""
         return self.figures.get(what, 0.0)
 
     @property
@@ -76,13 +75,13 @@ class ListRow:
 
     @property
     def sinks(self) -> bool:
-        """True for a line, an anchor, or a part that sinks according to its name."""
+        """Whether the row is a line, an anchor, or a part that sinks according to its name."""
         named = is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
     @property
     def is_line(self) -> bool:
-        """True for a cable or a chain."""
+        """Whether the row is a cable or a chain."""
         if self.line is not None:
             return self.line
         if self.role in ROLES or is_called(self.kind, "rigid"):
@@ -101,7 +100,7 @@ def rows_of(
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
-    """Return the rows below the headings; sums and rows without figures are added to `dropped`.
+    """Read the rows below the headings; sums and rows without values are added to `dropped`.
 
     Parameters
     ----------
@@ -145,7 +144,7 @@ def rows_of(
 
 
 def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
-    """Return a row with the words and figures of its cells."""
+    """Convert the cells of a row to words and values."""
     row.label, row.kind, row.role = (
         cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
     )
@@ -188,7 +187,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
 
 
 def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide the figures of a row that are totals, by their headings, by its count."""
+    """Divide totals in a row by its count; the headings show which values are totals."""
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
@@ -200,7 +199,7 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 
 
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
-    """Return messages about lengths that are not the lengths of pieces.
+    """Return messages about cumulative or implausibly large lengths.
 
     Lengths that grow from piece to piece, up to an end of the line, are distances from its other
     end.
@@ -226,10 +225,11 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 
 
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
-    """Give every row its net force as buoyancy, positive up.
+    """Convert weights to net buoyancy, positive up.
 
-    Weights are positive down, or positive up if those of sinking parts are negative. If sinking
-    parts have positive buoyancies and all others negative ones, the column holds weights.
+    Weights are positive down, or positive up if sinking parts have negative weights. If sinking
+    parts have positive buoyancies and all other parts negative buoyancies, the column holds
+    weights.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
@@ -256,7 +256,7 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) ->
 
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
-    """Divide figures of lines by their length if the list gives them for whole lines."""
+    """Convert values of lines to values per metre if the list gives values for the whole line."""
     lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
@@ -282,8 +282,8 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """Return whether lines of the same name have the same figure at different lengths, which
-    means that the figure is per metre.
+    """Return whether equally named lines of different length have equal values, which must then be
+    per metre.
     """
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:

@@ -1,6 +1,4 @@
-"""Changes of a text by location: the patches for them, and the data that the changed text must
-give.
-"""
+"""Edit a YAML text by location: compute text patches, and the data expected after the change."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,7 +24,7 @@ class EditError(CalmError):
 
 
 class Page:
-    """A text that ends with a line break, with its nodes and the style in which it is written."""
+    """An editable text that ends with a line break, with its parsed nodes and its writing style."""
 
     def __init__(self, text: str, root: Node, style: WritingStyle) -> None:
         self.text = text
@@ -83,7 +81,7 @@ class Page:
         return [items.patch()]
 
     def _add_entry(self, mapping: Node, name: str, value: Value, *, open: bool) -> Patch:
-        """Add a key and its value to a mapping, at its place in the order of the format."""
+        """Add a key with a value to a mapping, in the key order of the format."""
         inside = f"{written(name, flow=True)}: {inline(value)}"
         if not mapping.keys:
             return Patch(mapping.start, mapping.end, f"{{{inside}}}")
@@ -108,7 +106,7 @@ class Page:
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
-        """Return the valid indices of items of a list, sorted and without repetitions."""
+        """Return the valid indices among the given ones, sorted and without repetitions."""
         node = self.node(location)
         count = len(node.children) if node is not None and node.kind == "sequence" else 0
         known = sorted(set(indices))
@@ -119,7 +117,7 @@ class Page:
         return known
 
     def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:
-        """Return the text of items of a list, with their comments, each on its own."""
+        """Return the text of list items with their comments, one text per item."""
         known = self.known(location, indices)
         node = self.node(location)
         if not known or node is None:
@@ -159,7 +157,7 @@ class Page:
         return inline(value) if items.is_flow else self.style.item(value, items.column, block=block)
 
     def rows(self, location: Location, rows: Sequence[Value]) -> list[Patch]:
-        """Set the items of a list, where existing items keep their text."""
+        """Replace the items of a list; existing items keep their text."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
@@ -178,16 +176,14 @@ class Page:
 
 
 def _opens(location: Location, node: Node) -> bool:
-    """Return whether definitions of a section are written with one key per line, as the others
-    there.
-    """
+    """Return whether a new definition in a section is written with one key per line."""
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
 
 
 def nested(location: Location, value: Value) -> dict[str, Value]:
-    """Return a value wrapped in the mappings of a location."""
+    """Wrap a value in nested mappings, one for each key of a location."""
     for step in reversed(location):
         value = {str(step): value}
     assert isinstance(value, dict)
@@ -195,7 +191,7 @@ def nested(location: Location, value: Value) -> dict[str, Value]:
 
 
 def data_of(value: Value) -> Any:
-    """Return the data that a value gives when it is read from a file."""
+    """Return the data that a value becomes when it is written to a file and read again."""
     if value is None or isinstance(value, str):
         return value
     if isinstance(value, Mapping):
@@ -204,7 +200,7 @@ def data_of(value: Value) -> Any:
 
 
 REMOVED = object()
-"""Used as a value: the key is removed."""
+"""Marker used as a value to remove a key."""
 
 
 def with_value(data: Any, location: Location, value: Any) -> Any:
@@ -238,8 +234,7 @@ def has_control(data: Any) -> bool:
 def cells_that_differ(
     old: Any, new: Sequence[Sequence[str | None]]
 ) -> list[tuple[int, int, str]] | None:
-    """Return the row, column and text of each value that differs between two tables of the same
-    shape.
+    """List the changed cells (row, column, text) between two tables of equal shape.
 
     Returns None if the shapes differ, or if a value is removed.
     """
@@ -260,14 +255,14 @@ _ENDINGS = ("\r\n", "\n", "\r")
 
 
 class EndedLine(NamedTuple):
-    """Text of a line, and the line break after it, which is empty for the last line."""
+    """Text and line break of a line; the break of the last line is empty."""
 
     text: str
     line_break: str
 
 
 def lines_of(text: str) -> list[EndedLine]:
-    """Split a text as `str.splitlines` does; a final line break is followed by an empty line."""
+    """Split a text as `str.splitlines` does, and add an empty line after a final line break."""
     lines = [EndedLine(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
     found = [EndedLine(text, whole[len(text) :]) for text, whole in lines]
     if not text or text.endswith(_ENDINGS):
@@ -276,7 +271,8 @@ def lines_of(text: str) -> list[EndedLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """Return a text in which an editor has changed the lines to the given ones.
+    """Replace the lines of a text by the lines of a text editor, and keep the line breaks of the
+    file.
 
     Unchanged lines keep their line breaks, and so do lines that replace another one. New lines have
     the usual line break of the file.
@@ -295,8 +291,8 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return for each new line the index of the old line that it is or replaces; None for an added
-    line.
+    """Match new lines to old lines; return the index of the equal or replaced old line, or None for
+    an added line.
     """
     # Comparing is slow, and most often only a line differs.
     head = _alike(old, new)

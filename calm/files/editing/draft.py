@@ -1,5 +1,5 @@
-"""A mooring or tow file edited as text, and its history. Parts that are not edited are kept byte
-for byte.
+"""An editable mooring or tow file, as text, with its undo history. Unedited parts are kept byte for
+byte.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ line: []                              # top to bottom
 
 
 def clamps_of(item: int) -> Location:
-    """Return the location of an item's clamps."""
+    """Return the location of the clamps on an item."""
     return (*LINE, item, "clamps")
 
 
@@ -103,9 +103,7 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Return the locations of the items of the line; an index in `LINE` counts through all
-        legs.
-        """
+        """Return the location of each line item; indices in `LINE` run on across legs."""
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
@@ -123,14 +121,14 @@ class Draft:
         return node.data if node else None
 
     def text_at(self, location: Location) -> str:
-        """Return the text of a plain value at a location; empty if there is none."""
+        """Return the text of a scalar at a location; empty if there is none."""
         value = self.value(location)
         return value if isinstance(value, str) else ""
 
     def insert(
         self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert a new item with these values above an item, or below the last.
+        """Insert a new item with the given values above an item, or below the last.
 
         Parameters
         ----------
@@ -247,7 +245,7 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """Set a table, where existing rows keep their text.
+        """Replace a table; existing rows keep their text.
 
         Parameters
         ----------
@@ -270,11 +268,11 @@ class Draft:
         return draft.put_rows(place, rows)
 
     def put_rows(self, location: Location, rows: Sequence[Value]) -> Draft:
-        """Set the items of a list, where existing items keep their text."""
+        """Replace the items of a list; existing items keep their text."""
         return self._changed(self._page.rows(location, rows), location, rows)
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
-        """Define a component in this file, or replace its definition of that id."""
+        """Define a component in this file, replacing any definition with the same id."""
         return self.put_at((changes.NAMED[0], id), values)
 
     def _check_item(self, rows: Location) -> None:
@@ -296,9 +294,7 @@ class Draft:
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
-        """Return the draft with the patched text, after checking that it differs only at the
-        location.
-        """
+        """Apply patches, and check that the data have changed only at the location."""
         data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break
@@ -335,7 +331,7 @@ def _worded(snippets: Iterable[str]) -> Worded:
 
 
 class History:
-    """A draft with its undo history, and the text that is saved.
+    """Undo history of a draft, with the last saved text.
 
     Parameters
     ----------
@@ -360,7 +356,7 @@ class History:
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """Change to a new draft, with a label for the change; an equal draft changes nothing."""
+        """Apply a change: make a draft current, and label the step; an equal draft adds no step."""
         if draft.text == self.draft.text:
             return
         self._done.append((label, self.draft.text))
@@ -368,15 +364,15 @@ class History:
         self.draft = draft
 
     def undo(self) -> str | None:
-        """Undo a change; return its label, or None if there is none."""
+        """Undo the last change; return its label, or None if there is none."""
         return self._go(self._done, self._undone)
 
     def redo(self) -> str | None:
-        """Redo a change; return its label, or None if there is none."""
+        """Redo the last undone change; return its label, or None if there is none."""
         return self._go(self._undone, self._done)
 
     def saved(self, text: str | None = None) -> None:
-        """Record the draft, or another text, as saved."""
+        """Mark the current draft, or another text, as saved."""
         self.saved_text = self.draft.text if text is None else text
 
     def _go(self, source: list[tuple[str, str]], target: list[tuple[str, str]]) -> str | None:

@@ -1,4 +1,4 @@
-"""Rearrange lists and mappings in a text, as texts of their items.
+"""Cut, copy, insert and move the items of YAML lists and mappings as text.
 
 The items of a mapping are its entries. An item of a list can be copied to a text of its own and
 pasted from one.
@@ -25,7 +25,7 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 
 @dataclass(frozen=True)
 class LineLists:
-    """Locations of the items of a line: one list, or one list for each leg of a net.
+    """Locations of the line items: in a single list, or in one list per leg of a net.
 
     An index in `LINE` counts through all lists.
 
@@ -54,19 +54,20 @@ class LineLists:
 
     @property
     def legs(self) -> list[str]:
-        """Return the name of the leg of each item; an empty name for a single line."""
+        """Name of the leg that contains each item; empty for a single line."""
         names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
         return [name for name, count in names for _ in range(count)]
 
     def real(self, location: Location) -> Location:
-        """Return the location in the text for a location that counts through all lists."""
+        """Convert a location with an index that runs on across legs to the location in the text."""
         if location[:1] != LINE or len(location) == 1:
             return location
         rows, index = self.place(int(location[1]), above=True)
         return (*rows, index, *location[2:])
 
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the list that contains an index, and the index in that list.
+        """Return the list that contains an index running on across legs, and the index in that
+        list.
 
         For an index between two legs this is the first item of the lower leg with `above`,
         otherwise the end of the upper leg.
@@ -78,13 +79,13 @@ class LineLists:
         return self.all[-1][0], index
 
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the result of `place` for the line, or the given index for any other list."""
+        """Locate a line index as `place` does; return indices of other lists unchanged."""
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
     def grouped(
         self, indices: Iterable[int], rows: Location
     ) -> Iterator[tuple[Location, list[int]]]:
-        """Yield the lists that contain the items, each with the indices of its items."""
+        """Group item indices by list; yield each list with its indices."""
         if rows != LINE:
             yield self.real(rows), [*indices]
             return
@@ -114,7 +115,7 @@ class LineItem:
 
 
 def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
-    """Return the item of a node.
+    """Convert a node to an item.
 
     Parameters
     ----------
@@ -138,7 +139,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
 
 def snippet_of(text: str, column: int) -> str:
-    """Return the text of an item on its own, as an item of a block list in column 1.
+    """Return the text of an item as a block list with this single item, starting in column 1.
 
     Parameters
     ----------
@@ -152,7 +153,7 @@ def snippet_of(text: str, column: int) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """Return the item in a text as returned by `snippet_of`; None if it contains no single item."""
+    """Parse a text from `snippet_of` to an item; None unless it contains exactly one item."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):

@@ -1,6 +1,4 @@
-"""Files in which CALM keeps the state of a user between sessions: open files, favourite
-components.
-"""
+"""Per-user state kept between sessions: open files and favourite components."""
 
 import hashlib
 import json
@@ -14,13 +12,13 @@ from calm.files.editing.working_file import Keeper, state_folder
 
 
 class Presence:
-    """Record in the state folder which file this process has open."""
+    """Entry in the state folder for the file that this process has open."""
 
     def __init__(self) -> None:
         self._place: Path | None = None
 
     def announce(self, path: Path | None) -> list[int]:
-        """Record that a file is open, or none; return the numbers of other processes that have it
+        """Record a file (or None) as open; return the ids of other processes that have this file
         open.
         """
         if self._place is not None:
@@ -50,7 +48,8 @@ _MOST_RECENT = 40
 
 
 class Remembered:
-    """Ids of components, the latest first; both lists are empty if their file cannot be read.
+    """Component ids of recent choices and favourites, latest first; both are empty if their file
+    cannot be read.
 
     Attributes
     ----------
@@ -68,7 +67,7 @@ class Remembered:
         self.favourites, self.recent = ids
 
     def take(self, id: str) -> None:
-        """Record that a component was chosen; unsaved, it lasts until the builder ends."""
+        """Record the choice of a component until the builder ends, without saving it."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         with suppress(OSError):
             self._keep()

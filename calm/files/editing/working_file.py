@@ -24,7 +24,7 @@ from calm.errors import CalmError, InputError
 from calm.whole_file import GRAIN, decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
-"""Content of an existing file that cannot be read; no text file contains it."""
+"""Stand-in for the content of an existing but unreadable file; no text file contains it."""
 
 Stamp = tuple[int, int, int]
 
@@ -128,7 +128,8 @@ class WorkingFile:
         return self._differs
 
     def keep(self) -> Path | None:
-        """Update the copy to `unsaved`, and return its path; may be called from any thread.
+        """Write `unsaved` text to the backup copy, and return the copy's path; may be called from
+        any thread.
 
         The copy of this builder is removed if the text is saved. NotWritten: the copy can be
         written neither next to the file nor in the state folder.
@@ -140,7 +141,7 @@ class WorkingFile:
             return self._keep(self.unsaved)
 
     def forget(self) -> None:
-        """Remove the copy and any adopted one, after the work was saved or discarded."""
+        """Delete the backup copy and any adopted copy, after the work was saved or discarded."""
         with self._lock:
             self.unsaved = None
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
@@ -169,11 +170,11 @@ class WorkingFile:
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
     def is_of_another(self, kept: KeptWork) -> bool:
-        """Return whether the file has changed since the kept work began."""
+        """Return whether the file has changed since the recovered work began."""
         return self.path is not None and kept.base != _digest(self._content())
 
     def adopt(self, kept: KeptWork) -> None:
-        """Continue with kept work; its copy is removed when the work is saved or discarded.
+        """Continue with recovered work; its copy is deleted when the work is saved or discarded.
 
         If the file has changed since that work began, it is reported by `changed_on_disk`.
         """
@@ -182,7 +183,7 @@ class WorkingFile:
             self._remember(_UNREADABLE)
 
     def discard(self, kept: KeptWork) -> None:
-        """Remove a copy whose work is not wanted."""
+        """Delete a copy of unwanted work."""
         self._drop(kept.place)
 
     def _remember(self, content: bytes) -> None:
@@ -197,7 +198,9 @@ class WorkingFile:
             return _UNREADABLE if _status(self.path) else None
 
     def _folders(self) -> list[tuple[Path, str]]:
-        """Return the folders for the copy and the beginning of its name, the best first."""
+        """Return candidate folders for the backup copy, the best first, with the beginning of the
+        copy's name.
+        """
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
@@ -231,7 +234,7 @@ class WorkingFile:
 
 
 def state_folder() -> Path:
-    """Return the folder in which CALM keeps the state of a user."""
+    """Return the per-user state folder of CALM."""
     state = os.environ.get("XDG_STATE_HOME") or os.path.expanduser("~/.local/state")
     return Path(state) / "calm"
 
@@ -243,7 +246,7 @@ def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
 
 
 def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
-    """Return a message about attributes that a file did not take over from the one it replaced."""
+    """Return a message about file attributes that were lost when the file was replaced."""
     if before is None or after is None:
         return ""
     losses = []
@@ -268,7 +271,7 @@ _TOKEN = re.compile(r"\.[0-9a-f]{8}" + re.escape(SUFFIX))
 
 @dataclass(frozen=True)
 class Keeper:
-    """The process that keeps a copy.
+    """Process that writes a backup copy.
 
     Attributes
     ----------
@@ -283,17 +286,17 @@ class Keeper:
 
     @classmethod
     def this(cls) -> Keeper:
-        """Return this process."""
+        """Return the current process."""
         return cls(socket.gethostname(), os.getpid(), _started(os.getpid()))
 
     @property
     def is_here(self) -> bool:
-        """Return whether the process belongs to this machine."""
+        """Whether the process runs, or ran, on this machine."""
         return self.host == socket.gethostname()
 
     @property
     def is_running(self) -> bool:
-        """Return whether the process is known to be running; False for one on another machine.
+        """Whether the process is known to be running; False for a process on another machine.
 
         A web page has one process for successive sessions.
         """
@@ -334,7 +337,7 @@ def _digest(content: bytes | None) -> str:
 
 
 def _kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
-    """Yield the copies of a file in a folder; other files are ignored."""
+    """Yield the backup copies of a file in a folder."""
     with contextlib.suppress(OSError):
         for place in sorted(folder.iterdir()):
             ends = place.name.removeprefix(stem)
@@ -356,7 +359,7 @@ def _read(place: Path) -> KeptWork:
 
 
 def _started(process: int) -> str:
-    """Return the starting time of a process in ticks since the machine started; empty if unknown.
+    """Return the start time of a process in ticks since the machine was booted; empty if unknown.
 
     It is unknown for a process that has ended, even if its parent has not yet collected its status.
     """

@@ -1,4 +1,4 @@
-"""Write values into the text of a file, in its style and in the order of the keys in the models.
+"""Write values as YAML in the style of a file, with keys in the order of the models.
 
 A word is written without quotes if it can be read back without them. The text is never emitted
 again by a YAML library, because that would lose part of its layout, such as aligned columns and
@@ -34,7 +34,7 @@ Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 
 
 class Wording(NamedTuple):
-    """An item of a list with its text.
+    """A list item and its text.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Wording(NamedTuple):
 
 
 class Worded(list[Value]):
-    """Items of a list that keep their text."""
+    """List items that keep their text."""
 
     def __init__(self, wordings: Iterable[Wording]) -> None:
         self.wordings = tuple(wordings)
@@ -57,7 +57,7 @@ class Worded(list[Value]):
 
 
 SECTIONS = frozenset(MooringKeys.model_fields) - {"name", "description", "position", "tow"}
-"""Keys whose values are written below them, one per line."""
+"""Keys with one value per line below them."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
     tuple(MooringKeys.model_fields),
@@ -93,7 +93,7 @@ class WritingStyle:
 
     @classmethod
     def of(cls, text: str, root: Node | None) -> WritingStyle:
-        """Return the style of a text, as found at its first places."""
+        """Detect the style of a text from its first line break and first indented entries."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"
         step = dash = None
@@ -149,7 +149,7 @@ class WritingStyle:
         return "", "".join(self.item(one, column + self.dash) for one in value)
 
     def moved(self, lines: str, column: int) -> str:
-        """Return lines that begin in column 1, moved to another column."""
+        """Indent lines that start in column 1, so that they start in another column."""
         indented = re.sub(r"^(?=[^\n])", " " * (column - 1), lines, flags=re.MULTILINE)
         return indented.replace("\n", self.line_break)
 
@@ -170,7 +170,7 @@ class WritingStyle:
 
 
 def inline(value: Value) -> str:
-    """Return a value on one line, in the form used in brackets."""
+    """Write a value on one line, in the flow style of YAML."""
     if value is None:
         return "null"
     if isinstance(value, str):
@@ -194,7 +194,9 @@ def read_inline(text: str) -> Value:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Return the index for a new key among others: in the order of the format, or at the end."""
+    """Return the index at which a new key is inserted among the existing keys: in the order of the
+    format, or at the end.
+    """
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
         before = order[: order.index(name)]
@@ -229,7 +231,7 @@ def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
 
 
 def written(text: str, *, flow: bool, quote: str = "") -> str:
-    """Return a text as a YAML scalar.
+    """Write a text as a YAML scalar.
 
     Parameters
     ----------
@@ -258,7 +260,7 @@ _COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
 
 
 class Patch(NamedTuple):
-    """A part of a text, from start to end, and its replacement."""
+    """Replacement for the part of a text from `start` to `end`."""
 
     start: int
     end: int
@@ -266,9 +268,7 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """Return a text with parts of it replaced; two patches at one place are applied in their
-    order.
-    """
+    """Apply patches to a text; two patches at one position are applied in the given order."""
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -278,23 +278,23 @@ def patched(text: str, patches: Iterable[Patch]) -> str:
 
 
 def line_start(text: str, place: int) -> int:
-    """Return the index of the beginning of the line that contains a place."""
+    """Return the index at which the line of a position begins."""
     return text.rfind("\n", 0, place) + 1 or int(text.startswith("\ufeff"))
 
 
 def line_end(text: str, place: int) -> int:
-    """Return the index of the beginning of the next line."""
+    """Return the index at which the next line begins."""
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
 
 def first_on_line(text: str, place: int) -> bool:
-    """Return whether there are only blanks before a place on its line."""
+    """Return whether only blanks precede a position on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return the index of the end of an item's lines, including its own comments.
+    """Return the index at which the lines of an item end, including its own comments.
 
     Parameters
     ----------
@@ -311,7 +311,7 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return the index of the beginning of an item's lines, including its own comments.
+    """Return the index at which the lines of an item begin, including its own comments.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def _column(line: str) -> int:
 def set_value(
     text: str, mapping: Node, at: int, value: Value, style: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
-    """Return the patches that set another value for a key.
+    """Return the patches that replace the value of a key.
 
     Parameters
     ----------
@@ -373,7 +373,7 @@ def set_value(
 
 
 def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
-    """Return the patch that sets another text for a scalar, with the same quotation marks.
+    """Return the patch that replaces the text of a scalar and keeps its quotation marks.
 
     Parameters
     ----------
@@ -386,6 +386,8 @@ def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
 
 
 def _colon(text: str, place: int) -> int | None:
-    """Return the index after the colon of a key that ends at a place; None if there is no colon."""
+    """Return the index after the colon of a key that ends at a given index; None if there is no
+    colon.
+    """
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None
