@@ -1,4 +1,4 @@
-"""Figures of an assembly, which are those of its parts that lack them."""
+"""Values of an assembly that apply to each of its parts without an own value."""
 
 from pathlib import Path
 
