@@ -220,7 +220,7 @@ class RecoveredMooring:
         if not measured.label:
             raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
         notes += shared_times(without(measured, self.hidden), bool(self.currents))
-        self.measured, more = torn(measured, distances_of(mooring))
+        self.measured, more = torn(measured, distances_of(mooring), self.hidden)
         self.notes = notes + more
         self.source = {
             "currents": ", ".join(hashed(split_label(one)[1]) for one in self.currents),

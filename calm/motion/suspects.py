@@ -8,7 +8,7 @@ them. Fault of the readings: two sensors are farther apart than the line between
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -214,7 +214,9 @@ def distances_of(mooring: Design) -> Floats:
     return np.array([*clamps, *tops])
 
 
-def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasurements, list[str]]:
+def torn(
+    measured: MooringMeasurements, distance: Floats, hidden: Collection[str] = ()
+) -> tuple[MooringMeasurements, list[str]]:
     """Remove depths farther apart than the line between two sensors, with notes on the removal.
 
     The sensor farther from its median is wrong. Nothing is removed from a sensor if half of its
@@ -223,11 +225,13 @@ def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasur
     Parameters
     ----------
     distance : (p,) distances of the points along the line [m]
+    hidden : labels of sensors that neither judge others nor are judged
     """
     depth, place = measured.depth, distance[measured.point]
+    used = [i for i, label in enumerate(measured.label) if label not in hidden]
     away = np.abs(depth - np.nanmedian(depth, axis=0))
     wrong = np.zeros(depth.shape, bool)
-    for i, j in combinations(range(len(place)), 2):
+    for i, j in combinations(used, 2):
         reach = STRETCHED * abs(place[i] - place[j]) + AMISS
         apart = np.abs(depth[:, i] - depth[:, j]) > reach
         wrong[:, i] |= apart & (away[:, i] > away[:, j])

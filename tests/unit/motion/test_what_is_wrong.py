@@ -68,3 +68,10 @@ def test_depths_farther_apart_than_the_line_is_long_are_left_out():
     )
     depth[:, 0] = -100.0  # the sensor is wrong, not its readings
     assert torn(measured(depth), np.array([0.0, 100.0, 250.0]))[1] == []
+
+
+def test_a_hidden_sensor_takes_no_reading_from_another():
+    depth = np.tile([60.0, 150.0, 290.0], (240, 1))
+    depth[4, 1], depth[:, 2] = 205.1, 12.0
+    found, notes = torn(measured(depth), np.array([0.0, 100.0, 250.0]), LABELS[2:3])
+    assert np.argwhere(np.isnan(found.depth)).tolist() == [[4, 1]] and len(notes) == 1
