@@ -45,7 +45,7 @@ def test_all_sensors_off_alike_are_named(datum, named):
     found = datum_remarks(replace(common((0.0, 0.0)), datum=datum), 300.0)
     assert len(found) == named
     for one in found:
-        assert one.startswith(f"all sensors: {datum:+.1f} m off alike: the depth of the water")
+        assert one.startswith(f"all sensors: {datum:+.1f} m from the line: the depth of the water")
 
 
 @pytest.mark.parametrize(
