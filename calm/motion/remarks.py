@@ -200,8 +200,8 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
-        f"all sensors: {common.datum:+.1f} m from the line: the depth of the water, a length, or the "
-        "zero of the pressures is wrong"
+        f"all sensors: {common.datum:+.1f} m from the line: the depth of the water, a length, or "
+        "the zero of the pressures is wrong"
     ]
 
 
