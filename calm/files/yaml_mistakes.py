@@ -6,6 +6,8 @@ import re
 
 from yaml.error import Mark, MarkedYAMLError
 
+from calm.errors import shown
+
 Mistake = tuple[int, int, str]
 """Line and column, counted from 1, and the message."""
 
@@ -17,8 +19,8 @@ def without_colon(text: str) -> str:
     """Return the message about a key without a colon, or without a blank after it."""
     key, colon, value = text.partition(":") if ":" in text else text.partition(" ")
     lacking = "blank after its colon" if colon == ":" else "colon"
-    meant = f"{key.strip()}: {value.strip()}".strip()
-    return f"`{text}` has no {lacking}; did you mean `{meant}`?"
+    meant = f"{shown(key)}: {shown(value)}".strip()
+    return f"`{shown(text)}` has no {lacking}; did you mean `{meant}`?"
 
 
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:

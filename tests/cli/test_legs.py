@@ -586,7 +586,7 @@ def test_the_deck_of_a_net_lists_it_leg_by_leg(
     net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run("deck", net, "-o", tmp_path / "deck") == 0
-    assert "launch, recovery and waves are not judged" in capsys.readouterr().err
+    assert "launch, recovery and waves are not checked" in capsys.readouterr().err
     sheets = {
         name: [*csv.DictReader((tmp_path / "deck" / f"{name}.csv").read_text().splitlines())]
         for name in ("deployment", "recovery", "cutting", "lifts", "parts")

@@ -127,7 +127,7 @@ def test_calm_missing_there_is_told(tmp_path, started):
     address = address_of(started(*SCHEDULER, calm=hidden))
     started(*worker_of(address), calm=hidden)
     mooring, record = made_mooring(tmp_path), MadeRecord(20)
-    with pytest.raises(UsageError, match=r"calm-mooring \d.* is needed there too"):
+    with pytest.raises(UsageError, match=r"install calm-mooring \d.* there, too"):
         run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
     assert [path.name for path in tmp_path.glob("*.nc*")] == []
 

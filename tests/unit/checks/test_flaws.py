@@ -950,7 +950,7 @@ def _says_what_it_means(finding: Finding) -> None:
         assert finding.margin is None or finding.margin < 0.0
     if finding.value is not None and finding.limit is not None:
         room = finding.limit - finding.value
-        at_least = finding.rule in AT_LEAST and "Beyond 3 m/s" not in finding.message
+        at_least = finding.rule in AT_LEAST and "above 3 m/s" not in finding.message
         assert finding.margin == pytest.approx(-room if at_least else room)
     if finding.state == "unknown":
         assert finding.limit is None and finding.margin is None
