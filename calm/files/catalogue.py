@@ -348,7 +348,7 @@ def entries_of(definitions: SourceMapping, family: str | None) -> list[Catalogue
         if isinstance(fields, dict):
             entries.append(CatalogueEntry(id, family, definitions.child(id)))
         else:
-            definitions.refuse((id,), f"`{id}` must hold `key: value` entries")
+            definitions.refuse((id,), f"`{shown(id)}` must hold `key: value` entries")
     return entries
 
 

@@ -70,7 +70,7 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
         if problem.endswith("got ':'"):
             text = re.split(r"[{\[,]", lines[mark.line][: mark.column])[-1].strip()
             advice = "add a comma before the next key, or put the text in quotes"
-            return _at(mark, f"`{text}:` has two colons; {advice}")
+            return _at(mark, f"`{shown(text)}:` has two colons; {advice}")
     if problem.endswith(("found '}'", "found ']'")):
         return _at(mark, f"`{problem[-2]}` closes nothing")
     if "expected <block end>" in problem:
@@ -90,7 +90,7 @@ def _colon(lines: list[str], mark: Mark) -> Mistake | None:
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
         name, value = key[0].strip(), line[key.end() :].strip()
-        return _at(mark, f'a text with a colon must be in quotes: `{name} "{value}"`')
+        return _at(mark, f'a text with a colon must be in quotes: `{shown(name)} "{shown(value)}"`')
     above = _above(lines, mark.line)
     if above is None:
         return None
