@@ -181,7 +181,7 @@ def refused_at_once(limits: Limits) -> int:
 
 
 def is_heap(problem: LineProblem, arrays: ProfileArrays) -> bool:
-    """Return whether a sub-surface line has a piece on the seabed that may not lie there."""
+    """Return whether a piece of a sub-surface line lies on the seabed where it must not."""
     found, record = problem.work.found, problem.work.records[FINE]
     if found[SOUGHT] != BELOW:
         return False

@@ -196,7 +196,7 @@ def _check_missing(
 ) -> None:
     """Refuse a block of missing figures that could not be written, before anything is solved."""
     if output is not None and not missing:
-        raise UsageError("-o is the file of --missing; for the findings, use --json or --report")
+        raise UsageError("-o needs --missing; to write the findings, use --json or --report")
     if missing and any(other):
         raise UsageError(
             "--missing replaces the findings and cannot be combined with other outputs"

@@ -110,7 +110,7 @@ def judge(
 
 
 def load_ahead(environments: int, drawn: bool) -> None:
-    """Import the modules that judging so many moorings needs, before processes are forked.
+    """Import the modules needed for this number of environments, before processes are forked.
 
     The compiled solver is loaded if it is in the cache.
     """

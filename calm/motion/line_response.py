@@ -51,7 +51,7 @@ class LineResponse:
         return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
 
     def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
-        """Return the line for factors on the currents, with logarithms (n, g), and its slopes."""
+        """Return depths and slopes for factors of the currents, given as logarithms (n, g)."""
         there = self.depths(way, logs)
         own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(way, logs, forward) for forward in self.shifted.values()]

@@ -191,7 +191,7 @@ _STANDARD = (
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Return times, rising, and the height of the sea surface above a datum [m].
+    """Return increasing times and the height of the sea surface above a datum [m].
 
     InputError: the file is unreadable, has no height with a unit, or has an impossible height.
     """

@@ -124,7 +124,7 @@ def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("-o", "x.yaml"), "-o is the file of --missing"),
+        (("-o", "x.yaml"), "-o needs --missing"),
         (("--missing", "--json", "-"), "--missing replaces the findings"),
         (("--missing", "-o", "m.yaml"), "m.yaml would overwrite the file that is read"),
     ],

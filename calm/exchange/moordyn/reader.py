@@ -120,7 +120,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     tables, options = _read_sections(path)
     for name in ("bodies", "rods"):
         for row in tables[name]:
-            raise row.refuse(f"{name}: CALM has moorings without bodies and rods of MoorDyn")
+            raise row.refuse(f"{name}: CALM does not support the bodies and rods of MoorDyn")
     points = {row.words.get("id", ""): row for row in tables["points"]}
     lines = tables["lines"]
     if not points or not lines:
