@@ -150,7 +150,7 @@ REFUSED = {
         "---------------------- POINTS",
         "---------------------- BODIES ----\nID Attachment X0\n(#) (-) (m)\n1 coupled 0\n"
         "---------------------- POINTS",
-        "without bodies",
+        "does not support the bodies",
     ),
 }  # fmt: skip
 

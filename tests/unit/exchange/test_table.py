@@ -525,7 +525,7 @@ NOT_UNDERSTOOD = {
         FRENCH.replace("0,05", "0.05"),
         "has decimal points, `0.05` (row 6), and decimal commas, `0,4` (row 2)",
     ),
-    "thousands or decimals": (DOUBTFUL, "`1.250` (row 3) is 1250 or 1.250; write one of these"),
+    "thousands or decimals": (DOUBTFUL, "`1.250` (row 3) may be 1250 or 1.250; write one of these"),
     "ropes beside pieces": (
         ENGLISH.replace("Cd,", "Length of rope below (m),"), "a line needs a row of its own"
     ),
