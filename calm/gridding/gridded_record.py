@@ -51,7 +51,7 @@ class GriddedRecord:
     Attributes
     ----------
     fields : samples and correlation scales of each quantity
-    names : name of each quantity in the dataset
+    names : title of each quantity in the dataset
     levels : (k,) depths of the levels [m]
     cards : summary card of each file
     notes : notes on the input, in sentences
