@@ -14,6 +14,11 @@ from calm.files.definition import Text, described, optional
 from calm.files.yaml_document import SourceMapping, validate
 
 
+def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
+    """Return the serial numbers in the value of a key `serial`, which may be a text or a list."""
+    return (given,) if isinstance(given, str) else given or ()
+
+
 class Equipment(definition.Model):
     """Keys for the individual equipment at a position of the line.
 
@@ -45,7 +50,7 @@ class Equipment(definition.Model):
     @property
     def serials(self) -> tuple[str, ...]:
         """Return the serial numbers of a piece."""
-        return (self.serial,) if isinstance(self.serial, str) else self.serial or ()
+        return listed_serials(self.serial)
 
     def of(self, repeat: int, items: int) -> Equipment:
         """Return the equipment of the piece number `repeat` (from 0) in a row with a count, with

@@ -14,6 +14,7 @@ from calm.files import definition
 from calm.files.check_limits import Day
 from calm.files.definition import Text, described, optional
 from calm.files.environment import Position
+from calm.files.item_keys import listed_serials
 from calm.files.yaml_document import SourceMapping
 from calm.quantities import SHOWN_UNITS
 from calm.records.current_terms import TimeChoiceError, parse_time
@@ -183,11 +184,7 @@ class Deployed(definition.Model):
     @property
     def serials(self) -> dict[str, tuple[str, ...]]:
         """Serial numbers of deployed items, by label; items without numbers are omitted."""
-        return {
-            one.label: (one.serial,) if isinstance(one.serial, str) else one.serial
-            for one in self.items
-            if one.serial
-        }
+        return {one.label: listed_serials(one.serial) for one in self.items if one.serial}
 
 
 def check_deployed(

@@ -221,16 +221,15 @@ _MOST_BREAKS = 10
 def _breaks(assessment: Assessment) -> Table:
     """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
     parts = {piece.index: piece for piece in assessment.file.pieces}
-    section = {None: "the top"}
-
-    def section_of(one: Break) -> str:
+    groups: dict[str, list[Break]] = {}
+    section = "the top"
+    for one in assessment.backup:
         piece = parts.get(one.break_after)
         if piece is None or piece.component.role in ("line", "float", "release"):
-            section[None] = one.label
-        return section[None]
-
+            section = one.label
+        groups.setdefault(section, []).append(one)
     rows: list[tuple[str, Break | Loss]] = []
-    for name, breaks in grouped_by(assessment.backup, section_of).items():
+    for name, breaks in groups.items():
         judged = [one for one in breaks if one.judged]
         if judged:
             worst = min(judged, key=lambda one: one.margin - one.required)

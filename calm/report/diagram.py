@@ -8,7 +8,7 @@ from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case.leg_result import LegResult
-from calm.checks.finding import environment_text
+from calm.checks.finding import DEFAULT_ENVIRONMENT, OWN
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
@@ -325,7 +325,7 @@ _Fields = tuple[tuple[str, tuple[str, ...]], ...]
 
 def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
     """Return the rows of a mooring's title block, without the page number."""
-    environment = environment_text(deck.environment).removeprefix("environment ")
+    environment = DEFAULT_ENVIRONMENT if deck.environment == OWN else deck.environment
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
     columns = _COLUMNS[paper]
     room = (paper.size[0] - 2 * _MARGIN) / columns - 2 * _PAD

@@ -93,7 +93,6 @@ def _key(same: Sequence[MissingFigure]) -> list[str]:
     """Yield the lines for a key that one or several moorings lack."""
     first = same[0]
     field = KINDS[first.kind].model_fields[first.quantity]
-    assert field.examples is not None  # every quantity describes itself by an example
     meaning = (field.description or "").partition(", e.g.")[0]
     instead = "".join(f", or `{key}`" for key in alternatives(first.quantity)[1:])
     rules = dict.fromkeys(RULES[rule].title.lower() for one in same for rule in one.needed_by)
