@@ -136,6 +136,7 @@ class Terminal:
             ["-m", "calm", "build", str(file)],
             dimensions=(rows, columns),
             timeout=PATIENCE,
+            env=os.environ | {"XDG_STATE_HOME": str(file.parent / "state")},
         )
         self.child.delaybeforesend = 0
         self.first = seconds(lambda: self.until(said))

@@ -32,6 +32,7 @@ def folder(tmp_path, monkeypatch):
     for name in ("CALM_DEBUG", "NO_COLOR", "FORCE_COLOR", "COLUMNS", "CALM_CATALOG_DIR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "configuration"))
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     work = tmp_path / "work"
     work.mkdir()
     monkeypatch.chdir(work)

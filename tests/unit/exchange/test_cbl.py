@@ -142,10 +142,16 @@ def test_formulas_without_a_value_are_refused(formula):
         constant(formula)
 
 
-@pytest.mark.parametrize("formula", ["(" * 5000 + "1" + ")" * 5000, "-" * 9000 + "1"])
+@pytest.mark.parametrize(
+    ("formula", "says"),
+    [
+        ("(" * 5000 + "1" + ")" * 5000, "parentheses are nested too deeply"),
+        ("-" * 9000 + "1", "too many consecutive signs"),
+    ],
+)
 @pytest.mark.thorough
-def test_towers_of_signs_are_refused(formula):
-    with pytest.raises(InputError, match=r"too deeply|too many consecutive signs"):
+def test_towers_of_signs_are_refused(formula, says):
+    with pytest.raises(InputError, match=says):
         constant(formula)
 
 
