@@ -111,7 +111,7 @@ class Visit:
                 const begun = performance.now();
                 let last = 0;
                 const writes = terminal.onWriteParsed(() => { last = performance.now(); });
-                keys.forEach((text) => send({ kind: "type", text }));
+                keys.forEach(([kind, text]) => send({ kind, text }));
                 const done = () => last && performance.now() - last > 1500;
                 while (!done()) await new Promise((then) => setTimeout(then, 20));
                 writes.dispose();
@@ -140,8 +140,10 @@ def test_a_line_is_opened_edited_saved_and_printed(visit, tmp_path):
     page.select_option("#examples", "s1000.yaml")
     visit.shows(r"s1000\.yaml")
     visit.shows(r"131\.4")  # the depth of the float, as `calm run` has it
-    print("cursor key, ms:", [visit.answer_ms(["\x1b[B"]), visit.answer_ms(["\x1b[A"])])
-    print("length of the cable edited, ms:", visit.answer_ms(["\x1b[B", "l", "990 m", "\r"]))
+    down, up = [["key", "down"]], [["key", "up"]]
+    print("cursor key, ms:", [visit.answer_ms(down), visit.answer_ms(up)])
+    edit = [*down, ["type", "l"], ["type", "990 m"], ["key", "enter"]]
+    print("length of the cable edited, ms:", visit.answer_ms(edit))
     visit.shows(r"990")
     page.click("#actions >> text=Undo")
     visit.shows(r"1000")
