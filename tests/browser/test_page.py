@@ -215,13 +215,13 @@ def test_it_works_without_a_network_and_goes_on_where_it_was(browser, address):
     first.page.wait_for_timeout(2000)
     first.page.keyboard.press("1")
     first.shows("not saved")
-    first.page.wait_for_timeout(8000)  # files are written to the browser every 3 s
+    first.page.wait_for_timeout(3000)  # the work is kept
     first.page.close()
     context.set_offline(True)
     Files.asked.clear()
     again = Visit(context, address)
     again.shows("mooring.yaml")
-    again.shows("not saved")  # the work of the first visit is offered
+    again.shows("Unsaved work")  # of the first visit
     again.picture("page-offline")
     looked_for = {each.partition("?")[0] for each in Files.asked}
     assert looked_for <= {"/offline.js"}  # whether there is a new version

@@ -179,7 +179,7 @@ async function start() {
   // the bar
   function button(place, title, message, hint = "") {
     const made = Object.assign(document.createElement("button"), { textContent: title, title: hint });
-    made.onclick = () => { send(message); terminal.focus(); };
+    made.onclick = () => { tell(""); send(message); terminal.focus(); };
     $(place).append(made);
     return made;
   }
