@@ -266,8 +266,9 @@ class RecoveredMooring:
         output, workers, progress, tell : see `calm.batch.run.run_batch`, also for the return value
         """
         task = self._prepared(tell)
-        found = diagnosed(task) if self.correct else ()
-        wrong = [one for one in found if one.kind in self.correct and one.certain]
+        if self.correct:
+            task = replace(task, faults=diagnosed(task))
+        wrong = [one for one in task.faults or () if one.kind in self.correct and one.certain]
         if wrong:
             self._faults = tuple(replace(one, corrected=True) for one in wrong)
             self._read()
