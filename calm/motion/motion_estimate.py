@@ -16,7 +16,7 @@ from calm.batch.blocks import Progress, in_threads, write_solved
 from calm.batch.finished import open_result
 from calm.batch.resolved import InputHash, resolved_input, with_input
 from calm.case import Design
-from calm.dataset.discovery import hashed
+from calm.dataset.discovery import hashed, vertical_extent
 from calm.errors import UsageError, not_among, unknown
 from calm.files.mooring_file import refuse_all_but_moorings
 from calm.motion import matching, sensors
@@ -266,8 +266,9 @@ class RecoveredMooring:
         output, workers, progress, tell : see `calm.batch.run.run_batch`, also for the return value
         """
         task = self._prepared(tell)
-        found = diagnosed(task) if self.correct else ()
-        wrong = [one for one in found if one.kind in self.correct and one.certain]
+        if self.correct:
+            task = replace(task, faults=diagnosed(task))
+        wrong = [one for one in task.faults or () if one.kind in self.correct and one.certain]
         if wrong:
             self._faults = tuple(replace(one, corrected=True) for one in wrong)
             self._read()
@@ -288,8 +289,12 @@ class RecoveredMooring:
         more = {**with_input(text), **measured.attributes()}
         layout = replace(layout, attributes={**layout.attributes, **more})
         starts = range(0, len(self.measured.time), BLOCK)
-        with closing(in_threads(partial(solve_times, task, layout), starts, workers)) as solved:
-            return write_solved(layout, BLOCK, solved, output, progress)
+        extent: list[np.float32] = []
+        solve = partial(solve_times, task, layout, extent)
+        with closing(in_threads(solve, starts, workers)) as solved:
+            return write_solved(
+                layout, BLOCK, solved, output, progress, lambda: vertical_extent(np.array(extent))
+            )
 
     def study(
         self,
