@@ -158,7 +158,7 @@ def full_sea_period(height: float) -> float:
     return 2.0 * pi / sqrt(0.16 * 9.80665 / height)
 
 
-def spectrum_of(kind: str, height: float, period: float | None, gamma: float) -> SeaState:
+def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3.3) -> SeaState:
     """Return the sea of a named spectrum.
 
     Parameters
@@ -342,7 +342,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
     return frequency, density[:, int(np.trapezoid(density, frequency, axis=0).argmax())]
 
 
-def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
+def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     """Return the seas of a scatter table, each with its share of the time.
 
     The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
