@@ -11,6 +11,7 @@ import os
 import re
 import shutil
 import threading
+import time
 import zipfile
 from pathlib import Path
 
@@ -40,6 +41,18 @@ SCREEN = """() => {
 }"""
 
 
+KEPT = """() => new Promise((done) => {
+    indexedDB.open("/moorings").onsuccess = ({ target: { result } }) => {
+        const names = result.transaction("FILE_DATA").objectStore("FILE_DATA").getAllKeys();
+        names.onsuccess = () => {
+            result.close();
+            done(names.result.some((name) => name.endsWith(".calm-autosave")));
+        };
+    };
+})"""
+"""Whether the browser has a copy of unsaved work."""
+
+
 class Files(http.server.SimpleHTTPRequestHandler):
     """A server of files, nothing else; what was asked for is noted."""
 
@@ -60,6 +73,13 @@ class Elsewhere(Files):
         self.send_header("Access-Control-Allow-Origin", "*")
         self.send_header("Cache-Control", "no-store")  # by the browser itself
         super().end_headers()
+
+
+def until(condition):
+    deadline = time.monotonic() + PATIENCE / 1e3
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.2)
 
 
 @contextlib.contextmanager
@@ -253,10 +273,10 @@ def test_it_works_without_a_network_and_goes_on_where_it_was(browser, address):
     first.page.click("text=New")
     first.shows("The line is empty")
     first.page.keyboard.type("b")  # begins with a mooring: the first of the list
-    first.page.wait_for_timeout(2000)
+    first.shows("Begin with")
     first.page.keyboard.press("1")
     first.shows("not saved")
-    first.page.wait_for_timeout(3000)  # the work is kept
+    until(lambda: first.page.evaluate(KEPT))
     first.page.close()
     context.set_offline(True)
     Files.asked.clear()
