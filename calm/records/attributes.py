@@ -33,6 +33,7 @@ _UNTURNED = re.compile(
     r"(?i)(magnetic_?)?(declination|variation|deviation)_?(is_?)?(applied|corrected)"
 )
 _DATUM = re.compile(r"(?i)(\w+_)?(north|datum|reference|coord\w*_?sys\w*)(_\w+)?")
+_NORTH_IN = ("long_name", "standard_name", "units")
 _NO = ("0", "0.0", "no", "false", "n", "none", "not applied")
 _TOWARD = re.compile(r"\bto direction\b|\btowards?\b|\bflow(s|ing)? to\b|\bgoing to\b|\bset\b")
 _FROM = re.compile(r"\bfrom direction\b|\bdirection from\b|\bcom(es|ing) from\b|\bfrom which\b")
@@ -46,10 +47,14 @@ _BOTTOM_TRACK = re.compile(r"(?i)vel_bt|bt_vel\w*|bottom_?track_?vel\w*|[uv]_?bt
 _MOVING = 0.1  # m/s over the ground: median speeds above this exclude a mooring
 
 
-def words_of(variable: xr.DataArray, *attributes: str) -> str:
-    """Join the given attributes of a variable as lower-case words, separated by single blanks."""
-    text = " ".join(str(variable.attrs.get(name, "")) for name in attributes)
+def words_in(text: str) -> str:
+    """Return the lower-case words of a text, separated by single blanks."""
     return re.sub(r"[\W_]+", " ", text.lower()).strip()
+
+
+def words_of(variable: xr.DataArray, *attributes: str) -> str:
+    """Return the words of the given attributes of a variable."""
+    return words_in(" ".join(str(variable.attrs.get(name, "")) for name in attributes))
 
 
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
@@ -112,10 +117,7 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
     The evidence is its name, long name, standard name, unit or datum, or an attribute of the
     variable or dataset such as `magnetic_declination_applied: no`.
     """
-    own = f"{variable.name} " + " ".join(
-        str(variable.attrs.get(name, "")) for name in ("long_name", "standard_name", "units")
-    )
-    if _is_magnetic_text(own):
+    if _is_magnetic_text(f"{variable.name} {words_of(variable, *_NORTH_IN)}"):
         return True
     for name, value in (*variable.attrs.items(), *dataset.items()):
         if _UNTURNED.fullmatch(str(name)):
@@ -137,7 +139,7 @@ def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyTyp
 
 
 def _is_magnetic_text(text: str) -> bool:
-    words = re.sub(r"[\W_]+", " ", text.lower())
+    words = words_in(text)
     return bool(_MAGNETIC.search(words)) and not _TRUE.search(words)
 
 

@@ -138,19 +138,15 @@ def open_current(path: Path) -> xr.Dataset:
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
-    if path.is_dir():
-        _refuse_large(path)
-        return xr.open_dataset(
-            path, engine="zarr", decode_times=False, cache=False, consolidated=False
-        )
-    engine = engine_of(path)
+    engine = "zarr" if path.is_dir() else engine_of(path)
     if not engine and (read := reader_of(path)):
         return read(path)
-    _refuse_large(path)
-    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
+    _refuse_large(path, engine)
+    own: dict[str, Any] = {"consolidated": False} if engine == "zarr" else {}
+    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False, **own)
 
 
-def _refuse_large(path: Path) -> None:
+def _refuse_large(path: Path, engine: str) -> None:
     """Reject a file that declares more values than may be read at once.
 
     The check precedes all reading. One-dimensional variables are read whole, others by their
@@ -158,34 +154,30 @@ def _refuse_large(path: Path) -> None:
 
     UnreadableError: names the variable.
     """
-    declared: list[tuple[str, Any]] = []
-    if path.is_dir():
+
+    def check(name: str, array: Any) -> None:
+        shape = getattr(array, "shape", None) or ()
+        at_once = shape if len(shape) < 2 else getattr(array, "chunks", None) or ()
+        _refuse_many(name, prod(at_once))
+
+    if engine == "zarr":
         import zarr
 
-        declared += zarr.open_group(path, mode="r").arrays()
-    elif engine_of(path) == "h5netcdf":
+        for name, array in zarr.open_group(path, mode="r").arrays():
+            check(name, array)
+    elif engine == "h5netcdf":
         import h5py
 
         with h5py.File(path, "r") as file:
-            file.visititems(lambda name, one: declared.append((name, one)))
-            _check_sizes(declared)
-        return
-    _check_sizes(declared)
+            file.visititems(check)
 
 
-def _check_sizes(declared: Iterable[tuple[str, Any]]) -> None:
-    for name, array in declared:
-        shape = getattr(array, "shape", None) or ()
-        at_once = shape if len(shape) < 2 else getattr(array, "chunks", None) or ()
-        if prod(at_once) > MOST_VALUES:
-            raise UnreadableError(_too_large(name, prod(at_once)))
-
-
-def _too_large(name: object, count: int) -> str:
-    return (
-        f"`{name}` has {count:,} values to be read at once, more than {MOST_VALUES:,}: give a part "
-        "of it (`ncks -d`)"
-    )
+def _refuse_many(name: object, count: int) -> None:
+    if count > MOST_VALUES:
+        raise UnreadableError(
+            f"`{name}` has {count:,} values to be read at once, more than {MOST_VALUES:,}: give a "
+            "part of it (`ncks -d`)"
+        )
 
 
 def engine_of(path: Path) -> str:
@@ -282,8 +274,7 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
     `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: they refer to packed
     values if they have the packed type.
     """
-    if variable.size > MOST_VALUES:
-        raise UnreadableError(_too_large(variable.name, variable.size))
+    _refuse_many(variable.name, variable.size)
     values = np.array(variable.values, np.float64)
     low, high = valid_range(variable)
     if low > -inf or high < inf:

@@ -212,8 +212,9 @@ def _of_file(
         for part in instruments_apart(velocity.with_components(dataset)):
             file = _SeriesFile(part, path.name, flags, seabed, nominal)
             mine = [(name, one) for name in names for one in file.series(name)]
-            whole = joined_cards([one.card for _, one in mine if one.card is not None])
-            found += [(name, replace(one, card=whole)) for name, one in mine]
+            if cards := [one.card for _, one in mine if one.card is not None]:
+                whole = joined_cards(cards)
+                found += [(name, replace(one, card=whole)) for name, one in mine]
         if not found:
             raise UnreadableError(f"holds no {' or '.join(names)}")
     series = with_one_card([one for _, one in found])
@@ -370,7 +371,6 @@ class _SeriesFile:
         return float(np.median(known)) if known.size else float("nan")
 
     def _velocity(self, quantity: MeasuredQuantity) -> velocity.Velocity | None:
-        """Return the velocity of the file; None if it has none."""
         try:
             current = velocity.find_velocity(self.dataset, regular=False)
         except UnreadableError:

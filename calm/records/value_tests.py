@@ -136,7 +136,6 @@ def _levels(depth: Floats, known: NDArray[np.bool_]) -> Floats:
 
 
 def _median(values: Floats) -> float:
-    """Return the median of the finite values, or NaN."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if known.size else np.nan
 

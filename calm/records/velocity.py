@@ -126,22 +126,21 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)
     direction, sense = _direction(dataset, regular, notes)
-    if speed is not None and direction is not None and sense is not None:
-        notes.append(f"`{direction}` is the direction the current {_SENSES[sense]}")
-        turn = 0.0 if sense == "to" else 180.0
-        magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
-        true = attributes.is_true(dataset[direction], dataset.attrs)
-        return Velocity((speed, direction), up, turn, magnetic_north, true, tuple(notes))
-    if speed is not None and direction is not None:
+    if speed is None or direction is None:
         raise UnreadableError(
-            f"`{direction}` is ambiguous: the current may flow to this direction or come from "
-            f"it; its `standard_name` should be {_TOWARD.standard[0]} or "
-            f"{_FROM.standard[0]}"
+            "holds no current: CALM searches for eastward and northward velocity, or speed and "
+            "direction to or from, by CF standard name, then by usual name"
         )
-    raise UnreadableError(
-        "holds no current: CALM searches for eastward and northward velocity, or speed and "
-        "direction to or from, by CF standard name, then by usual name"
-    )
+    if sense is None:
+        raise UnreadableError(
+            f"`{direction}` is ambiguous: the current may flow to this direction or come from it; "
+            f"its `standard_name` should be {_TOWARD.standard[0]} or {_FROM.standard[0]}"
+        )
+    notes.append(f"`{direction}` is the direction the current {_SENSES[sense]}")
+    turn = 0.0 if sense == "to" else 180.0
+    magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
+    true = attributes.is_true(dataset[direction], dataset.attrs)
+    return Velocity((speed, direction), up, turn, magnetic_north, true, tuple(notes))
 
 
 def _direction(
