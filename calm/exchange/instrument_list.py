@@ -103,7 +103,7 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     elif re.search(rb"(?mi)^\s*columns\s*=.*\binstrument\b", head):
         found = [*_of_rodb(path)]
     else:
-        found = [*_of_table(path, seabed, _of_workbook(path) if is_workbook(head) else None)]
+        found = _of_table(path, seabed, _of_workbook(path) if is_workbook(head) else None)
     found = [one for one in found if one.serial or one.nominal == one.nominal]
     if not found:
         raise refused(path, "lists no instrument with a serial number or a nominal depth")
@@ -204,7 +204,7 @@ def _kind_of(name: str) -> str | None:
 
 def _of_table(
     path: Path, seabed: float, lines: list[NumberedLine] | None
-) -> Iterator[ListedInstrument]:
+) -> list[ListedInstrument]:
     table, problems = read_table(path, _EXAMPLE, lines), list[Problem]()
     places: dict[str, int] = {}
     factors: dict[str, float] = {}
@@ -226,32 +226,28 @@ def _of_table(
     if not {"serial", "nominal", "height"} & places.keys():
         message = f"there is no column for serial numbers or nominal depths: write {_EXAMPLE}"
         problems.append(table.header.problem(message))
-    rows = table.whole_rows(problems)
-    times: dict[int, dict[str, np.datetime64]] = {}
-    for row in rows:
-        times[row.number] = {}
-        for kind in places.keys() & {*_TIMES}:
-            try:
-                if not is_gap(cell := row.cells[places[kind]]):
-                    times[row.number][kind] = _time(cell)
-            except TimeChoiceError as error:
-                problems.append(row.problem(str(error), places[kind]))
-        for kind in factors:
-            cell = row.cells[places[kind]]
-            if not is_gap(cell) and (complaint := no_number(cell)):
-                problems.append(row.problem(f"`{cell}` {complaint}", places[kind]))
+    found = []
+    for row in table.whole_rows(problems):
+        texts = {kind: row.cells[j].strip() for kind, j in places.items()}
+        figures, times = dict[str, float](), dict[str, np.datetime64]()
+        for kind in (kind for kind in texts if not is_gap(texts[kind])):
+            if kind in _TIMES:
+                try:
+                    times[kind] = _time(texts[kind])
+                except TimeChoiceError as error:
+                    problems.append(row.problem(str(error), places[kind]))
+            elif kind in factors:
+                if complaint := no_number(texts[kind]):
+                    problems.append(row.problem(f"`{texts[kind]}` {complaint}", places[kind]))
+                else:
+                    figures[kind] = float(texts[kind]) * factors[kind]
+        found.append(
+            ListedInstrument(
+                f"{path.name}, line {row.number}", texts.get("name", ""), texts.get("serial", ""),
+                figures.get("nominal", seabed - figures.get("height", nan)),
+                *_comparison(figures.get("clock"), times),
+            )
+        )  # fmt: skip
     if problems:
         raise InputError(problems)
-    for row in rows:
-        texts = {kind: row.cells[j].strip() for kind, j in places.items()}
-        known = {
-            kind: float(texts[kind]) * factor
-            for kind, factor in factors.items()
-            if not is_gap(texts[kind])
-        }
-        nominal = known.get("nominal", seabed - known["height"] if "height" in known else nan)
-        where = f"{path.name}, line {row.number}"
-        clock = _comparison(known.get("clock"), times[row.number])
-        yield ListedInstrument(
-            where, texts.get("name", ""), texts.get("serial", ""), nominal, *clock
-        )
+    return found
