@@ -7,7 +7,7 @@ quotes it for the reader.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -117,25 +117,25 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
     The evidence is its name, long name, standard name, unit or datum, or an attribute of the
     variable or dataset such as `magnetic_declination_applied: no`.
     """
-    if _is_magnetic_text(f"{variable.name} {words_of(variable, *_NORTH_IN)}"):
-        return True
-    for name, value in (*variable.attrs.items(), *dataset.items()):
-        if _UNTURNED.fullmatch(str(name)):
-            if str(value).strip().lower() in _NO:
-                return True
-        elif _DATUM.fullmatch(str(name)) and _is_magnetic_text(str(value)):
-            return True
-    return False
+    own = f"{variable.name} {words_of(variable, *_NORTH_IN)}"
+    return _is_magnetic_text(own) or "magnetic" in _norths(variable, dataset)
 
 
 def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether attributes of the variable or dataset refer directions to true north."""
+    return "true" in _norths(variable, dataset)
+
+
+def _norths(variable: xr.DataArray, dataset: Mapping[Any, Any]) -> Iterator[str]:
+    """Yield the north, `magnetic` or `true`, that each attribute states."""
     for name, value in (*variable.attrs.items(), *dataset.items()):
-        if _UNTURNED.fullmatch(str(name)) and str(value).strip().lower() not in _NO:
-            return True
-        if _DATUM.fullmatch(str(name)) and re.search(r"(?i)\btrue\b", str(value)):
-            return True
-    return False
+        text = str(value)
+        if _UNTURNED.fullmatch(str(name)):
+            yield "magnetic" if text.strip().lower() in _NO else "true"
+        elif _DATUM.fullmatch(str(name)) and _is_magnetic_text(text):
+            yield "magnetic"
+        elif _DATUM.fullmatch(str(name)) and re.search(r"(?i)\btrue\b", text):
+            yield "true"
 
 
 def _is_magnetic_text(text: str) -> bool:

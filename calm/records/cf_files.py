@@ -42,27 +42,21 @@ _HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
 _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
 
 _KINDS = {
-    b"MATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
-    b"GRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
-    b"\x0e\x03\x13\x01": "an HDF 4 file; turn it into NetCDF",
-    b"PK\x03\x04": "a packed file or a spreadsheet; unpack it, or save the sheet as CSV",
-    b"\xd0\xcf\x11\xe0": "a spreadsheet; save it as CSV",
-    b"\x1f\x8b": "a packed file; unpack it first (`gunzip`)",
-    b"\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
-    b"\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
-}
-"""First bytes of unsupported files that may hold currents, and the remedy for each kind."""
-
-
-_SHELLS = {
+    rb"\AMATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
+    rb"\AGRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
+    rb"\A\x0e\x03\x13\x01": "an HDF 4 file; turn it into NetCDF",
+    rb"\APK\x03\x04": "a packed file or a spreadsheet; unpack it, or save the sheet as CSV",
+    rb"\A\xd0\xcf\x11\xe0": "a spreadsheet; save it as CSV",
+    rb"\A\x1f\x8b": "a packed file; unpack it first (`gunzip`)",
+    rb"\A\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
+    rb"\A\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
     rb"(?m)^\s*ODF_HEADER\b": "an ODF file of Fisheries and Oceans Canada; turn it into NetCDF "
     "(`ocean-data-parser` does)",
     rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; turn it into NetCDF "
     "(`ocean-data-parser` does)",
 }
-"""Line near the start of unsupported text files that may hold currents, and the remedy."""
-
-_SHELL = 400  # number of bytes searched
+"""Bytes near the start of unsupported files that may hold currents, and the remedy."""
+_HEAD = 400  # number of bytes searched
 
 _ENGINES = {b"\x89HDF": "h5netcdf", **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "scipy")}
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
@@ -84,10 +78,8 @@ def holds_arrays(path: Path) -> bool:
     if not path.is_file():  # opening a pipe or a device could block
         raise refused(path, "is not a regular file" if path.exists() else no_such_file(path))
     with path.open("rb") as file:
-        head = file.read(_SHELL)
-    begun = [kind for begin, kind in _KINDS.items() if head.startswith(begin)]
-    named = [kind for mark, kind in _SHELLS.items() if re.search(mark, head)]
-    for kind in (*begun, *named):
+        head = file.read(_HEAD)
+    for kind in (kind for mark, kind in _KINDS.items() if re.search(mark, head)):
         raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return bool(engine_of(path) or reader_of(path))
 

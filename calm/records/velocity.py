@@ -252,22 +252,18 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
         raise UnreadableError(f"`{name}` {reason}")
     _checked(dataset, name)
     labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
-    places = {
-        sense: next((labels.index(label) for label in wanted if label in labels), None)
-        for sense, wanted in _WAYS.items()
-    }
-    if places["east"] is None or places["north"] is None:
-        raise UnreadableError(
-            f"`{name}` has the directions {', '.join(labels)}, not E and N: rotate it to the "
-            "earth's coordinates first"
-        )
-    parts = {}
-    for sense, place in places.items():
-        if place is not None:
-            part = vector.isel({_DIRECTIONS: place}, drop=True)
-            units = vector.attrs.get("units", "")
+    units, parts = vector.attrs.get("units", ""), {}
+    for sense, wanted in _WAYS.items():
+        label = next((label for label in wanted if label in labels), None)
+        if label is not None:
+            part = vector.isel({_DIRECTIONS: labels.index(label)}, drop=True)
             part.attrs = {"units": units, "standard_name": f"{sense}ward_sea_water_velocity"}
-            parts[f"{name}[{labels[place]}]"] = part
+            parts[f"{name}[{label}]"] = part
+        elif sense != "up":
+            raise UnreadableError(
+                f"`{name}` has the directions {', '.join(labels)}, not E and N: rotate it to the "
+                "earth's coordinates first"
+            )
     return dataset.assign(parts)
 
 
