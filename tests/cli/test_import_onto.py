@@ -209,3 +209,14 @@ def test_the_label_of_a_part_is_enough(assigned):
 def test_lists_that_cannot_be_assigned_are_refused(assigned, text, said):
     done, written = assigned("list.csv", text)
     assert done.code == 2 and said in done.err and written == ""
+
+
+@pytest.mark.parametrize(("name", "old", "new", "said"), [
+    ("m.yml", "seconds: 12", "seconds: twelve", "m.yml:7:1: `twelve` is no number"),
+    ("m.yml", "2027-03-02T10:40:00\ninline", "soon\ninline", "`soon` is not a time"),
+    ("info.dat", "3222 12", "3222 x", "info.dat:4:1: `x` is no number"),
+    ("info.dat", "2027/03/02", "03/2027", "`03-2027 10:40` is not a time"),
+])  # fmt: skip
+def test_a_clock_that_cannot_be_read_is_refused(assigned, name, old, new, said):
+    done, written = assigned(name, CLOCKS[name].replace(old, new))
+    assert done.code == 2 and said in done.err and written == ""
