@@ -136,8 +136,9 @@ def _listed(
     time of this comparison is unknown, it is the time of recovery. Numbers times `factors` are SI.
     """
     figures, times, wrong = dict[str, float](), dict[str, np.datetime64](), dict[str, str]()
+    compared = not all(is_gap(texts.get(kind, "")) for kind in ("clock", "true"))
     for kind, text in texts.items():
-        if is_gap(text):
+        if is_gap(text) or (kind == "end" and not compared):
             continue
         if kind in _TIMES:
             try:

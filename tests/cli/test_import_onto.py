@@ -171,6 +171,16 @@ def test_a_clock_offset_with_the_time_of_its_check_corrects_the_times(assigned, 
     assert f"its clock was 12 s late at {CHECKED}" in " ".join(done.err.split())
 
 
+@pytest.mark.parametrize(("name", "old", "new"), [
+    ("info.dat", RODB, f"End_Date = unknown\n{RODB}"),
+    ("m.yml", "clamp:", "recovery_time: in May\nclamp:"),
+])  # fmt: skip
+def test_a_time_of_recovery_that_no_clock_needs_is_not_read(assigned, name, old, new):
+    done, written = assigned(name, {"info.dat": RODB, "m.yml": OCEANARRAY}[name].replace(old, new))
+    assert done.code == 0, done.err
+    assert "serial: 3223" in written
+
+
 def test_a_check_before_the_deployment_is_a_remark(assigned):
     text = CLOCKS["imos.csv"].replace("2027-03", "2025-03")
     done, written = assigned("list.csv", text)
