@@ -221,8 +221,8 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 def metals(handling: Handling) -> Iterator[Verdict]:
     """Report contacts between metals far apart in the galvanic series, if both materials are known.
 
-    Pieces and clamps that are `insulated` touch nothing. The jaws of clamps for instruments are of
-    plastic, so a clamp touches its line only if the component of the clamp has `insulated: false`.
+    Pieces and clamps that are `insulated` have no contact. Instrument clamps have plastic jaws, so
+    a clamp is in contact with its line only if its component has `insulated: false`.
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
@@ -245,7 +245,7 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
     """Yield the contacts of dissimilar metals: the less noble part, the more noble part, their
     potential difference [V].
 
-    A part that is `insulated` touches nothing.
+    A part that is `insulated` has no contact.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -311,7 +311,7 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
-"""Diameter range of jacketed wire for the wheels of moored profilers, 1/4 to 3/8 in [m]. Source:
+"""Diameter range of jacketed wire on which moored profilers travel, 1/4 to 3/8 in [m]. Source:
 McLane Moored Profiler, user manual.
 """
 
@@ -406,9 +406,9 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     grip, breaking = part.component.grip, part.component.breaking_load
     load = f"Load on the clamp of {part.label}{when} is {say('load', pull)}"
     if grip is not None:
-        message = f"{load}; it grips {say('load', grip)}."
+        message = f"{load}; its grip is {say('load', grip)}."
         return at_most(part, pull, grip, message, _HOLDS)
     if breaking is not None:
-        message = f"{load}; it breaks at {say('load', breaking)}."
+        message = f"{load}; its breaking load is {say('load', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
     return verdict_on(part, State.NOT_JUDGED, f"{load}; its `grip` is unknown.", value=pull)

@@ -364,8 +364,8 @@ RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 
 
 HANDLED = 64
-"""Number of samples for which launch and recovery are solved: the first samples of the sequence,
-which are a valid sequence themselves.
+"""Number of samples for which launch and recovery are solved: the first of the sequence, since the
+beginning of a Sobol' sequence is itself a valid sequence.
 """
 
 Key = tuple[str, "Place | None"]

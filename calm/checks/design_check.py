@@ -40,7 +40,7 @@ NOT_HANDLED = (
     "a net of legs: each leg is checked by the rules for a single line; launch, recovery and "
     "waves are not checked"
 )
-_NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
+_NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not computed.")
 
 
 def check(*designs: Design, day: date | None = None) -> Assessment:

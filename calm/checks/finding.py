@@ -27,7 +27,7 @@ DEFAULT_ENVIRONMENT = "default environment"
 """Printed name of the environment that is defined in the mooring file itself."""
 
 ON_THE_WAY = "launch, recovery, breaks"
-"""Label, instead of an environment, of rules that are evaluated once per mooring."""
+"""Label used in place of an environment name for rules that are evaluated once per mooring."""
 
 
 def environment_text(name: str) -> str:
@@ -438,8 +438,8 @@ def told_of_rule(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Select the findings to report for a rule: the governing one, and the worst one if its state
     is more severe.
 
-    Each has its own value, limit and component. The governing finding stands for other estimates
-    and accepted findings unless it passes.
+    Each has its own value, limit and component. Unless it passes, the governing finding also
+    represents other estimates and accepted findings.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)

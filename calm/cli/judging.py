@@ -1,4 +1,4 @@
-"""Designs solved and judged in all their environments, shared out over processes."""
+"""Solve and check designs in all their environments, in several processes."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def drawn_section(
 ) -> DrawnSection:
     """Draw the `number`th section of a report for HTML and PDF.
 
-    `against` is the mooring compared with the design that it came from.
+    `against` is the comparison of the mooring with its earlier design.
     """
     from calm.report.check_report import check_report, mooring_section, short_section
     from calm.report.folder import pdf_leaf, printed
@@ -81,16 +81,15 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Judge designs on one day: the day of the report, by default today.
+    """Check designs on the day of the report, by default today.  With many
+    moorings, each process solves, checks and draws whole moorings; with few, the
+    environments are distributed over the processes.
 
-    Processes share many moorings, and one process solves, judges and draws a mooring. They share
-    the environments of a few moorings.
-
-    Parameters
-    ----------
-    workers : number of processes; None for one on each core
-    drawn : how the sections of the report are drawn; None without a report
-    draws : samples and seed of the probabilities; None without them
+        Parameters
+        ----------
+        workers : number of processes; None for one on each core
+        drawn : settings for the report; None without a report
+        draws : samples and seed of the probabilities; None without them
     """
     from calm.report.provenance import moment
 

@@ -1,4 +1,4 @@
-"""Reading lines, and the moorings of a design check in all the environments it is judged in."""
+"""Read lines, and the moorings of a design check in all their environments."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def read_all(
 
 @dataclass(frozen=True)
 class DesignFile:
-    """A mooring file, under a name that no other has, read in each of its environments."""
+    """A mooring file with a unique name, read in each of its environments."""
 
     path: Path
     name: str
@@ -61,16 +61,16 @@ def read_designs(
 
     Parameters
     ----------
-    environments : names or files of those to take; None for a file's own and all that it names
-    workers : how many processes share the work
-    meanwhile : what this process does while others read
+    environments : names or files of environments; None for all environments of each file
+    workers : number of processes
+    meanwhile : called in this process while others read
 
     Raises
     ------
     InputError
-        With the mistakes of all files.
+        Files have mistakes; all mistakes are listed.
     UsageError
-        Nothing but tows; a file given twice; two environments of one name.
+        All files are tows, a file is given twice, or two environments have the same name.
     """
     given = Counter([*map(str, files), *(environments or ())])
     twice = [word for word, count in given.items() if count > 1]
@@ -104,8 +104,8 @@ def names_of_files(
 ) -> list[str]:
     """Convert mooring names to names of files or folders.
 
-    Characters that systems reject become hyphens.
-    UsageError: two moorings have the same name, or one that is `taken`.
+    Characters that file systems reject become hyphens. Raises UsageError if two
+    moorings have the same name, or a name in `taken`.
     """
     plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
     names = [name or "mooring" for name in plain]

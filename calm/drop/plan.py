@@ -143,7 +143,9 @@ class DropPlan:
                 "half a second and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
-            texts.append("Strumming is neglected; the drag of cables is that at rest.")
+            texts.append(
+                "Strumming is neglected; cables have the drag of a cable that does not vibrate."
+            )
         names = ", ".join(each.label for each in self.depths if each.beyond)
         if names:
             texts.append(f"Depth rating exceeded during the drop: {names}.")

@@ -70,7 +70,7 @@ DOCUMENTS = (
 
 
 def document(kind: str, view: live.View) -> tuple[str, bytes]:
-    """Make a document of a solved line; return its name and content.
+    """Create a document for a solved line, and return its name and content.
 
     Parameters
     ----------

@@ -160,8 +160,8 @@ def locate(
     count = len(survey.line)
     if count < unknowns:
         raise UsageError(
-            f"{survey.path}: {count} range{'s' * (count != 1)}; "
-            f"{unknowns} are needed to find {'a place' if depth is not None else 'place and depth'}"
+            f"{survey.path}: {count} range{'s' * (count != 1)}; {unknowns} are needed to find "
+            f"{'a position' if depth is not None else 'position and depth'}"
             f"{', or 2 with --depth' if count == 2 and depth is None else ''}"
         )
     frame = survey.frame
@@ -174,9 +174,9 @@ def locate(
     )
     if missed > MISSED * reach:
         raise UsageError(
-            f"{survey.path}: the ranges do not intersect: the best fit misses them by "
-            f"{missed:.0f} m, for ranges of {reach:.0f} m; are positions and ranges from one "
-            "survey?"
+            f"{survey.path}: the ranges do not intersect: the best fit leaves residuals of "
+            f"{missed:.0f} m for ranges of {reach:.0f} m; do positions and ranges belong to the "
+            "same survey?"
         )
     scattered = SCATTERED + SCATTERED_SHARE * reach
     other = model.another_place(x, used, 2.0 * scattered)
@@ -198,7 +198,7 @@ def locate(
     second = None if other is None else _second(model, x, other, used)
     doubts = []
     if rms > scattered:
-        doubts.append(f"the ranges scatter by {rms:.0f} m, more than ranging does")
+        doubts.append(f"the ranges scatter by {rms:.0f} m, more than is usual for acoustic ranging")
     if (~used).sum() > MOST_REJECTED * count:
         doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
     warnings = [
@@ -212,14 +212,14 @@ def locate(
         assert other is not None
         its, own = (np.sqrt(np.mean(model.residuals(each)[used] ** 2)) for each in (other, x))
         warnings.append(
-            f"Another place fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
+            f"Another position fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
             f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, here "
             f"{own:.1f} m."
         )
     doubts += [undecided] if undecided else []
     if not freedom:
         warnings.append(
-            "There are no more ranges than unknowns: their fit cannot be tested, and no "
+            "There are only as many ranges as unknowns, so the fit cannot be tested and no "
             "interval can be given."
         )
     return Located(
@@ -274,9 +274,12 @@ def _weighed(
     least = float(used.sum()) * range_model.FLOOR**2
     undecided = ""
     if abs(cost[0] - cost[1]) < log(ODDS):
-        undecided = "two places fit, at {:.0f} and {:.0f} m from the plan"
+        undecided = "two positions fit, {:.0f} and {:.0f} m from the planned position"
     elif square_sums[order[0]] > 4.0 * max(square_sums[order[1]], least):
-        undecided = "two places remain, at {:.0f} and {:.0f} m from the plan: the nearer fits worse"
+        undecided = (
+            "two positions remain, {:.0f} and {:.0f} m from the planned one; the nearer one fits "
+            "worse"
+        )
     return first, second, undecided.format(*(away[at] for at in order))
 
 
@@ -415,11 +418,11 @@ def _beside_the_plan(
         return tuple(sentences), tuple(doubts)
     if abs(there[1]) <= 90.0 and away(there[1], there[0]) <= limit:
         raise UsageError(
-            f"{located.survey.path}: latitude and longitude are exchanged: the anchor "
-            f"would stand {distance / 1000.0:.0f} km from the position in {file.path}"
+            f"{located.survey.path}: latitude and longitude appear to be exchanged: the anchor "
+            f"would lie {distance / 1000.0:.0f} km from the position in {file.path}"
         )
-    doubt = f"the place is {distance / 1000.0:.1f} km from the planned position"
+    doubt = f"the position is {distance / 1000.0:.1f} km from the planned position"
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
-        doubt += ", and near it if the positions are degrees and minutes, as 48 18 for 48.18"
-    sentences.append("that is far from the planned position: is it this mooring's?")
+        doubt += ", but close to it if the positions are in degrees and minutes (48 18 for 48.18)"
+    sentences.append("this is far from the planned position; do the ranges belong to this mooring?")
     return tuple(sentences), (*doubts, doubt)

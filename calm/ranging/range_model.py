@@ -247,7 +247,7 @@ def _doubled(timed: bool, factor: float) -> str:
     """Describe the probable error if the ranges fit at twice or half their length."""
     instead = "give the distance from the ship to the transponder"
     meant = {
-        (True, 2.0): "one-way times: two-way times are needed, there and back",
+        (True, 2.0): "one-way times, but two-way times (there and back) are needed",
         (True, 0.5): "twice the two-way times",
         (False, 2.0): f"half the distances: {instead}",
         (False, 0.5): f"distances there and back: {instead}",
@@ -280,24 +280,24 @@ def geometry_warnings(
     below = max(below, 1e-3)
     if distance.max() < NEAR * below:
         yield (
-            "The ranges are all taken from nearly above: the place is poorly known. Take some from "
-            "as far to the side as the water is deep."
+            "All ranges were taken from nearly overhead, so the position is poorly constrained. "
+            "Add ranges at a horizontal distance of about one water depth."
         )
     if is_line(ships):
         yield (
-            "The ranges are all taken along one line: a place as far on its other side fits as "
-            f"well{'' if depth_given else ', and so do nearer ones that are deeper'}. Take some "
-            "off that line."
+            "All ranges were taken along one straight line, so the mirror position fits equally "
+            f"well{'' if depth_given else ', as do nearer but deeper positions'}. Add ranges off "
+            "that line."
         )
     elif (gap := widest_gap(away)) > WIDEST_GAP and distance.min() > 0.0:
         yield (
-            f"The ranges are all taken from one side: none within {gap:.0f} degrees of directions. "
-            "Take some from the other side."
+            f"All ranges were taken from one side: a sector of {gap:.0f} degrees has none. Add "
+            "ranges from the opposite side."
         )
     if not depth_given and distance.min() > FAR * below:
         yield (
-            "The ranges are all taken from afar: the depth is poorly known. Take some from nearer, "
-            "or give the depth."
+            "All ranges were taken from far away, so the depth is poorly constrained. Add closer "
+            "ranges, or give the depth."
         )
 
 

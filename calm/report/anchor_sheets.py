@@ -184,8 +184,8 @@ def _distance(distance: float) -> str:
 
 
 def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
-    """Describe a place by its distances north and east of the target [m], and by its position if
-    that of the target is known.
+    """Describe a place by its distances north and east of the target [m], and by latitude and
+    longitude if the target has a position.
     """
     east, north = place
     position = plan.position(place)

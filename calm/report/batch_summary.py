@@ -195,9 +195,9 @@ DEFINITIONS = (
     "the record is evenly spaced. Means, percentiles, maxima and exceedance curves cover the "
     "solved profiles. Failure rates refer to the profiles in which a rule is judged; the upper "
     "bound (“at most”) also counts every profile with a current that was not solved.",
-    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is the "
-    "p quantile. The tension of a component is the larger of those at its two ends; its knockdown "
-    "and depth are at its upper end.",
+    "Percentiles are interpolated linearly between the order statistics; the value of rank 1 + (n "
+    "- 1) p of n is the p quantile. The tension of a component is the larger of those at its two "
+    "ends; its knockdown and depth are at its upper end.",
 )
 """Definitions of the statistics, printed with the tables."""
 
@@ -222,7 +222,7 @@ def grouped(count: int) -> str:
 
 
 def extent(summary: Summary) -> str:
-    """Format the number of profiles, and the first and last time."""
+    """Format the number of profiles, and their first and last time."""
     return (
         f"{grouped(summary.count)} profiles, {when(summary.begin)} to {when(summary.end)}, "
         f"{summary.years:.2f} years solved"

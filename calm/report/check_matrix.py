@@ -164,7 +164,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         number("Accepted", lambda row: row.accepted),
         note=f"This page summarises {sum(row.findings for row in rows)} findings. A page on each "
         "mooring follows. Fish bite, metals and minimum tension are excluded from the use, because "
-        "their limits are no capacities.",
+        "their limits are not capacities.",
     )
 
 
@@ -226,8 +226,10 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
         number("Over\n100 %", lambda one: _over(groups[one.rule])
                if one is told[one.rule][0] else None),
         words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
-        aside="per rule, the finding with the largest use, and a more severe one below it; over "
-        "100 %: number of findings in all environments",
+        aside=(
+            "per rule, the finding with the largest use, followed by any more severe finding; "
+            "over 100 %: number of findings in all environments"
+        ),
         ruled=False,
     )  # fmt: skip
     yield sign_off(signed)

@@ -101,8 +101,10 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         words("Basis of the limit; remedy", basis, 2.2),
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",
-        aside="per rule, the finding with the largest use, and a more severe one below it; number "
-        "of pieces in brackets",
+        aside=(
+            "per rule, the finding with the largest use, followed by any more severe finding; "
+            "number of pieces in brackets"
+        ),
     )  # fmt: skip
 
 
@@ -247,13 +249,15 @@ def _breaks(assessment: Assessment) -> Table:
         return Cell(percent_text(share), strong=True)
 
     unjudged = sum(not one.judged for one in assessment.backup)
-    note = f"{len(assessment.backup)} breaks, the worst of each section. " if rows else ""
+    note = ""
+    if rows:
+        note = f"{len(assessment.backup)} breaks; a row shows the most critical of its section. "
     if left > 0:
         note += f"{left} sections with a larger margin are omitted. "
     if unjudged:
         note += (
-            f"{unjudged} breaks within the lowest floats, or between them and the release, strand "
-            "the release in any design and are not judged."
+            f"{unjudged} breaks within the lowest floats, or between them and the release, would "
+            "leave the release on the seabed in any design and are not judged."
         )
     return table_of(
         "Breaks and losses",

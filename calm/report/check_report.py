@@ -93,7 +93,7 @@ def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
     environments = {name for row in rows for name in row.cells}
     title = f"Design check of {len(rows)} moorings in {len(environments)} environments"
     worst = max((row.conclusion for row in rows), key=[*type(rows[0].conclusion)].index)
-    foot = f"CALM {__version__}  inputs of each mooring: on its own page"
+    foot = f"CALM {__version__}  the inputs of each mooring are on its own page"
     running = Running("", title, worst.words, provenance.date() or "", foot)
     front = _page([blocks.TitleBlock("", title, (), ()), *summary_page(rows)])
     return blocks.Report(title, "", (front,), tuple(sections), provenance.date(), running=running)

@@ -154,9 +154,11 @@ def shipping_part(deck: Deck) -> ReportPart:
         at_least("mass in air", "dry_mass", "mass", "missing_masses"),
         at_least("volume", "volume", "volume", "missing_volumes"),
         blocks.blank("packed in", share=0.8),
-        note="Volumes exclude packing: those of spheres, cylinders and cables follow from their "
-        "size, others from their displacement. ≥ marks a lower bound, because values are missing. "
-        "Spares are not included.",
+        note=(
+            "Volumes exclude packing. They follow from the size of spheres, cylinders and cables, "
+            "and from the displacement of other items. ≥ marks a lower bound, because values are "
+            "missing. Spares are not included."
+        ),
         sums=[all_shipped(deck.shipped)],
     )
     return ReportPart("Shipping list", (table,))

@@ -127,9 +127,9 @@ def _buoyancy(force: float) -> str:
 
 
 _DRAWING_NOTE = (
-    "Depths are at the upper end; planned: as the mooring file gives them; still: in still water. "
-    "Lengths are as cut; clamps have their position on the piece. The largest tension is "
-    "over all moored cases. Net buoyancy is positive upwards."
+    "Depths are at the upper end: planned in the mooring file, computed in still water, and "
+    "computed in the load cases. Lengths are as cut; clamps have their position on the piece. The "
+    "largest tension is over all moored cases. Net buoyancy is positive upwards."
 )
 
 

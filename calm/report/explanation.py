@@ -40,7 +40,7 @@ _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """Describe the rise of a mooring after release, and its mass; each description has a title."""
+    """Describe the ascent of a mooring after release, and its mass; each description has a title."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -287,7 +287,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
         fields = words("", 0, 0.0), words("what", 1), words(before, 2), words(after, 3)
         yield table_of("Differences", rows, *fields)
     else:
-        yield Prose(("The designs are equal.",))
+        yield Prose(("The designs are identical.",))
     yield from blocks.warned(comparison.notes, State.FAIL)
     whole = [one for one in comparison.figures if not one.of_a_part and one.states is None]
     yield _figures("Results", comparison.names, whole, all_rows=True)

@@ -35,8 +35,7 @@ _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 
 
 def plain(text: str) -> str:
-    """Format a message for print: keys become words, and values do not break from their units."""
-    text = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
+    """Format a message for print: true minus signs, and values that stay with their units."""
     text = re.sub(r"(?<![\w-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
 
@@ -93,8 +92,9 @@ def where_text(finding: Finding) -> str:
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
-    Findings have a common cause if they differ only in component and values; estimates, if they
-    concern one component; acceptances, if they have the same reason; and rules without data.
+    Failures, unknowns and warnings have a common cause if they differ only in component and values;
+    estimates, if they concern the same component; acceptances, if they also have the same reason;
+    findings that are not judged, if they belong to the same rule.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
@@ -194,7 +194,9 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
         passes = "passes" if len(labels) == 1 else "pass"
-        return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
+        return (
+            f"{_capital(short(named_components(_once(group)), 90))}: {passes} on an estimated value"
+        )
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"

@@ -280,7 +280,7 @@ def governing_table(signed: SignedMooring) -> Table:
     )
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
-    note = "✓ passes  ≈ by an estimate  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
+    note = "✓ passes  ≈ passes on an estimated value  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
     if rest:
         most = percent_text(rest[0].utilisation)
@@ -323,7 +323,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
         history.append(own)
     roles = (("Drawn", field("author")), ("Checked", field("checked")),
              ("Approved", field("approved")))  # fmt: skip
-    note = "Signatures. The last page lists what no check covers: waves, snap loads, fatigue."
+    note = "Signatures. The last page lists effects that no check covers, such as snap loads."
     return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, note)
 
 

@@ -80,10 +80,12 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
         _ends(uncertain),
         _pieces(uncertain),
         *([_contributions(uncertain)] if uncertain.contributions else []),
-        *blocks.warned([f"{said}; the figures are of the others."] if uncertain.failed else []),
+        *blocks.warned(
+            [(f"{said}; the values refer to the other samples.")] if uncertain.failed else []
+        ),
         blocks.quiet(f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."),
     )
-    return ReportPart("Uncertainty of these figures", shown)
+    return ReportPart("Uncertainty of these values", shown)
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
@@ -161,7 +163,7 @@ def _contributions(uncertain: Uncertain) -> Table:
     return table_of(
         "",
         uncertain.contributions,
-        words(f"the spread of the {cause} comes from", lambda one: _words(one.cause)),
+        words(f"sources of the spread of the {cause}", lambda one: _words(one.cause)),
         share("alone", "first"),
         share("in all", "total"),
         note=note if unexplained > 0.05 else "",

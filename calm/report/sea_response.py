@@ -21,17 +21,17 @@ _NOTE = (
     "!: the piece goes slack."
 )
 _SEAS = (
-    "Measured: range of the standard deviation by tensions measured at sea. Half, twice: standard "
-    "deviation with half and with twice the cut-off frequency."
+    "Measured: range of the standard deviation that tensions measured at sea imply. Half, twice: "
+    "standard deviation with half and with twice the cut-off frequency."
 )
 _CUT_OFFS = (
     "Tension at the top if the waves are cut off at another frequency, with the same drag. Most "
     "changed: the piece whose standard deviation changes most."
 )
 _LIFE = (
-    "Life: years until the damage is 1 in these seas; low and high, with standard deviations of "
-    "tension 15 % greater and smaller; half, twice: with half and with twice the cut-off "
-    "frequency. Curves are quoted from secondary sources: compare them with the standard."
+    "Life: years until the damage sum reaches 1 in these seas. Low, high: with standard deviations "
+    "of tension 15 % larger and smaller. Half, twice: with half and twice the cut-off frequency. "
+    "Curves are quoted from secondary sources: compare them with the standard."
 )
 
 
@@ -231,14 +231,16 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
     assert low is not None and high is not None
     height = state.sea.significant_height
     outside = (
-        "" if COMPARED[0] <= height <= COMPARED[1] else " This sea is outside the heights compared."
+        ""
+        if COMPARED[0] <= height <= COMPARED[1]
+        else (" The height of this sea is outside that range.")
     )
     return (
         f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
         "deviation of the tension below five buoys of the Southern Ocean Flux Station was "
-        f"{band.low:.2f} to {band.high:.2f} times the computed one. That range is "
-        f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} here at the top, "
-        f"with a maximum of {say('tension', low.tension_max)} to "
+        f"{band.low:.2f} to {band.high:.2f} times the computed one. For this mooring that means "
+        f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} at the top, with "
+        f"a maximum of {say('tension', low.tension_max)} to "
         f"{say('tension', high.tension_max)}.{outside} No other mooring was compared."
     )
 

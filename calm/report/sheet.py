@@ -35,7 +35,7 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-_NOTE = "are at the upper end of a part, tension is its maximum."
+_NOTE = "are at the upper end of a part; tension is its maximum."
 _MARKS = {State.WARN: "~ close to a limit.", State.FAIL: "! limit exceeded."}
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
@@ -241,11 +241,11 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     Each leg of a net has a heading. With `places`, a clamp shows its position on its piece instead
     of a length.
     """
-    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height, offset", {}
+    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
     if result.towed:
-        output, of_an_end = Output.TOW_TABLE, "Depth, layback"
+        output, of_an_end = Output.TOW_TABLE, "Depth and layback"
     elif result.several:
-        output, of_an_end = Output.NET_TABLE, "Depth, east, north"
+        output, of_an_end = Output.NET_TABLE, "Depth, east and north"
         heads = {leg.leg.keys.first: leg_title(leg) for leg in result.legs}
     plans = (*result.components.planned_depth, *result.clamps.planned_depth)
     planned = not all(map(math.isnan, plans))
@@ -348,9 +348,7 @@ def leg_titles(result: Result) -> dict[str, str]:
 
 
 def ends_told(line: LegResult) -> tuple[str | None, str | None]:
-    """Describe the upper and the lower connection of a leg; None for a free top and for an
-    anchor.
-    """
+    """Describe the end connections of a leg; None for a free top, and for an anchor."""
     top, bottom = line.leg.top, line.leg.bottom
     return (
         None if top.free else f"from {end_text(top)}",

@@ -145,7 +145,7 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces at the surface that belong to a value of the unknown.
+    """Set the loads of the pieces at the surface for a value of the unknown.
 
     Returns
     -------

@@ -88,7 +88,7 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the water by water of equal depth and density, with another current."""
+        """Replace the current; the new water has equal depth and density."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
@@ -320,7 +320,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
         closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
         x, way = (x, way) if closer is None else (closer, following)
-        why = f"above {way:.0%} of the current its legs do not meet"
+        why = f"its legs do not meet above {way:.0%} of the current"
     if x is None or way < 1.0:
         net.put_in(water)
         x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)

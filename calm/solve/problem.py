@@ -46,7 +46,7 @@ ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
 """Tolerances in a batch: allowed miss, as a fraction of the water depth; used fraction of buoyancy;
 distance of a load from its water sample, as a fraction of the water depth.
 
-In the order allowed miss, buoyancy share, distance.
+
 """
 
 FOUND_SIZE = 32

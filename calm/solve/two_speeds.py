@@ -25,7 +25,7 @@ LOAD_FROM = 60
 COMPILE_FROM = 1200
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
 UNANNOUNCED = 250
-"""Number of lines solved in excess of those announced, above which many more are expected."""
+"""Number of unannounced lines above which many more are expected."""
 TYPICAL_PARTS = 8
 """Number of pieces and clamps of an ordinary line. Computing time is in proportion to this number.
 """
