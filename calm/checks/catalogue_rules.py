@@ -203,8 +203,8 @@ def impossible(component: Component) -> Iterator[str]:
         speed = sqrt(-net / component.kt)
         slowest, fastest = ANCHOR_SPEEDS
         if not slowest <= speed <= fastest:
-            way = "slow" if speed < slowest else "fast"
-            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {way}"
+            fault = "slow" if speed < slowest else "fast"
+            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {fault}"
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 

@@ -250,11 +250,11 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     moved, what = depth - designed - longer, "the top of the upright line"
     if reaches_the_surface(leg):
         moved, what = depth - designed, "the water"
-    way = "deeper" if moved > 0.0 else "shallower"
+    direction = "deeper" if moved > 0.0 else "shallower"
     message = (
         f"Deployed in {say('depth', depth)} of water instead of {say('depth', designed)}: "
-        f"{what} is {say('depth', abs(moved))} {way} than designed; the error of a sounding is "
-        f"{say('depth', limit)}."
+        f"{what} is {say('depth', abs(moved))} {direction} than designed; the error of a sounding "
+        f"is {say('depth', limit)}."
     )
     remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)

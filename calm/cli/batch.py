@@ -182,10 +182,11 @@ def check_output(output: Path, *inputs: Path) -> None:
 def stopped_by_a_signal(
     progress: Callable[[Progress], None],
 ) -> Iterator[Callable[[Progress], None]]:
-    """Convert SIGINT and SIGTERM to KeyboardInterrupt while a batch runs.  A stop
-    request of a queueing system then ends the batch like Ctrl-C, without temporary
-    files. Python ignores exceptions raised by a signal handler in the callback of a
-    weak reference, so the returned `progress` raises KeyboardInterrupt, too.
+    """Convert SIGINT and SIGTERM to KeyboardInterrupt while a batch runs.
+
+    A stop request of a queueing system then ends the batch like Ctrl-C, without temporary files.
+    Python ignores exceptions raised by a signal handler in the callback of a weak reference, so the
+    returned `progress` raises KeyboardInterrupt, too.
     """
     if current_thread() is not main_thread():
         yield progress
@@ -201,12 +202,12 @@ def stopped_by_a_signal(
             raise KeyboardInterrupt
         progress(now)
 
-    heeded = [
+    handled = [
         number
         for number in (signal.SIGINT, signal.SIGTERM)
         if signal.getsignal(number) is not signal.SIG_IGN
     ]
-    before = {number: signal.signal(number, stop) for number in heeded}
+    before = {number: signal.signal(number, stop) for number in handled}
     try:
         yield stopping
     finally:

@@ -230,7 +230,7 @@ def _answer(
     drawings: Sequence[DrawnSection],
     outputs: Outputs,
     folder: Path | None,
-    paper: str,
+    page_size: str,
     names: Sequence[str],
     *,
     every: bool,
@@ -257,7 +257,7 @@ def _answer(
 
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as pool:
-        pdf = pool.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
+        pdf = pool.submit(printed, report, page_size, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),
@@ -278,7 +278,7 @@ def _answer(
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
     from calm.checks.finding import Conclusion
 
-    if any(stand.result is None for stand in assessment.stands):
+    if any(stand.result is None for stand in assessment.in_environments):
         return ExitCode.NO_EQUILIBRIUM
     stops = {Conclusion.FAILS} | ({Conclusion.INCOMPLETE} if not allow_unknown else set())
     return ExitCode.FINDING if assessment.verdict in stops else ExitCode.DONE

@@ -13,7 +13,7 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.report.diagram import Paper
+    from calm.report.diagram import PageSize
 
 
 def deck(
@@ -95,11 +95,11 @@ def deck(
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
     for folder, design, one in zip(folders, designs, decks, strict=True):
-        _write(folder, design.path, one, diagram.Paper(page))
+        _write(folder, design.path, one, diagram.PageSize(page))
     return ExitCode.DONE
 
 
-def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
+def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
     from calm.report.folder import write_report
     from calm.report.open_items import assessment_verdict
 
@@ -107,17 +107,17 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
     notes = _missing_characters(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
-    write_report(folder, _contents(deck, paper, notes))
+    write_report(folder, _contents(deck, page_size, notes))
     narrate(f"Deck sheets written to {folder}")
 
 
-def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
+def _contents(deck: Deck, page_size: PageSize, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
     from calm.report import deck_files, open_items, result_files
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
 
-    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
+    texts = {"diagram.svg": diagram_svg(deck, page_size), **deck_files.deck_csvs(deck)}
     if deck.result.several:
         texts["net.svg"] = deck_files.net_svg(deck)
     counts = open_items.open_counts(deck.assessment)
@@ -134,9 +134,9 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
         [{"calm": __version__, **_plan(deck), "verdict": verdict}]
     )
     return {
-        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper),
+        "deck.pdf": printed(deck_files.deck_report(deck, page_size, notes), page_size),
         "deck.xlsx": deck_files.deck_workbook(deck),
-        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, page_size), page_size),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
 

@@ -27,12 +27,12 @@ class Drawing(NamedTuple):
     ----------
     alone : whether the report contains all pages of a mooring, instead of one after the summary
     full : whether each of several moorings also gets all its pages as a separate PDF
-    paper : page size
+    page_size : page size
     """
 
     alone: bool = True
     full: bool = False
-    paper: str = "a4"
+    page_size: str = "a4"
 
 
 class DrawnSection(NamedTuple):
@@ -66,9 +66,9 @@ def drawn_section(
 
     full = None
     if drawing.alone or drawing.full:
-        section = mooring_section(assessment, against, drawing.paper)
+        section = mooring_section(assessment, against, drawing.page_size)
     if drawing.full:
-        full = printed(check_report([section]), drawing.paper)
+        full = printed(check_report([section]), drawing.page_size)
     if not drawing.alone:
         section = short_section(assessment)
     bare = replace(section, parts=())
@@ -81,11 +81,12 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Check designs on the day of the report, by default today.  With many
-    moorings, each process solves, checks and draws whole moorings; with few, the
+    """Check designs on the day of the report, by default today.
+
+    With many moorings, each process solves, checks and draws whole moorings; with few, the
     environments are distributed over the processes.
 
-        Parameters
+    Parameters
         ----------
         workers : number of processes; None for one on each core
         drawn : settings for the report; None without a report
@@ -162,12 +163,12 @@ def _solved_cases(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
     """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
     the others.
     """
-    from calm.checks.design_check import failed_stand, stands_of
+    from calm.checks.design_check import environments_checked, failed_environment
 
     name, mooring, day = task
     try:
-        return stands_of(mooring, name, day)
+        return environments_checked(mooring, name, day)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        return [failed_stand(mooring, name, internal_failure(error))]
+        return [failed_environment(mooring, name, internal_failure(error))]

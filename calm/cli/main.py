@@ -1,4 +1,4 @@
-"""The command ``calm``: its subcommands, and the conversion of errors to a message and exit code."""
+"""The command ``calm``: its subcommands, and conversion of errors to a message and exit code."""
 
 from __future__ import annotations
 

@@ -30,8 +30,8 @@ def complaint(error: CycloptsError) -> str:
         return f"unexpected argument: {extra}; see `{command} --help`"
     if type(error) is MissingArgumentError and error.argument is not None:
         return _missing(command, error, error.argument)
-    if isinstance(error, UnknownOptionError) and (told := _about_option(error)):
-        return f"`{command}`: {told}"
+    if isinstance(error, UnknownOptionError) and (message := _about_option(error)):
+        return f"`{command}`: {message}"
     if isinstance(error, CoercionError) and error.token is not None:
         path = error.token.value
         file = f" For a file: -o {path}" if Path(path).suffix in (".yaml", ".yml") else ""

@@ -212,9 +212,10 @@ class Outputs:
         return [path.with_stem(f"{path.stem}-{file.stem}") for file in self.files]
 
     def __post_init__(self) -> None:
-        """Reject invalid outputs before anything is solved.  Raises UsageError for a path that
-        cannot be written, equals another output or a mooring file, looks like an option, or has an unknown
-        suffix.
+        """Reject invalid outputs before anything is solved.
+
+        Raises UsageError for a path that cannot be written, equals another output or a mooring
+        file, looks like an option, or has an unknown suffix.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment

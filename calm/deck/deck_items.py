@@ -94,7 +94,7 @@ class DeckItem:
     @property
     def is_joint(self) -> bool:
         """Whether the item only connects pieces and has no data of its own."""
-        return self.is_connector and not self._is_told_of
+        return self.is_connector and not self._has_own_data
 
     @property
     def is_connector(self) -> bool:
@@ -107,7 +107,7 @@ class DeckItem:
         return "swivel" in f"{self.part.use} {self.name} {self.label}".lower()
 
     @property
-    def _is_told_of(self) -> bool:
+    def _has_own_data(self) -> bool:
         return any((self.serial, self.deployed_serial, self.remark))
 
     @property
@@ -125,7 +125,7 @@ class DeckItem:
         and all items with a serial number or a remark have separate rows.
         """
         alone = not self.is_rigid or self.role in ("instrument", "release", "anchor")
-        return (self.label,) if alone or self._is_told_of else (self.name, self.on)
+        return (self.label,) if alone or self._has_own_data else (self.name, self.on)
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ class DeckRow:
         """Key that chains with floats have in common if they may share a row; empty for other
         items.
         """
-        if not self.floats or any(one._is_told_of for one in (*self.items, *self.floats)):
+        if not self.floats or any(one._has_own_data for one in (*self.items, *self.floats)):
             return ()
         first, floats = self.first, [(one.name, one.places) for one in self.floats]
         stem = first.label.rstrip("0123456789")
@@ -194,7 +194,7 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
-def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
+def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
     """Group successive items into the rows in which they are listed or drawn, in line order.
 
     In a drawing, hardware marked as `apart` has a separate row.

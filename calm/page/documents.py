@@ -41,9 +41,9 @@ def _report(moorings: list[Design]) -> bytes:
 
 def _diagram(moorings: list[Design]) -> bytes:
     from calm.deck import deck_of
-    from calm.report.diagram import Paper, diagram_svg
+    from calm.report.diagram import PageSize, diagram_svg
 
-    return diagram_svg(deck_of(moorings), Paper.A4).encode()
+    return diagram_svg(deck_of(moorings), PageSize.A4).encode()
 
 
 def _bill(moorings: list[Design]) -> bytes:

@@ -127,7 +127,7 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
             notices.append(f"line {line} repeats line {first} and was ignored")
     if silent:
         lines = ", ".join(map(str, silent))
-        notices.append(f"no reply in line{'s' * (len(silent) > 1)} {lines}, ignored")
+        notices.append(f"rows without a reply were ignored: line{'s' * (len(silent) > 1)} {lines}")
     latitude, longitude, measured = np.array([*once]).reshape(-1, 3).T
     return Survey(
         path=path,

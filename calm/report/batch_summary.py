@@ -28,7 +28,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     levels; `worst`, the worst profiles by each response.
     """
 
-    def told(*, clamped: bool) -> list[dict[str, Any]]:
+    def part_documents(*, clamped: bool) -> list[dict[str, Any]]:
         return [
             {"label": part.label}
             | {
@@ -52,8 +52,8 @@ def summary_document(summary: Summary) -> dict[str, Any]:
             "end": _time(summary.end),
             "years": summary.years,
         },
-        "components": told(clamped=False),
-        "clamps": told(clamped=True),
+        "components": part_documents(clamped=False),
+        "clamps": part_documents(clamped=True),
         **({"profiler_stops": [vars(one) for one in summary.stops]} if summary.stops else {}),
         "rules": [_rule(rule) for rule in summary.rules],
         "limits": [_limit(rule, one) for rule in summary.rules for one in rule.exceedances],
@@ -87,9 +87,9 @@ def _response(response: Response) -> dict[str, Any]:
 
 
 def _fit(fit: Fit | LevelsRefused) -> dict[str, Any]:
-    said = asdict(fit)
-    del said["method"]
-    return {"refused": said["reason"]} if isinstance(fit, LevelsRefused) else said
+    message = asdict(fit)
+    del message["method"]
+    return {"refused": message["reason"]} if isinstance(fit, LevelsRefused) else message
 
 
 def _rule(rule: RuleShare) -> dict[str, Any]:
@@ -256,10 +256,10 @@ def refusals(summary: Summary) -> Iterator[str]:
         for fit in response.return_levels:
             if isinstance(fit, LevelsRefused):
                 method = METHODS_IN_SHORT[fit.method]
-                said = f"no return levels by {method}: {fit.reason}"
-                reasons.setdefault(said, []).append(TITLES[response.name])
-    for said, of in reasons.items():
-        yield said if len(of) == len(summary.known_responses) else f"{', '.join(of)}: {said}"
+                message = f"no return levels by {method}: {fit.reason}"
+                reasons.setdefault(message, []).append(TITLES[response.name])
+    for message, of in reasons.items():
+        yield message if len(of) == len(summary.known_responses) else f"{', '.join(of)}: {message}"
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:

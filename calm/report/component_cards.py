@@ -40,12 +40,12 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
     def name(row: tuple[str, Defined]) -> str:
         _, definition = row
-        said = definition.name or ""
+        text = definition.name or ""
         if definition.prefer is not None:
-            said += f" (use {definition.prefer})"
+            text += f" (use {definition.prefer})"
         if isinstance(definition, Outline):
-            said += f" (without {', '.join(map(_heading, definition.lacks))})"
-        return said
+            text += f" (without {', '.join(map(_heading, definition.lacks))})"
+        return text
 
     def figure(heading: str, key: str) -> Field:
         def text(row: tuple[str, Defined]) -> str | None:

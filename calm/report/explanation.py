@@ -40,7 +40,7 @@ _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """Describe the ascent of a mooring after release, and its mass; each description has a title."""
+    """Describe the ascent of a mooring after release, and its mass, each under a title."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -244,8 +244,8 @@ def _answer(sizing: Sizing) -> str:
 
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     target, both = sizing.target, (before, after)
-    told_of = {field: told for field, _, told in _ROWS}
-    name = told_of.get(target.quantity, f"{target.quantity} of the top")
+    titles = {field: title for field, _, title in _ROWS}
+    name = titles.get(target.quantity, f"{target.quantity} of the top")
     if target.label is not None:
         name = f"{target.quantity} of {target.label}"
     measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
@@ -253,8 +253,8 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in aimed]]
     afloat = after.result is not None and after.result.type == "surface"
     net = after.result is not None and after.result.several
-    for field, quantity, told in _ROWS:
-        head = told.replace("the top", _place_told(after)) if net else told
+    for field, quantity, title in _ROWS:
+        head = title.replace("the top", _place_name(after)) if net else title
         if head == name or (field == "used_buoyancy" and not afloat):
             continue
         shown = QUANTITIES[quantity]
@@ -264,7 +264,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     return table_of("", rows, *fields)
 
 
-def _place_told(trial: Trial) -> str:
+def _place_name(trial: Trial) -> str:
     """Return the label of the part in a net whose depth and excursion are shown."""
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)

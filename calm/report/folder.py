@@ -133,7 +133,7 @@ def write_file(path: Path, content: bytes) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
 
 
-def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
+def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
     """Typeset a report as PDF; its texts are passed to the template as data, never as markup.
 
     Equal reports give equal bytes: fonts come from the package, and the only date is that of
@@ -141,7 +141,7 @@ def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = No
 
     Parameters
     ----------
-    paper : a4, a3 (landscape) or letter
+    page_size : a4, a3 (landscape) or letter
     leaves : sections already converted by `pdf_leaf`
     """
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
@@ -151,7 +151,7 @@ def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = No
         {
             "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
-            "paper": "us-letter" if paper == "letter" else paper,
+            "paper": "us-letter" if page_size == "letter" else page_size,
         },
         "pdf",
         None if when is None else int(when.timestamp()),

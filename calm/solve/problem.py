@@ -101,7 +101,7 @@ class Limits(NamedTuple):
     allowed : the largest miss of a solution [m]
     share_allowed : tolerance of the share of a float's buoyancy in use [-]
     bed : the seabed
-    near : as in `How`; if not 0, the line is solved in a batch, without an audit
+    near : as in `MarchSettings`; if not 0, the line is solved in a batch, without an audit
     length, standing : length of the line, unstretched, and upright in still water [m]
     lift : net buoyancy of the whole line [N]
     rides : whether the draft of the first float can be computed

@@ -49,7 +49,7 @@ class _Pace:
 
     def __init__(self, solver: CompiledPart) -> None:
         self.solver = solver
-        self.announced = self.solved = self.work = self.asked_at = 0.0
+        self.announced = self.solved = self.work = self.checked_at = 0.0
         self.compiled = False
         self.child: Popen[bytes] | None = None
 
@@ -61,8 +61,8 @@ class _Pace:
             self.compiled = self.child.poll() == 0
             return
         work = max(self.announced, self.work)
-        if work >= max(LOAD_FROM, 2.0 * self.asked_at):
-            self.asked_at = work
+        if work >= max(LOAD_FROM, 2.0 * self.checked_at):
+            self.checked_at = work
             self.compiled = is_cached(self.solver.value)
         if self.compiled or parent_process() is not None:
             return

@@ -63,7 +63,10 @@ def test_of_a_leg_only_what_it_has_is_said(net):
 
 
 def test_it_is_judged_and_its_launch_is_refused(net):
-    assert {stand.environment for stand in calm.check(net).stands} >= {"own: stem", "own: east"}
+    assert {stand.environment for stand in calm.check(net).in_environments} >= {
+        "own: stem",
+        "own: east",
+    }
     with pytest.raises(calm.UsageError, match="takes a single line"):
         calm.drop_plan(net)
     with pytest.raises(calm.UsageError, match="is a tow; this is for moorings"):
