@@ -244,7 +244,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             f"weighs {-net:.4g} N/m in water; a solid bar of its diameter weighs {weight:.4g} N/m"
         )
     if net > lift:
-        yield f"has a buoyancy of {net:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
+        yield f"has a buoyancy of {net:.4g} N/m; water of the same diameter weighs {lift:.4g} N/m"
     elif rope.mass is not None and not (
         LOOSEST * lift <= _displaced(rope, rope.mass) <= NOMINAL * lift
     ):

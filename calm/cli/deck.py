@@ -103,7 +103,9 @@ def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
     from calm.report.folder import write_report
     from calm.report.open_items import assessment_verdict
 
-    narrate(f"{path}: {assessment_verdict(deck.assessment).text}: calm check {path}")
+    narrate(
+        f"{path}: design check {assessment_verdict(deck.assessment).text}; see calm check {path}"
+    )
     notes = _missing_characters(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")

@@ -85,7 +85,7 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
 def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
     """Return line, label, serial number and height above the bottom [m] of each instrument.
 
-    One without a serial number or a height is left out. InputError: the file is damaged.
+    Instruments without a serial number or a height are omitted. InputError: the file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)

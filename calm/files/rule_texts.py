@@ -101,8 +101,8 @@ RULES = {
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
         "every piece, compared with the cables above and below it",
-        "a warning below half of their strength, if sources give both strengths and the piece "
-        "carries more than half of its allowable load",
+        "a warning if it has less than half the strength of these cables, sources give both "
+        "strengths, and it carries more than half of its allowable load",
         "A default of CALM: half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",

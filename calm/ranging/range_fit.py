@@ -27,27 +27,28 @@ CONFIDENCE = 0.95
 MISSED = 0.25
 """Median residual, as a share of the ranges, above which the fit is rejected."""
 SCATTERED, SCATTERED_SHARE = 10.0, 0.005
-"""Scatter [m], and as a share of the ranges, above which it exceeds normal ranging errors."""
+"""Scatter above normal ranging errors: fixed part [m], and share of the ranges."""
 LEVEL = 0.05
 """Minimum depth of the transponder below the ship, as a share of the ranges."""
 MOST_REJECTED = 1.0 / 3.0
 """Share of the ranges that may be rejected without a doubt."""
 FALL_BACK, LEAST_FALL_BACK = 0.1, 50.0
-"""Standard deviation of the distance of an anchor from its plan, as a share of the depth it falls
-back over, and at the least [m]."""
+"""Standard deviation of the distance between an anchor and its planned position: share of the
+depth, and minimum [m].
+"""
 ODDS = 20.0
 """Minimum odds for choosing one of two positions."""
 
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Describe another place that fits within twice the scatter of ranging.
+    """Another position that fits within twice the scatter of the ranges.
 
     Attributes
     ----------
     latitude, longitude : WGS 84 [degrees]
-    distance : from the place taken [m]
-    rms : of its residuals, by the degrees of freedom [m]; nan where there are none
+    distance : distance from the chosen position [m]
+    rms : rms residual for the degrees of freedom [m]; NaN without a degree of freedom
     """
 
     latitude: float
@@ -334,16 +335,17 @@ def _intervals(
 
 
 FAR = 2.0
-"""Times the depth of the water from the planned position: farther than an anchor is laid astray."""
+"""Distance from the planned position, in water depths, above which the position is doubtful."""
 NEAR = 0.5
 """Share of the distance below which degrees are assumed to be misread degrees and minutes."""
 DEEPER, DEEPER_SHARE = 30.0, 0.03
-"""Difference of the depth from the planned one [m], or as a share of it if that is larger, beyond
-which it is in doubt."""
+"""Difference from the planned depth above which the depth is doubtful: the larger of a value [m]
+and a share of the planned depth.
+"""
 
 
 def located_mooring(path: Path) -> MooringFile:
-    """Return the mooring file that a place is for.
+    """Read the mooring file to which a position belongs.
 
     InputError: the file has mistakes. UsageError: it is a tow, or has several legs.
     """

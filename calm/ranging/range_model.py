@@ -256,12 +256,13 @@ def _doubled(timed: bool, factor: float) -> str:
 
 
 NARROW = 0.15
-"""Width over length of a track that is as good as a straight line."""
+"""Ratio of width to length below which a track counts as a straight line."""
 WIDEST_GAP = 180.0
-"""Directions from the place without a range, from which on all are on one side [degrees]."""
+"""Sector without a range above which all ranges count as taken from one side [degrees]."""
 NEAR, FAR = 0.2, 4.0
-"""Horizontal distances over the depth: all nearer tell little of the place, all farther of the
-depth."""
+"""Horizontal distances, in depths: ranges that are all nearer constrain the position poorly, ranges
+that are all farther the depth.
+"""
 
 
 def geometry_warnings(
@@ -302,7 +303,7 @@ def geometry_warnings(
 
 
 def is_line(ships: Floats) -> bool:
-    """Return whether places are as good as on one line, or one place."""
+    """Return whether places lie nearly on a line, or at one place."""
     _, spread, _ = np.linalg.svd((ships - ships.mean(axis=0))[:, :2], full_matrices=False)
     return len(spread) < 2 or bool(spread[1] <= NARROW * spread[0])
 
@@ -314,7 +315,7 @@ def widest_gap(away: Floats) -> float:
 
 
 def mirrored(ships: Floats, place: Floats) -> Floats:
-    """Return a place (3,) on the other side of the line that the ships (n, 3) are nearest to."""
+    """Mirror a place (3,) at the line that fits the ships (n, 3) best."""
     middle = ships.mean(axis=0)
     _, _, axes = np.linalg.svd((ships - middle)[:, :2], full_matrices=True)
     other = place.copy()

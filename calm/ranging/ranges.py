@@ -39,7 +39,7 @@ _COLUMNS = {"latitude": "latitude", "longitude": "longitude", "range": "length",
 
 @dataclass(frozen=True)
 class Survey:
-    """Ranges that a ship took.
+    """Acoustic ranges taken by a ship.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Survey:
 
     @cached_property
     def frame(self) -> Frame:
-        """Local frame around the mean position of the ship, also across 180 degrees."""
+        """Local frame around the mean position of the ship, valid across the 180° meridian, too."""
         lam = np.radians(self.longitude)
         middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
         return Frame(float(self.latitude.mean()), float(middle))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 READ_AHEAD = 16_000_000
-"""Maximum size of profiles that are read together because the file compresses them so [bytes]."""
+"""Maximum size of profiles that are read together because they share a compressed chunk [bytes]."""
 
 SAMPLED = 64_000_000
 """Sample size for tests of doubtful values, spread evenly over the record [bytes]."""

@@ -51,7 +51,7 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Return whether latitude and longitude are separate axes: x is east, y is north."""
+    """Return whether latitude and longitude are separate axes, so that x is east and y is north."""
     latitudes = {dataset[name].dims for name in _named(dataset, "latitude", _LATITUDES)}
     longitudes = {dataset[name].dims for name in _named(dataset, "longitude", _LONGITUDES)}
     alone = all(len(dims) == 1 for dims in latitudes | longitudes)

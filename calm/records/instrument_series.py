@@ -392,7 +392,9 @@ class _SeriesFile:
         """
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
-            raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
+            raise UnreadableError(
+                f"`{along}` is a dimension of neither instruments nor profiler bins"
+            )
         return np.asarray(known_values(levels.variable) * levels.factor)
 
 

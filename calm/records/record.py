@@ -109,8 +109,8 @@ def parse_period(text: str) -> Period:
 def parse_place(text: str) -> Place:
     """Parse a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
-    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is none,
-    or no place on the earth.
+    Both may be in degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is not a
+    place, or not on the earth.
     """
     parts = text.split(",")
     try:

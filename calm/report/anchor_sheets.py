@@ -155,8 +155,8 @@ def _depths_table(plan: DropPlan) -> list[Table]:
     table = table_of(
         "Depths during the drop",
         rows,
-        blocks.words("piece or clamp, the deepest of its kind", label),
-        number("greatest depth", greatest, depth.display_unit),
+        blocks.words("piece or clamp (deepest of each component)", label),
+        number("maximum depth", greatest, depth.display_unit),
         number("after", lambda row: f"{row[0].time:.0f}", "s"),
         quantity("depth", lambda row: row[0].rest, "at rest"),
         quantity("depth", lambda row: row[1][0].rating, "rated to"),

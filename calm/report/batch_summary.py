@@ -180,7 +180,7 @@ def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> 
 TITLES = {
     "knockdown": "knockdown of the top",
     "anchor_tension": "tension at the anchor",
-    "tilt": "greatest tilt",
+    "tilt": "maximum tilt",
     "offset": "offset of the top",
 }
 """Titles of the responses, by name."""

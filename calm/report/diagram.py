@@ -23,7 +23,7 @@ from calm.report.sheet import end_descriptions, leg_title
 
 _HEADINGS = (
     (("no.",), ""),
-    (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
+    (("cut length", "or position"), "length"), (("stretched",), "length"), (("depth",), "depth"),
     (("planned",), "planned_depth"),
     (("above", "seabed"), "height"), (("tension",), "tension"),
     (("net", "buoyancy"), "wet_weight"),
@@ -317,7 +317,7 @@ def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room
 _FIELDS = (
     "mooring", "document", "revision", "date", "project", "ship", "cruise", "position",
     "water depth", "environment", "author", "checked", "approved", "anchor in air, in water",
-    "least backup", "design check", "sheet",
+    "min. back-up", "design check", "sheet",
 )  # fmt: skip
 _COLUMNS = {PageSize.A4: 5, PageSize.LETTER: 5, PageSize.A3: 9}
 _PAD = 4.0
@@ -352,7 +352,7 @@ def _known(deck: Deck) -> dict[str, str]:
     breaks = [one.margin for one in deck.assessment.backup if one.judged]
     return {
         "anchor in air, in water": "; ".join(dict.fromkeys(texts)),
-        "least backup": say("tension", min(breaks)) if breaks else "none",
+        "min. back-up": say("tension", min(breaks)) if breaks else "none",
         "design check": assessment_verdict(deck.assessment).text,
     }
 

@@ -373,7 +373,7 @@ def test_the_verdict_is_that_of_calm_check(calm, folder):
     done = calm("deck", "m.yaml", "-o", "sheets")
     counts = head.split("DRAFT")[1].strip()
     told = f"passes by acceptance: {counts}"
-    assert f"m.yaml: ~ {told}: calm check m.yaml" in done.err
+    assert f"m.yaml: design check ~ {told}; see calm check m.yaml" in done.err
     verdict = json.loads((folder / "sheets" / "plan.json").read_text())["verdict"]
     assert verdict["verdict"] == checked["verdict"] == "passes-by-acceptance"
     assert (verdict["fails"], verdict["accepted"]) == (0, 1)

@@ -830,7 +830,7 @@ FLAWS = (
         "figures",
         "wire 1",
         "fail",
-        "wire 1 has a buoyancy of 1.2 N/m; water of its diameter weighs",
+        "wire 1 has a buoyancy of 1.2 N/m; water of the same diameter weighs",
     ),
     Flaw(
         "a wire of 250 m in place of 200 m",
