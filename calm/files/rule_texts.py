@@ -46,7 +46,7 @@ RULES = {
         "a warning below 0.2 m/s, below 0.9 times the strongest current of the record behind an "
         "environment, below 1/50 of the strongest current of another environment, or if the levels "
         "do not cover a tenth of the depth, and 25 m, at either end",
-        "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
+        "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
     "drag-coefficient": RuleText("Drag coefficient", "",
@@ -119,7 +119,7 @@ RULES = {
     "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
         "`minimum_top_depth`: a failure; by default 10 m: a warning",
-        "A default of CALM: clear of waves, hulls and nets"),
+        "A default of CALM: the top stays clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "difference between the planned depth and the depth in still water, for every piece and "
         "clamp with a `planned_depth` or a depth in its label",
@@ -288,8 +288,8 @@ RULES = {
         "tension of every piece as the line falls behind its anchor",
         "the smaller of `launch_working_factor`, 1, times its working load and its breaking load "
         "over `launch_safety_factor`, 2, with the loads used for `strength`",
-        "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
-        "load over 2",
+        "Anchor-last launch at terminal speed (URI GSO program); limits: working load, and "
+        "breaking load over 2",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",

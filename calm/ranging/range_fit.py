@@ -214,8 +214,8 @@ def locate(
         its, own = (np.sqrt(np.mean(model.residuals(each)[used] ** 2)) for each in (other, x))
         warnings.append(
             f"Another position fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
-            f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, here "
-            f"{own:.1f} m."
+            f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, compared "
+            f"with {own:.1f} m here."
         )
     doubts += [undecided] if undecided else []
     if not freedom:

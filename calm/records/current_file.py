@@ -116,7 +116,7 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     below = known & (depth >= 0)
     for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
         if count := int(left.sum()):
-            notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
+            notices.append(f"{count} level{'s' * (count > 1)} {what} excluded from the current")
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
     for level, east, north, rise in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
@@ -148,7 +148,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
         raise InputError([rows[0].problem("no level has a value")])
     if left_out := int((~known).sum()):
         levels = f"{left_out} level{'s' * (left_out > 1)}"
-        notices.append(f"{levels} without a value left out of the current")
+        notices.append(f"{levels} without a value excluded from the current")
     depth, u, v, w = found[known].T
     notices += turned_notices(header.columns, terms)
     values = CurrentValues(depth, u[np.newaxis], v[np.newaxis], None, terms.water_depth)

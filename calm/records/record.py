@@ -34,8 +34,8 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 """Depth, u, v and w of profiles, in the layout of `solve_profiles`."""
 
 RULES = (
-    "levels where the current or their depth has no value are left out of their profile",
-    "levels above the surface are left out",
+    "levels without a current or a depth are excluded from their profile",
+    "levels above the surface are excluded",
     "levels below the seabed are used where they have a value: the current at the seabed lies "
     "between",
     "between levels the current is linear in depth, beyond the first and the last it is constant",

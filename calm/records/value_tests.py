@@ -118,7 +118,7 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
         )
     unplaced = int((known & ~np.isfinite(depth)).sum())
     if 0 < unplaced < known.sum():
-        yield f"{unplaced} of {known.sum()} currents have no depth, and are left out"
+        yield f"{unplaced} of {known.sum()} currents have no depth and are excluded"
     empty = ~there & (levels >= 0.0) & (levels < water_depth - allowed)
     if empty.any() and there.any() and len(known) > 1:
         yield (

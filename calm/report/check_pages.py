@@ -77,7 +77,7 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     items = open_counts(signed.assessment)
 
     def of_items(state: State) -> str:
-        return f" (open item{'s' * (items[state] != 1)}: {items[state]})" if items[state] else ""
+        return f" ({items[state]} open item{'s' * (items[state] != 1)})" if items[state] else ""
 
     counted = ", ".join(
         f"{count} {state.value.replace('-', ' ')}{of_items(state)}"
@@ -346,7 +346,7 @@ def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     beside = environment, blocks.Heading("Not covered"), Prose(unseen)
     yield Beside((limits,), beside, 0.62)
     yield from (history := [*_history(assessment.file)])
-    listing = "The file could not be read again." if text is None else text.rstrip()
+    listing = "The file can no longer be read." if text is None else text.rstrip()
     above = max(len(limits.rows), len(environment.rows) + _UNJUDGED)
     above += sum(len(table.rows) + 3 for table in history)
     room = TEXT_HEIGHT[page_size] - _AROUND - _ROW * above

@@ -173,7 +173,7 @@ def _say(definition: Defined, name: str) -> str:
     value = getattr(definition, name)
     if name == "searched":
         return ", ".join(_heading(each) for each in value) + (
-            " (not published in any source examined)"
+            " (no published value found)"
         )
     if name == "sources":
         return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())

@@ -124,7 +124,7 @@ def explanation_part(explanation: Explanation) -> ReportPart:
     80 columns.
     """
     wholes = [
-        f"{name} {_COLUMNS[name].text(explanation.figures)} m"
+        f"{name} ({_COLUMNS[name].text(explanation.figures)} m)"
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]

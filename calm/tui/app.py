@@ -202,7 +202,7 @@ class BuildApp(App[int]):
                 driver.write(self._pace.question(time.monotonic()))
 
     def on_cursor_position(self) -> None:
-        """Send the next changes; the reported position means that the previous frame is displayed."""
+        """Send the next changes; a reported position means that the last frame is displayed."""
         if self._late is not None:
             self._late.stop()
             self._late = None

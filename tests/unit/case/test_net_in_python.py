@@ -67,7 +67,7 @@ def test_it_is_judged_and_its_launch_is_refused(net):
         "own: stem",
         "own: east",
     }
-    with pytest.raises(calm.UsageError, match="takes a single line"):
+    with pytest.raises(calm.UsageError, match="a single line with one free end"):
         calm.drop_plan(net)
     with pytest.raises(calm.UsageError, match="is a tow; this is for moorings"):
         calm.check(calm.load(shipped_folder("lines") / "helicopter-bird.yaml"))
