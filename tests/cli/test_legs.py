@@ -161,7 +161,7 @@ def test_other_commands_say_which_one_solves_nets(
     }
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
-    assert f"{net}: this is a net of legs" in told
+    assert f"{net}: this file is a net of legs" in told
     assert "only `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
 
 
