@@ -172,9 +172,7 @@ def _heading(name: str) -> str:
 def _say(definition: Defined, name: str) -> str:
     value = getattr(definition, name)
     if name == "searched":
-        return ", ".join(_heading(each) for each in value) + (
-            " (no published value found)"
-        )
+        return ", ".join(_heading(each) for each in value) + (" (no published value found)")
     if name == "sources":
         return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())
     if isinstance(value, tuple):

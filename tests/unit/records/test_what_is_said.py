@@ -144,7 +144,9 @@ def test_flags_leave_out_what_is_bad_with_a_count(record, tmp_path) -> None:
 def test_flags_are_found_by_their_names(record, tmp_path, name) -> None:
     flags = np.where(np.arange(7200).reshape(720, 10) % 4, 1, 4).astype(np.int8)
     record[name] = ("time", "depth"), flags
-    assert f"1800 of 7200 currents were excluded, because `{name}` marks" in said(record, tmp_path)[0]
+    assert (
+        f"1800 of 7200 currents were excluded, because `{name}` marks" in said(record, tmp_path)[0]
+    )
 
 
 def test_flags_of_another_variable_are_not_those_of_the_current(record, tmp_path) -> None:
