@@ -1,8 +1,8 @@
 """Instrument lists of moorings, as used by observing groups, with nominal depths or heights.
 
-Read are CSV tables and workbooks, `info.dat` of RODB (RAPID, OSNAP), configurations of oceanarray,
-and NetCDF files whose instruments have serial numbers and nominal depths, such as the products of
-IMOS.
+Supported are CSV tables and workbooks, `info.dat` of RODB (RAPID, OSNAP), configurations of
+oceanarray, and NetCDF files whose instruments have serial numbers and nominal depths, such as the
+products of IMOS.
 """
 
 from __future__ import annotations
@@ -62,11 +62,11 @@ class ListedInstrument:
 
     Attributes
     ----------
-    where : in the list, for people
-    name, serial : empty where the list does not say
-    nominal : its depth [m]; NaN where not known
-    clock : how late its clock was [s]; None where not known
-    checked : time at which this was found; None where not known
+    where : position in the list, for messages
+    name, serial : empty if missing in the list
+    nominal : nominal depth [m]; NaN if unknown
+    clock : lag of its clock [s]; None if unknown
+    checked : time at which this lag was measured; None if unknown
     remark : other error of its clock, in words
     """
 
@@ -94,8 +94,8 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     Raises
     ------
     InputError
-        It cannot be read, is of none of the forms, or lists no instrument by a serial number or a
-        nominal depth.
+        The list cannot be read, has an unknown format, or has no instrument with a serial number or
+        a nominal depth.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):

@@ -115,7 +115,7 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
     for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
-        notices += _left_out(int(left.sum()), what)
+        notices += _excluded(int(left.sum()), what)
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
     for level, east, north, rise in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
@@ -130,8 +130,8 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     return CurrentTable(levels, speeds[0], speeds[1], speeds[2])
 
 
-def _left_out(count: int, what: str) -> list[str]:
-    return [f"{count} level{'s' * (count > 1)} {what} left out of the current"] * (count > 0)
+def _excluded(count: int, what: str) -> list[str]:
+    return [f"{count} level{'s' * (count > 1)} {what} excluded from the current"] * (count > 0)
 
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
@@ -149,7 +149,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     known = np.isfinite(found).all(axis=1)
     if not known.any():
         raise InputError([rows[0].problem("no level has a value")])
-    notices += _left_out(int((~known).sum()), "without a value")
+    notices += _excluded(int((~known).sum()), "without a value")
     depth, u, v, w = found[known].T
     notices += turned_notices(header.columns, terms)
     values = CurrentValues(depth, u[np.newaxis], v[np.newaxis], None, terms.water_depth)

@@ -53,7 +53,7 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Return whether latitude and longitude are separate axes: x is east, y is north."""
+    """Return whether latitude and longitude are separate axes, so that x is east and y is north."""
     latitudes, longitudes = (
         {dataset[name].dims for name in _named(dataset, coordinate)} for coordinate in _PLACES
     )

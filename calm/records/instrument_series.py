@@ -124,7 +124,7 @@ class InstrumentSeries(Identity):
             value = np.where(wrong, np.nan, value)
             known = value[np.isfinite(value)]
             if known.size >= _FEWEST and not known.any():
-                remarks.append(f"`{variable}`: all {known.size} values are 0, and are left out")
+                remarks.append(f"`{variable}`: all {known.size} values are 0 and were excluded")
                 value = np.full_like(value, np.nan)
         doubts = series_doubts(value[:, np.newaxis, np.newaxis], self.time)
         remarks += [f"`{variable}`: {doubt}" for doubt in doubts]
@@ -392,7 +392,9 @@ class _SeriesFile:
         """
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
-            raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
+            raise UnreadableError(
+                f"`{along}` is a dimension of neither instruments nor profiler bins"
+            )
         return np.asarray(known_values(levels.variable) * levels.factor)
 
 

@@ -203,7 +203,9 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the coordinates with bounds and their dimensions: a mean over a layer is a value."""
+    """Return the coordinates with bounds, and their dimensions; a mean over such a layer counts as
+    a value.
+    """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
 
