@@ -20,7 +20,7 @@ import numpy as np
 from calm.errors import InputError, Problem, refused
 from calm.exchange.model import MOST_PIECES
 from calm.exchange.oceanarray import is_oceanarray, listed_instruments
-from calm.exchange.table.cells import is_workbook, read_sheets
+from calm.exchange.table.cells import SheetRows, is_workbook, read_sheets
 from calm.records import cf_files, velocity
 from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.records.delimited import NumberedLine, is_gap, no_number, read_table
@@ -161,7 +161,7 @@ def _comparison(
 
 def _of_workbook(path: Path) -> list[NumberedLine]:
     """Return the first sheet of a workbook as lines of CSV."""
-    rows = next(iter(read_sheets(path).rows.values()), [[]])
+    rows: SheetRows = next(iter(read_sheets(path).rows.values()), [[]])
     text, width = io.StringIO(), len(rows[0])
     csv.writer(text).writerows([*row, *[""] * width][:width] for row in rows)
     return [*enumerate(text.getvalue().splitlines(), 1)]
