@@ -190,7 +190,7 @@ def _impossible(height: float, period: float) -> str | None:
     if height > HIGHEST or period > LONGEST_PERIOD:
         return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
     if period < SHORTEST_PERIOD:
-        return f"{waves}: seas are solved for from a peak period of {SHORTEST_PERIOD:g} s"
+        return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
         highest = f"{length:.1f} m long, they are {STEEPEST * length:.2f} m high at most"
         return f"{waves} would break: {highest}"
