@@ -20,7 +20,9 @@ and its upper limit [m].
 AT_REST = 1e-7
 """Motion per time step, as a fraction of the depth, below which the line is at rest."""
 UNMOVED = 1e-10
-"""Motion in a time step, as a fraction of the depth, below which the longest time step follows."""
+"""Motion in a time step, as a fraction of the depth, that is due to rounding: the line is at rest,
+and the longest time step follows.
+"""
 MAX_STEP = 1e6
 """Length of the longest time step [s], after which a line is at rest."""
 SLOWEST_FLOW = 0.01

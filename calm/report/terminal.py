@@ -86,12 +86,7 @@ class _Printer:
                 rows.append(([self._text(cell.text, "bold") for cell in row], style))
             else:
                 rows.append(([*map(self._cell, row, block.columns)], style))
-        if len(rows) >= MANY:
-            yield LongTable(grid, rows, gap)
-        else:
-            for cells, style in rows:
-                grid.add_row(*cells, style=style)
-            yield grid
+        yield PlainTable(grid, rows, gap)
         if block.note:
             yield self._text(block.note, _QUIET)
 
@@ -190,15 +185,12 @@ class _Words(Text):
 _BREAKS = re.compile("[-_./]")
 
 
-MANY = 100
-"""Number of rows above which a table is printed line by line."""
-
 Row = tuple[Sequence[Text], str]
 """Cells of a table row from the first column on, and the style of the row."""
 
 
-class LongTable:
-    """Table without rules, for many rows.
+class PlainTable:
+    """Table without rules, printed line by line, many times faster than by rich.
 
     Parameters
     ----------
