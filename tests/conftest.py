@@ -3,10 +3,13 @@
 import gc
 import os
 from collections.abc import Iterator
+from functools import partial, wraps
 
 import pytest
 from hypothesis import settings
 
+from calm.case.memory import Memory
+from calm.drop import launch
 from calm.quantities import show_in
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
@@ -36,6 +39,15 @@ def solve_compiled() -> None:
     `CALM_COMPILED=never` makes the tests use the interpreted solver.
     """
     os.environ.setdefault("CALM_COMPILED", "always")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def dropped_once() -> Iterator[None]:
+    """A fall of an anchor that several tests ask for is computed for the first of them."""
+    fall = launch._let_go
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(launch, "_let_go", wraps(fall)(partial(Memory().of, fall)))
+        yield
 
 
 @pytest.fixture(autouse=True)
