@@ -49,9 +49,10 @@ from calm.checks.drag_range import drag_coefficient
 from calm.checks.environments import environment
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing, grouped_by
 from calm.checks.inventory import inventory_of
+from calm.checks.leg_graph import LegGraph
 from calm.checks.missing import is_lacking, missing, with_missing
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
-from calm.checks.recovery import breaks_of, losses_of, recovery_of
+from calm.checks.recovery import recovery_of
 from calm.checks.situations import STRUMMING, currents, equilibrium
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
@@ -307,7 +308,8 @@ def handled(leg: Leg, result: LegResult) -> Handling:
     """
     launch = or_why_not(launch_of, leg)
     recovery = or_why_not(recovery_of, leg, result)
-    return Handling(leg, launch, recovery, breaks_of(leg), losses_of(leg), result)
+    graph = LegGraph.upright(leg)
+    return Handling(leg, launch, recovery, graph.breaks(leg), graph.losses(leg), result)
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
@@ -317,7 +319,8 @@ def _handled(stand: MooringInEnvironment) -> Handling:
         return replace(handled(leg, result), leg=estimated(leg))
     failure = stand.situations[0].failure
     assert failure is not None
-    return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
+    graph = LegGraph.upright(leg)
+    return Handling(leg, failure, failure, graph.breaks(leg), graph.losses(leg))
 
 
 _MODULES = (

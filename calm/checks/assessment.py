@@ -25,8 +25,9 @@ from calm.checks.finding import (
     worst_state,
 )
 from calm.checks.inventory import InventoryItem
+from calm.checks.leg_graph import Break, Loss
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Break, Loss, Recovery
+from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece

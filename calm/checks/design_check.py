@@ -118,7 +118,7 @@ def assessment_of(
     legs = [each.leg for each in found] or [stands[0].leg]
     whole = _whole(legs, any(each.type == "surface" for each in found))
     acceptance = assessment.Acceptance.of_file(whole.file, day)
-    graph = LegGraph(found)
+    graph = LegGraph.in_equilibrium(found)
     breaks, losses = graph.breaks(whole), graph.losses(whole)
     handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
     first = whole.file.environment.name or OWN

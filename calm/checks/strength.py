@@ -11,8 +11,8 @@ from calm.case.warnings import counted_working_load, is_synthetic
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
+from calm.checks.leg_graph import SHORT_LEAD
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import SHORT_LEAD
 from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
 from calm.files.mooring_file import legs_of
 from calm.quantities import say

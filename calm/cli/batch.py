@@ -12,7 +12,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, narrate, narrate_card, show_parts
+from calm.cli.outputs import ExitCode, check_suffix, narrate, narrate_card, show_parts
 from calm.cli.progress import ProgressTeller, grouped
 from calm.errors import UsageError
 
@@ -172,8 +172,7 @@ def check_output(output: Path, *inputs: Path) -> None:
     for path in inputs:
         if place == os.path.realpath(path):
             raise UsageError(f"{output} is an input file and was not overwritten")
-    if output.suffix != ".nc":
-        raise UsageError(f"cannot write {output}: its name must end in .nc")
+    check_suffix(output, (".nc",))
     if os.path.isdir(output):
         raise UsageError(f"cannot write {output}: it is a folder")
 

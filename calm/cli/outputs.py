@@ -117,6 +117,14 @@ def save(path: Path, content: bytes, then: str = "") -> None:
     narrate(f"{path} written{then}")
 
 
+def check_suffix(path: Path, allowed: Sequence[str]) -> None:
+    """Raise UsageError if the suffix of an output file is not one of the given ones, if any."""
+    if allowed and path.suffix.lower() not in allowed:
+        *others, last = allowed
+        names = f"{', '.join(others)} or {last}" if others else last
+        raise UsageError(f"cannot write {path}: its name must end in {names}")
+
+
 def _abandon_output() -> None:
     """Discard buffered output, which would fail again when the interpreter exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -224,11 +232,8 @@ class Outputs:
                 raise UsageError(
                     f"{path} was given where a path is needed; write ./{path} for a file"
                 )
-        *kinds, last = self.suffixes
         for path in self.written:
-            if path.suffix.lower() not in self.suffixes:
-                allowed = f"{', '.join(kinds)} or {last}"
-                raise UsageError(f"cannot write {path}: its name must end in {allowed}")
+            check_suffix(path, self.suffixes)
         if any(path.suffix.lower() in APIECE for path in self.written):
             moment()
         mooring_files = set(map(os.path.realpath, self.files))

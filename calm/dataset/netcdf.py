@@ -77,7 +77,7 @@ def write_netcdf(
     block: int,
     blocks: Iterable[Chunks],
     path: Path,
-    last: Callable[[], Mapping[str, str]] = dict,
+    last: Callable[[], Attributes] = dict,
 ) -> None:
     """Write a file block by block, under a temporary name until it is complete.
 
@@ -86,7 +86,7 @@ def write_netcdf(
     block : number of times in a block
     blocks : the results of `packed`, in order; one is in memory at a time
     last : returns attributes known only after the last block; the layout already has them,
-        with values of the same length
+        as numbers or as texts of the same length
 
     Raises
     ------
@@ -114,7 +114,7 @@ def write_netcdf(
                             begin = number * block, *(0 for _ in file[name].shape[1:])
                             file[name].id.write_direct_chunk(begin, content)
                     for name, value in last().items():
-                        file.attrs.modify(name, np.bytes_(value))
+                        file.attrs.modify(name, _text(value))
                     file.flush()
                     size = file.id.get_filesize()
             os.truncate(part, size)

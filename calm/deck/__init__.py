@@ -205,7 +205,7 @@ def deck_of(
     plan: DropPlan | NoEquilibrium | None = None
     if first.several:
         notes += assessment.notices
-        rising = LegGraph(result.legs).coming_up
+        rising = LegGraph.in_equilibrium(result.legs).coming_up
     else:
         try:
             rise = recovery_of(first.leg, result.leg)

@@ -20,8 +20,8 @@ from calm.checks.finding import (
     told_of_rule,
 )
 from calm.checks.inventory import InventoryItem, total_of
+from calm.checks.leg_graph import Break, Loss
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Break, Loss
 from calm.files import MooringFile
 from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS

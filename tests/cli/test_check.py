@@ -136,6 +136,20 @@ def test_one_that_does_not_stand_does_not_stop_the_rest(calm, write_mooring, hea
     assert findings(done, mooring="Test", rule="anchor-weight")
 
 
+@pytest.mark.parametrize("more", [2, 4], ids=["an environment each", "a mooring each"])
+def test_processes_exchange_the_reason_why_one_does_not_stand(
+    calm, write_mooring, heavy, storm, folder, more
+):
+    """Few moorings are divided among the processes by environment, many by mooring."""
+    (folder / "gale.yaml").write_text(STORM.replace("storm", "gale"), encoding="utf-8")
+    others = [write_mooring(f"{number}.yaml", name=f"M{number}") for number in range(more)]
+    places = ("--environment", storm, "--environment", "gale.yaml") if more == 2 else ()
+    words = ("check", heavy, *others, *places, "--json", "-")
+    alone, together = (calm(*words, "--workers", count) for count in (1, 2))
+    assert together.code == alone.code == 3
+    assert together.out == alone.out
+
+
 def test_a_sound_design_ends_with_0(calm, folder):
     (folder / "sound.yaml").write_text(
         """\

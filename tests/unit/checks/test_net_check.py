@@ -11,7 +11,6 @@ from calm.checks.assessment import Assessment
 from calm.checks.design_check import assessment_of, stands_of
 from calm.checks.finding import State
 from calm.checks.leg_graph import LegGraph
-from calm.checks.recovery import breaks_of, losses_of
 
 WATER = """\
 name: n
@@ -80,7 +79,8 @@ def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
 def test_its_breaks_and_losses_are_those_of_the_line(text: str) -> None:
     """Lifts are taken where the line stands, not upright: a metre of depth is 1e-5 of them."""
     single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
-    for mine, its in ((breaks_of(single.leg), net.backup), (losses_of(single.leg), net.losses)):
+    leg, graph = single.leg, LegGraph.upright(single.leg)
+    for mine, its in ((graph.breaks(leg), net.backup), (graph.losses(leg), net.losses)):
         assert [each.label for each in mine] == [each.label for each in its]
         for one, other in zip(mine, its, strict=True):
             for name in ("margin", "weight_lifted", "required", "judged", "loose"):
@@ -133,7 +133,7 @@ def test_each_anchor_is_judged_by_its_own_rules(y: Assessment) -> None:
 
 def test_a_break_of_any_leg_says_what_is_left_and_what_drifts(y: Assessment) -> None:
     result = load(Path("y.yaml"), text=Y).solve()
-    graph = LegGraph(result.legs)
+    graph = LegGraph.in_equilibrium(result.legs)
     lift = dict(zip([piece.label for piece in graph.pieces], graph.lifts.tolist(), strict=True))
     breaks = {each.label: each for each in y.backup}
     assert list(breaks) == ["top", "upper wire", "west wire", "east wire"]
