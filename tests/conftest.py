@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 
 from calm.case.memory import Memory
-from calm.drop import launch
+from calm.drop import launch, plan
 from calm.quantities import show_in
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
@@ -43,10 +43,13 @@ def solve_compiled() -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def dropped_once() -> Iterator[None]:
-    """A fall of an anchor that several tests ask for is computed for the first of them."""
-    fall = launch._let_go
+    """A line under tow, its fall and its rest are computed for the first test that asks."""
+    shared = Memory()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(launch, "_let_go", wraps(fall)(partial(Memory().of, fall)))
+        for where, names in ((launch, ("towed", "fall")), (plan, ("towed", "fall", "settle"))):
+            for name in names:
+                law = getattr(where, name)
+                patch.setattr(where, name, wraps(law)(partial(shared.of, law)))
         yield
 
 
