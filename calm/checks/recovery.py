@@ -181,15 +181,15 @@ def _risers(
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():
         # a rope counts as surfaced once its lower end is up, a rigid piece once its upper end is
-        way = float(length[up : piece + bool(line.flexible[piece])].sum())
+        distance = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
-            way = top if piece < head_count(line) else top + way
+            distance = top if piece < head_count(line) else top + distance
         elif not lifts[up:].sum() > 0.0:
             return
-        elif way > 0.0:
+        elif distance > 0.0:
             speed = plumb_speed(part_of(line, up, count), water, 0.0)
             if not speed > 0.0:
                 return
-        time += way / speed
+        time += distance / speed
         yield piece, time
         up = piece + 1

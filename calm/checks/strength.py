@@ -50,8 +50,8 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load to ask for if a component has none: breaking load for ropes and
-    wires, working load for other components.
+    """Return the key of the load to request for a component without loads: breaking load for ropes
+    and wires, working load for other components.
     """
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 

@@ -43,7 +43,7 @@ def export(
 
     check_destination(output)
     if os.path.realpath(output) == os.path.realpath(file):
-        raise UsageError(f"{output} would overwrite the file that is read")
+        raise UsageError(f"{output} is the input file; choose another output")
     check_suffix(output, written_format(to).suffixes)
     exported = export_file(file, to, environment=environment, catalogs=catalog or [])
     beside = {output.with_name(name): content for name, content in exported.beside.items()}

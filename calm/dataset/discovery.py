@@ -51,7 +51,7 @@ def written() -> str:
 
 
 def hashed(path: Path) -> str:
-    """Return the name of a file with its SHA-256 hash; for a folder, only the name."""
+    """Return a file name followed by the SHA-256 hash of the file; a folder has no hash."""
     if not path.is_file():
         return path.name
     with path.open("rb") as file:

@@ -33,15 +33,15 @@ def export_file(
 
     Parameters
     ----------
-    to : name of a format that is written, as `registry.register_format` has it
+    to : name of a registered format that can be written
     environment : a name in the file, or an environment file
-    catalogs : as `calm.load` takes them
+    catalogs : see `calm.load`
 
     Raises
     ------
     InputError, NoEquilibrium, UsageError
-        The file has mistakes, no length of a piece that is cut to fit is right, or `to` is no
-        program.
+        The file has mistakes, no length fits a piece that is cut to fit, or `to` is not a
+        registered format.
     """
     chosen = written_format(to)
     assert chosen.write is not None

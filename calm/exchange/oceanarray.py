@@ -86,7 +86,7 @@ def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[s
     """Return line, label, serial number and height above the bottom [m] of each instrument, and its
     keys with the `recovery_time` of the file.
 
-    One without a serial number or a height is left out. InputError: the file is damaged.
+    Instruments without a serial number or a height are omitted. InputError: the file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)

@@ -42,7 +42,7 @@ class Exported:
 
     Attributes
     ----------
-    content : of the file
+    content : content of the file
     lost : features of the design that the format cannot represent
     beside : content of further files, by their names in the same folder
     """

@@ -376,7 +376,9 @@ def _describe(
     """Add global attributes that follow from the depths and from the mooring, and a line in the
     history.
 
-    Attributes of the original are kept, except for the range of depths.
+    Attributes of the original are kept, except for the range of depths. Attributes that begin with
+    the same word, such as those of the creator, belong together: all are those of the original if
+    it has any.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)
@@ -390,7 +392,10 @@ def _describe(
         "comment": f"{mark} 1: {name} from the pressure of the instrument; 8: estimated; 9: none",
         "date_created": written(),
     }
-    copy.attrs = {**known, **copy.attrs, **vertical_extent(copy[name].values)}
+    extent = vertical_extent(copy[name].values)
+    there = {key.partition("_")[0] for key in copy.attrs if key not in extent}
+    added = {key: value for key, value in known.items() if key.partition("_")[0] not in there}
+    copy.attrs = {**added, **copy.attrs, **extent}
     line = f"{written()} calm {__version__} motion --onto: {name} estimated"
     line += f" from {', '.join(inputs)}" if inputs else ""
     copy.attrs["history"] = "\n".join([*filter(None, [copy.attrs.get("history")]), line])

@@ -48,7 +48,7 @@ BAR = (
 )
 
 FIRST = "upward-adcp-300m.yaml"
-"""Example shown on the first visit; later visits open the latest file."""
+"""Example shown on the first visit (later visits open the latest file)."""
 _YAML = ".yaml", ".yml"
 NEW = "mooring.yaml"
 """Name of a new file."""
@@ -115,12 +115,12 @@ class WebPage:
     # the builder
 
     async def run(self) -> None:
-        """Edit files one after the other without end, since the page has nothing else to show."""
+        """Edit one file after another in an endless loop."""
         while True:
             await self.build()
 
     async def build(self) -> None:
-        """Edit the file opened last, until another file is opened or the user leaves."""
+        """Edit the file opened last, until the user opens another file or leaves."""
         reason = ""
         try:
             session, kept = open_session(self._path)

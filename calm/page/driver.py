@@ -56,7 +56,7 @@ terminal: PageTerminal | None = None
 
 
 class PageDriver(Driver):
-    """The driver of `terminal`."""
+    """Textual driver for `terminal`."""
 
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)

@@ -31,7 +31,7 @@ _SCREEN = ("xterm.js", "xterm.css")
 
 
 def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
-    """Write the page into a folder, which is created if needed; other files in it are kept.
+    """Write the page into a folder, which is created if needed; other files in the folder are kept.
 
     Parameters
     ----------

@@ -194,7 +194,7 @@ class BuildApp(App[int]):
         return Output()
 
     def on_cursor_position(self) -> None:
-        """Send the next frame, since the terminal has displayed the previous frame."""
+        """Send the next frame; a reported position means that the last frame is displayed."""
         self.output.answered()
 
     def on_resize(self) -> None:
@@ -280,7 +280,7 @@ class BuildApp(App[int]):
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
         if self._lost not in (None, before):
-            message = f"There is no environment {self._lost} now; the default environment is used"
+            message = f"Environment {self._lost} no longer exists; the default environment is used"
             self.tell(message)
 
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:

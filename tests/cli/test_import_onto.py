@@ -171,6 +171,16 @@ def test_a_clock_offset_with_the_time_of_its_check_corrects_the_times(assigned, 
     assert f"its clock was 12 s late at {CHECKED}" in " ".join(done.err.split())
 
 
+@pytest.mark.parametrize(("name", "old", "new"), [
+    ("info.dat", RODB, f"End_Date = unknown\n{RODB}"),
+    ("m.yml", "clamp:", "recovery_time: in May\nclamp:"),
+])  # fmt: skip
+def test_a_time_of_recovery_that_no_clock_needs_is_not_read(assigned, name, old, new):
+    done, written = assigned(name, {"info.dat": RODB, "m.yml": OCEANARRAY}[name].replace(old, new))
+    assert done.code == 0, done.err
+    assert "serial: 3223" in written
+
+
 def test_a_check_before_the_deployment_is_a_remark(assigned):
     text = CLOCKS["imos.csv"].replace("2027-03", "2025-03")
     done, written = assigned("list.csv", text)
@@ -208,4 +218,15 @@ def test_the_label_of_a_part_is_enough(assigned):
 ])  # fmt: skip
 def test_lists_that_cannot_be_assigned_are_refused(assigned, text, said):
     done, written = assigned("list.csv", text)
+    assert done.code == 2 and said in done.err and written == ""
+
+
+@pytest.mark.parametrize(("name", "old", "new", "said"), [
+    ("m.yml", "seconds: 12", "seconds: twelve", "m.yml:7:1: `twelve` is no number"),
+    ("m.yml", "2027-03-02T10:40:00\ninline", "soon\ninline", "`soon` is not a time"),
+    ("info.dat", "3222 12", "3222 x", "info.dat:4:1: `x` is no number"),
+    ("info.dat", "2027/03/02", "03/2027", "`03-2027 10:40` is not a time"),
+])  # fmt: skip
+def test_a_clock_that_cannot_be_read_is_refused(assigned, name, old, new, said):
+    done, written = assigned(name, CLOCKS[name].replace(old, new))
     assert done.code == 2 and said in done.err and written == ""

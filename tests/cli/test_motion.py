@@ -413,11 +413,11 @@ def test_a_folder_in_is_a_folder_out(calm, given, truth, folder):
         ).to_netcdf(folder / "in" / f"{name}.nc", engine="h5netcdf")
     words = (*COMMAND, "--pressures", "p.csv", "--onto", "in")
     done = calm(*words, "-o", "in")
-    assert done.code == 2 and "in is an input and is not overwritten" in done.err
+    assert done.code == 2 and "in is an input file and was not overwritten" in done.err
     done = calm(*words, "-o", "out")
     assert done.code == 0, done.err
     assert [one.name for one in (folder / "out").iterdir()] == ["a.nc"]
-    assert "b.nc: no part of the line; it is not written" in done.err
+    assert "b.nc: it belongs to no part of the line and is not written" in done.err
     with xarray.open_dataset(folder / "out" / "a.nc", engine="h5netcdf") as copy:
         assert np.abs(copy["depth"].values[:, 0] - truth[1][:, 2]).max() < 2.0
         assert copy.attrs["history"].count("sha256:") == 3

@@ -8,7 +8,7 @@ import pytest
 
 from calm.case import Design, load
 from calm.checks.assessment import Assessment
-from calm.checks.design_check import assessment_of, stands_of
+from calm.checks.design_check import assessment_of, environments_checked
 from calm.checks.finding import State
 from calm.checks.leg_graph import LegGraph
 
@@ -47,14 +47,14 @@ def line(text: str) -> Design:
 
 
 def judged(net: Design) -> Assessment:
-    return assessment_of("n", stands_of(net, "n"))
+    return assessment_of("n", environments_checked(net, "n"))
 
 
 @pytest.mark.parametrize("text", [ONE_LEG, TWO_LEGS])
 def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
     """Every situation and rule; 1e-3 is what the stated errors of both allow of a tension."""
     single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
-    whole = assessment_of("n", stands_of(single, "n"))
+    whole = assessment_of("n", environments_checked(single, "n"))
     # what runs from piece to piece is seen within a leg alone
     of_neighbours = {"strength-steps", "swivel", "metals", "release-present"}
     handled = {"launch-strength", "launch-speed", "recovery", "tangling", "missing"}
@@ -162,7 +162,7 @@ def test_what_no_release_frees_is_unknown() -> None:
 def test_a_net_that_does_not_stand_is_a_failure_with_its_reason() -> None:
     text = Y.replace("length: 130 m", "length: 10 m")  # its anchors are 80 m apart
     found = judged(load(Path("y.yaml"), text=text))
-    assert [each.rule for each in found.stands[0].findings] == ["equilibrium"]
+    assert [each.rule for each in found.in_environments[0].findings] == ["equilibrium"]
     assert found.state is State.FAIL
 
 
