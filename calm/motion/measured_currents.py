@@ -25,7 +25,7 @@ from calm.motion.common_unknowns import Common, LinearLaw
 from calm.motion.currents_law import ReadCurrents
 from calm.motion.line_response import Forward, LineResponse
 from calm.motion.measurements import FREE, MooringMeasurements, chosen_times
-from calm.motion.smoother import StateSpace, smoothed
+from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
 
 TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
@@ -304,8 +304,9 @@ class CurrentSmoother:
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
         times = np.flatnonzero(far)
+        for part in np.split(times, range(BLOCK, len(times), BLOCK)):
+            self.slope[part] = self._slopes(there[part], now[part], factor, part)
         if len(times):
-            self.slope[times] = self._slopes(there[times], now[times], factor, times)
             self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
         return there
 
@@ -313,10 +314,13 @@ class CurrentSmoother:
         self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> Floats:
         """Return (n, p, 2 K + f) derivatives of depths by currents and logarithms of factors."""
-        steps = SLOPE_STEP * np.eye(state.shape[1]), SLOPE_STEP * np.eye(len(factor))
-        columns = [self.depths(state + ahead, factor, times) for ahead in steps[0]]
-        columns += [self.depths(state, factor + ahead, times) for ahead in steps[1]]
-        return np.nan_to_num((np.stack(columns, axis=2) - there[:, :, None]) / SLOPE_STEP)
+        n, flows = state.shape
+        ahead = (state[:, None] + SLOPE_STEP * np.eye(flows)).reshape(-1, flows)
+        by_flow = self.depths(ahead, factor, np.repeat(times, flows)).reshape(n, flows, -1)
+        steps = SLOPE_STEP * np.eye(len(factor))
+        by_factor = [self.depths(state, factor + step, times)[:, None] for step in steps]
+        moved = np.concatenate([by_flow, *by_factor], axis=1).transpose(0, 2, 1)
+        return np.nan_to_num((moved - there[:, :, None]) / SLOPE_STEP)
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
@@ -351,53 +355,50 @@ class CurrentSmoother:
 
     # --- the law
 
-    def law(self, there: Floats, sensors: bool = True) -> tuple[StateSpace, Floats]:
-        """Return the linear law about the state, and (n, p, q) slopes of all points."""
-        one, at, scales = self.measured, self.columns, self.scales
-        n, count = len(one.time), len(self.knots.depth)
-        steady = np.zeros((at.count, at.count))
+    def meter_law(self) -> StateSpace:
+        """Return the linear law of the currents at the knots, read by the meters alone."""
+        one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
-        alike = np.exp(-apart / scales.reach) * np.outer(self.spread, self.spread)
-        steady[at.current, at.current] = np.kron(np.eye(2), alike)
+        alike = np.exp(-apart / self.scales.reach) * np.outer(self.spread, self.spread)
+        steady: Floats = np.kron(both, alike)
+        weights: Floats = np.kron(both, self.knots.level)
+        step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
+        fade = np.tile(np.exp(-step / self.scales.hours), (1, len(steady)))
+        flow = np.hstack([one.u, one.v]) - weights @ self.mean
+        noise = np.tile(self.alike * self.meter_noise / self.meter_weight, (1, 2))
+        return StateSpace(fade, steady, np.zeros_like(fade), steady, (weights[None],), flow, noise)
+
+    def law(self, there: Floats) -> tuple[StateSpace, Floats]:
+        """Return the linear law about the state, and (n, p, q) slopes of all points."""
+        one, at, own = self.measured, self.columns, self.meter_law()
+        n, flows = own.fade.shape
+        steady = np.zeros((at.count, at.count))
+        steady[at.current, at.current] = own.steady
         steady[at.share, at.share] = self._stretches[2]
-        steady[at.tide, at.tide] = scales.tide**2
+        steady[at.tide, at.tide] = self.scales.tide**2
         first = steady.copy()
         first[at.factor, at.factor] = self.common_covariance[: len(self.names), : len(self.names)]
         first[at.stays, at.stays] = np.diag(self.first)
-        fade = np.ones((n, at.count))
+        fade, stepped = np.ones((n, at.count)), np.zeros((n, at.count))
         step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
-        fade[:, at.current] = np.exp(-step / scales.hours)
+        fade[:, at.current] = own.fade
         fade[:, at.share] = np.exp(-step / LINE_HOURS)
         fade[:, at.tide] = np.exp(-step / TIDE_HOURS)
-        stepped = np.zeros((n, at.count))
         stepped[:, at.stays] = self.stepped
         slope = np.zeros((n, len(self.still), at.count))
-        slope[:, :, at.current] = self.slope[:, :, : 2 * count]
-        slope[:, :, at.factor] = self.slope[:, :, 2 * count :]
-        slope[:, :, at.share] = scales.share * self.by_line(there)
+        slope[:, :, at.current] = self.slope[:, :, :flows]
+        slope[:, :, at.factor] = self.slope[:, :, flows:]
+        slope[:, :, at.share] = self.scales.share * self.by_line(there)
         slope[:, :, at.tide] = slope[:, :, at.datum] = 1.0
-        weights = np.zeros((1, 2 * len(self.knots.level), at.count))
-        weights[0, :, at.current] = np.kron(np.eye(2), self.knots.level)
-        flow = np.hstack([one.u, one.v]) - weights[0, :, at.current] @ self.mean
-        noise = np.tile(self.alike * self.meter_noise / self.meter_weight, (1, 2))
-        if not sensors:
-            return StateSpace(fade, steady, stepped, first, (weights,), flow, noise), slope
+        meters = np.zeros((1, own.read.shape[1], at.count))
+        meters[:, :, at.current] = own.seen[0]
         seen = slope[:, one.point].copy()
         seen[:, :, at.offset] = np.eye(len(one.label))
         base = (there + self.bend)[:, one.point]
         base -= np.einsum("nsq,nq->ns", seen[:, :, at.current], self.state[:, at.current])
-        read = one.depth - base - one.surface[:, None]
-        error = common_unknowns.NOISE**2 / self.sensor_weight
-        whole = StateSpace(
-            fade,
-            steady,
-            stepped,
-            first,
-            (weights, seen),
-            np.hstack([flow, read]),
-            np.hstack([noise, error]),
-        )
-        return whole, slope
+        read = np.hstack([own.read, one.depth - base - one.surface[:, None]])
+        noise = np.hstack([own.noise, common_unknowns.NOISE**2 / self.sensor_weight])
+        return StateSpace(fade, steady, stepped, first, (meters, seen), read, noise), slope
 
     @cached_property
     def alike(self) -> float:
@@ -503,34 +504,34 @@ class CurrentSmoother:
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
         one, at, count = self.measured, self.columns, len(self.measured.time)
-        now = np.empty_like(self.state)
+        now, left, wide = np.empty_like(self.state), law.read.copy(), np.empty_like(law.read)
         variance, curved = np.empty_like(there), np.empty_like(there)
-        wide = np.empty((count, law.read.shape[1]))
         stay = np.zeros_like(self.stepped)
         alike = np.linalg.inv(self._stretches[2])
-        precise = np.linalg.inv(law.steady[at.current, at.current])
-        noise_share: list[float] = []
+        noise_share = np.ones(count)
         share, tide = np.zeros(count), np.zeros(count)
         for each in smoothed(law):
-            t, spread = each.time, each.covariance
+            t, spread = each.times, each.covariance
             now[t] = each.mean
-            seen = law.slopes(t)
-            wide[t] = np.einsum("mq,mq->m", seen @ spread, seen)
-            variance[t] = np.einsum("pq,pq->p", slope[t] @ spread, slope[t])
-            flow = slope[t][:, at.current]
-            curved[t] = np.einsum("pq,pq->p", flow @ spread[at.current, at.current], flow)
-            if t + 1 < count:
-                stay[t + 1] = each.moved[at.stays, at.stays].diagonal()
-                part = np.trace(precise @ each.moved[at.current, at.current]) / len(precise)
-                noise_share.append(part / (1.0 - law.fade[t + 1, 0] ** 2))
-            z = each.mean[at.share]
-            tide[t] = each.mean[at.tide][0] ** 2 + spread[at.tide, at.tide][0, 0]
-            share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
-            if t == 0:
-                begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
-        left = law.read - np.einsum(
-            "nmq,nq->nm", np.stack([law.slopes(t) for t in range(count)]), now
-        )
+            seen, here = law.slopes(t), slope[t]
+            left[t] -= np.einsum("nmq,nq->nm", seen, each.mean)
+            wide[t] = (seen @ spread * seen).sum(axis=2)
+            variance[t] = (here @ spread * here).sum(axis=2)
+            flow = here[:, :, at.current]
+            curved[t] = (flow @ spread[:, at.current, at.current] * flow).sum(axis=2)
+            own, kept = each.hold[:, at.stays, at.stays], each.pull[:, at.stays]
+            added = law.stepped[t, at.stays]
+            stay[t] = added + added**2 * (kept**2 - np.diagonal(own, axis1=1, axis2=2))
+            # size of the noise of the currents relative to its prior
+            pull, hold = each.pull[:, at.current], each.hold[:, at.current, at.current]
+            steady = law.steady[at.current, at.current]
+            excess = ((pull @ steady) * pull).sum(axis=1) - (steady * hold).sum(axis=(1, 2))
+            noise_share[t] += (1.0 - law.fade[t, 0] ** 2) * excess / len(steady)
+            z = each.mean[:, at.share]
+            tide[t] = each.mean[:, at.tide.start] ** 2 + spread[:, at.tide.start, at.tide.start]
+            share[t] = ((z @ alike) * z).sum(axis=1)
+            share[t] += (alike * spread[:, at.share, at.share]).sum(axis=(1, 2))
+        begun = now[0, at.stays] ** 2 + spread[0, at.stays, at.stays].diagonal()
         wide[:, : 2 * one.u.shape[1]] /= self.alike
         square = left**2 + wide
         levels = one.u.shape[1]
@@ -552,7 +553,7 @@ class CurrentSmoother:
             grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
             self.scales = replace(self.scales, share=grown)
         if turn >= 2 and count > 1:
-            hours = float(np.clip(self.scales.hours / np.mean(noise_share), *HOURS))
+            hours = float(np.clip(self.scales.hours / noise_share[1:].mean(), *HOURS))
             usual = min(float(np.sqrt(tide.mean())), self._most_tide)
             self.scales = replace(self.scales, hours=hours, tide=usual)
         if turn >= 1:
@@ -659,18 +660,13 @@ class CurrentSmoother:
         the knots, and the line response. `factor` holds the logarithms of the factors (f,) on the
         line.
         """
-        one, at, count = self.measured, self.columns, len(times)
-        law, _ = self.law(self.depth, sensors=False)
-        wide = law.steady.copy()
-        wide[at.current, at.current] *= WIDER**2
-        law = replace(law, steady=wide, first=law.first + wide - law.steady)
-        flow = slice(0, at.current.stop)
-        now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
-        row = {int(t): i for i, t in enumerate(times)}
-        for each in smoothed(law):
-            if each.time in row:
-                now[row[each.time]] = each.mean[flow]
-                spread[row[each.time]] = each.covariance[flow, flow]
+        one, at = self.measured, self.columns
+        law = self.meter_law()
+        wide = WIDER**2 * law.steady
+        blocks = [*smoothed(replace(law, steady=wide, first=wide))][::-1]
+        now = np.concatenate([each.mean for each in blocks])[times]
+        spread = np.concatenate([each.covariance for each in blocks])[times]
+        flow = slice(0, now.shape[1])
         part = one.at(times)
         there = self.depths(now, factor, times)
         slope = self._slopes(there, now, factor, times)[:, one.point]
@@ -699,7 +695,7 @@ class CurrentSmoother:
             part.time[good], share[good], known[good], raw[good], left[good], expected[good],
             fixed[good], fall[good],
         )  # fmt: skip
-        way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((count, 0, 0)))
+        way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((len(now), 0, 0)))
         near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
         common = self.common()
         named = dict(zip(self.names, np.exp(factor).tolist(), strict=True))

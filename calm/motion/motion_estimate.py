@@ -149,7 +149,7 @@ class RecoveredMooring:
         """Read the files."""
         for kind in self.correct:
             if kind not in CORRECTABLE:
-                what = f"--correct: `{kind}` cannot be taken off"
+                what = f"--correct: `{kind}` cannot be corrected"
                 raise UsageError(unknown(what, kind, CORRECTABLE))
         self.names = fitted(self.fit, bool(self.currents))
         self.hidden = [*self.hold_out]
@@ -202,7 +202,7 @@ class RecoveredMooring:
             used.append(one)
             notes += more
             if one.dropped:
-                notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
+                notes.append(f"{one.label}: {one.dropped} pressures were excluded by their flag")
         notes += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
         if not any(np.isfinite(one.value).any() for one in used):
             raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
@@ -266,8 +266,9 @@ class RecoveredMooring:
         output, workers, progress, tell : see `calm.batch.run.run_batch`, also for the return value
         """
         task = self._prepared(tell)
-        found = diagnosed(task) if self.correct else ()
-        wrong = [one for one in found if one.kind in self.correct and one.certain]
+        if self.correct:
+            task = replace(task, faults=diagnosed(task))
+        wrong = [one for one in task.faults or () if one.kind in self.correct and one.certain]
         if wrong:
             self._faults = tuple(replace(one, corrected=True) for one in wrong)
             self._read()

@@ -43,9 +43,10 @@ class StateSpace:
     read: Floats
     noise: Floats
 
-    def slopes(self, time: int) -> Floats:
-        """Return (m, q) slopes of the readings of a time."""
-        return np.vstack([each[time if len(each) > 1 else 0] for each in self.seen])
+    def slopes(self, times: slice) -> Floats:
+        """Return (b, m, q) slopes of the readings of b successive times."""
+        parts = [np.broadcast_to(each, (len(self.read), *each.shape[1:])) for each in self.seen]
+        return np.concatenate([each[times] for each in parts], axis=1)
 
     def added(self, time: int) -> Floats:
         """Return (q, q) covariance of the state noise since the previous time."""
@@ -69,32 +70,35 @@ class _Filtered:
 
 @dataclass(frozen=True)
 class Smoothed:
-    """Smoothed state at one time, given all readings.
+    """Smoothed states of b successive times, given all readings.
 
     Attributes
     ----------
-    time : index of the time
-    mean, covariance : (q,), (q, q) of the state
-    moved : (q, q) mean products of the state noise after this time; 0 at the last time
+    times : the times
+    mean, covariance : (b, q), (b, q, q) of the states
+    pull, hold : (b, q), (b, q, q) r and N of the state noise before each time: from its prior
+        covariance Q, all readings give the mean Q r and the covariance Q - Q N Q
     """
 
-    time: int
+    times: slice
     mean: Floats
     covariance: Floats
-    moved: Floats
+    pull: Floats
+    hold: Floats
 
 
 def _filter(
     law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
 ) -> Iterator[_Filtered]:
     """Yield the filter results from `start`, given the predicted mean and covariance there."""
+    slopes = law.slopes(slice(start, stop))
     for time in range(start, stop):
         if time > start:
             fade = law.fade[time]
             mean = fade * mean
             spread = fade[:, None] * spread * fade + law.added(time)
         there = np.isfinite(law.read[time])
-        seen = law.slopes(time)[there]
+        seen = slopes[time - start, there]
         across = spread @ seen.T
         expected = seen @ across
         expected[np.diag_indices_from(expected)] += law.noise[time, there]
@@ -108,11 +112,10 @@ def _filter(
 
 
 def smoothed(law: StateSpace) -> Iterator[Smoothed]:
-    """Yield the smoothed state of each time, from the last to the first."""
+    """Yield the smoothed states of blocks of times, from the last block to the first."""
     count = len(law.read)
     starts = range(0, count, BLOCK)
-    mean, spread = np.zeros(law.first.shape[0]), law.first
-    begun = [(mean, spread)]
+    begun = [(np.zeros(len(law.first)), law.first)]
     for start in starts[:-1]:
         for one in _filter(law, start, start + BLOCK, *begun[-1]):
             last = one
@@ -121,16 +124,12 @@ def smoothed(law: StateSpace) -> Iterator[Smoothed]:
         spread = last.spread - last.gain @ (last.seen @ last.spread)
         spread = fade[:, None] * (0.5 * (spread + spread.T)) * fade + law.added(after)
         begun.append((fade * mean, spread))
-    pull, hold = np.zeros(len(mean)), np.zeros_like(law.first)
+    pull, hold = np.zeros(len(law.first)), np.zeros_like(law.first)
     for start, known in zip(reversed(starts), reversed(begun), strict=True):
-        block = [*_filter(law, start, min(start + BLOCK, count), *known)]
-        for time in range(start + len(block) - 1, start - 1, -1):
-            one = block[time - start]
-            moved = np.zeros_like(hold)
+        stop, rows = min(start + BLOCK, count), []
+        block = [*_filter(law, start, stop, *known)]
+        for time, one in zip(reversed(range(start, stop)), reversed(block), strict=True):
             if time + 1 < count:
-                added = law.added(time + 1)
-                pushed = added @ pull
-                moved = np.outer(pushed, pushed) + added - added @ hold @ added
                 fade = law.fade[time + 1]
                 pull, hold = fade * pull, fade[:, None] * hold * fade
             # (1 - gain seen)' of later times, plus the information of this time
@@ -139,7 +138,6 @@ def smoothed(law: StateSpace) -> Iterator[Smoothed]:
             half = hold - one.seen.T @ (one.gain.T @ hold)
             hold = half - (half @ one.gain) @ one.seen + one.seen.T @ one.inverse @ one.seen
             hold = 0.5 * (hold + hold.T)
-            across = one.spread @ hold
-            yield Smoothed(
-                time, one.mean + one.spread @ pull, one.spread - across @ one.spread, moved
-            )
+            covariance = one.spread - one.spread @ hold @ one.spread
+            rows.append((one.mean + one.spread @ pull, covariance, pull, hold))
+        yield Smoothed(slice(start, stop), *map(np.array, zip(*reversed(rows), strict=True)))

@@ -192,8 +192,7 @@ def prepare(
             smoother.solve(
                 [(j, t, one.value) for j, t, one in zip(sensors, begin, slips, strict=True)]
             )
-            task = Task(mooring, used, smoother.common(), smoother)
-            found = diagnosed(task)
+            return Task(mooring, used, smoother.common(), smoother)
         return replace(task, faults=found)
     used = with_knots(used, mooring)
     return Task(mooring, used, learn_currents(mooring, used, names, tell))

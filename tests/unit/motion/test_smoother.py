@@ -7,6 +7,7 @@ from calm.motion import smoother
 from calm.motion.smoother import StateSpace, smoothed
 
 TIMES, STATES, READINGS = 11, 3, 2
+PARTS = "mean", "covariance", "pull", "hold"
 
 
 def law():
@@ -40,23 +41,22 @@ def test_mean_covariance_and_steps_are_those_of_the_whole_law(monkeypatch, block
             whole[t * q : t * q + q, later * q : later * q + q] = part
             whole[later * q : later * q + q, t * q : t * q + q] = part.T
     seen = np.zeros((TIMES * READINGS, TIMES * q))
+    slopes = given.slopes(slice(0, TIMES))
     for t in range(TIMES):
-        seen[t * READINGS : (t + 1) * READINGS, t * q : t * q + q] = given.slopes(t)
+        seen[t * READINGS : (t + 1) * READINGS, t * q : t * q + q] = slopes[t]
     there = np.isfinite(given.read.ravel())
     seen, noise = seen[there], np.diag(given.noise.ravel()[there])
     gain = whole @ seen.T @ np.linalg.inv(seen @ whole @ seen.T + noise)
     mean, left = gain @ given.read.ravel()[there], whole - gain @ seen @ whole
-    found = [*smoothed(given)]
-    assert [one.time for one in found] == [*range(TIMES - 1, -1, -1)]
-    for one in found:
-        at = slice(one.time * q, one.time * q + q)
-        assert one.mean == pytest.approx(mean[at])
-        assert one.covariance == pytest.approx(left[at, at])
-        if one.time + 1 < TIMES:
-            both = slice(at.start, at.stop + q)
-            step = np.hstack([-np.diag(given.fade[one.time + 1]), np.eye(q)])
-            noise = step @ mean[both]
-            square = np.outer(noise, noise) + step @ left[both, both] @ step.T
-            assert one.moved == pytest.approx(square)
-        else:
-            assert (one.moved == 0.0).all()
+    found = [*smoothed(given)][::-1]
+    assert [t for one in found for t in range(TIMES)[one.times]] == [*range(TIMES)]
+    parts = [np.concatenate([getattr(one, name) for one in found]) for name in PARTS]
+    for t, (state, covariance, pull, hold) in enumerate(zip(*parts, strict=True)):
+        at = slice(t * q, t * q + q)
+        assert state == pytest.approx(mean[at])
+        assert covariance == pytest.approx(left[at, at])
+        if t:
+            both, added = slice(at.start - q, at.stop), given.added(t)
+            step = np.hstack([-np.diag(given.fade[t]), np.eye(q)])
+            assert added @ pull == pytest.approx(step @ mean[both])
+            assert added - added @ hold @ added == pytest.approx(step @ left[both, both] @ step.T)
