@@ -191,20 +191,18 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
 """Codes of drifts, in place of a time, with the share of the record over which they last."""
 
 
-def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
-    """Return (n, s) change in the reading of each sensor per metre of slip or drift.
+def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
+    """Return (n,) change in the reading of a sensor per metre of offset, slip or drift.
 
     Parameters
     ----------
-    first : (s,) codes of `first_time`
-    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
+    code : 0 for an offset throughout, the time of a slip, or a code of `RAMPS`
+    fall : (n,) change in its depth per metre of displacement along the line
     share : (n,) elapsed share of the record at each time, 0 to 1
     """
-    began = (np.arange(len(fall))[:, None] >= first) & (first >= 0)
-    result: Floats = np.where(began, fall, 0.0)
-    for code, part in RAMPS.items():
-        result = np.where(first == code, np.minimum(share / part, 1.0)[:, None], result)
-    return result
+    if code in RAMPS:
+        return np.minimum(share / RAMPS[code], 1.0)
+    return np.where(np.arange(len(fall)) >= code, fall if code else 1.0, 0.0)
 
 
 def chance_of(first: int, times: int) -> tuple[float, float]:
@@ -243,8 +241,8 @@ def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
     steps = np.where(can, steps, -np.inf)
     first: Integers = np.where(can.any(axis=0), steps.argmax(axis=0), NEVER)
     best = steps.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # a slip at any time
-    for code, part in RAMPS.items():
-        ramp = np.minimum(law.share / part, 1.0)[:, None]
+    for code in RAMPS:
+        ramp = moved_by(code, law.fall[:, 0], law.share)[:, None]
         chance, wide = chance_of(code, count)
         drift = np.array([gained.whole(ramp * one, wide) for one in sensors]) + chance
         better = (drift > best) & (after[0] >= 2 * FEWEST)

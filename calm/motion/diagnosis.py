@@ -100,9 +100,9 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     if not len(times):
         return None, []
     if task.smoother is not None:
-        law, way, moments = task.smoother.by_meters(times, task.smoother.factor)
-        at = moments.linear(way, np.zeros((len(times), moments.groups)))
-        return law, list(line_suspects(task, moments, way, at))
+        law, read, moments = task.smoother.by_meters(times)
+        at = moments.linear(read, np.zeros((len(times), moments.groups)))
+        return law, list(line_suspects(task, moments, read, at))
     common, part = task.common, task.measured.at(times)
     moments = LineResponse(part, *task.forwards)
     here = unknown_state(moments, replace(common, covariance=np.zeros_like(common.covariance)))
@@ -111,10 +111,9 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     known = np.isfinite(part.depth[good])
     left = np.where(known, here.found.innovation[good], 0.0)
     fixed = fixed_slopes(here.at.common[good][:, part.point])
-    span = task.measured.time[[0, -1]]
     return LinearLaw(
         time,
-        (time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")),
+        task.measured.elapsed(time),
         known,
         np.where(known, left + fixed @ common.value, 0.0),
         left,
@@ -238,7 +237,7 @@ class Diagnosis:
         return result
 
     def _raw(self, taken: list[Suspect]) -> Floats:
-        return self.law.raw + sum((one.shift for one in taken), np.zeros_like(self.law.raw))
+        return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Compute the likelihood of the pressures with several faults and one more.
@@ -306,11 +305,7 @@ class Diagnosis:
             for code, kind in codes.items():
                 if (label, kind) in had or first[j] == common_unknowns.NEVER:
                     continue
-                column = common_unknowns.moves(
-                    np.where(mine, code, common_unknowns.NEVER), law.fall, law.share
-                )
-                if kind == "offset":
-                    column = np.broadcast_to(mine * 1.0, none.shape)
+                column = mine * common_unknowns.moved_by(code, law.fall[:, j], law.share)[:, None]
                 chance, wide = common_unknowns.chance_of(code, len(law.time))
                 since, until = law.time[code] if kind == "slip" else NO_TIME, NO_TIME
                 if kind == "drift":
@@ -318,7 +313,7 @@ class Diagnosis:
                     span = self.measured.time[-1] - since
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, since=since, until=until)
-                yield Suspect(fault, column, wide, chance, none)
+                yield Suspect(fault, column, wide, chance)
         start = (
             NEVER
             if self.alone
@@ -328,12 +323,12 @@ class Diagnosis:
             step = np.where(np.arange(len(law.time)) >= start, 1.0, 0.0)[:, None] + none
             fault = Fault(ALL, "moved", since=law.time[start])
             chance = float(np.log(common_unknowns.MOVED / len(law.time)))
-            yield Suspect(fault, step, common_unknowns.ELSEWHERE, chance, none)
+            yield Suspect(fault, step, common_unknowns.ELSEWHERE, chance)
         yield from (one for one in self.causes if (one.fault.label, one.fault.kind) not in had)
         for label, mine in self._whose():
             if (label, "gain") not in had and not self.alone:
                 chance = float(np.log(ALL_GAINS if label == ALL else GAINS))
-                yield Suspect(Fault(label, "gain"), depth * mine, GAIN, chance, none)
+                yield Suspect(Fault(label, "gain"), depth * mine, GAIN, chance)
             if (label, "clock") not in had:
                 late = self._late(taken, begun.left, mine)
                 if late.fault.value:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.finished import labels_of
-from calm.dataset.discovery import FLAGS, written
+from calm.dataset.discovery import FLAGS, OF_FLAGS, written
 from calm.errors import UsageError, refused
 from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.matching import LinePlaces, points_of
@@ -219,8 +219,7 @@ def write_depths(
     })  # fmt: skip
     copy[mark] = xr.Variable(dims, tables[2], {
         "standard_name": "quality_flag", "long_name": "quality flag of the depth",
-        "flag_values": np.array(list(FLAGS), np.int8), "flag_meanings": " ".join(FLAGS.values()),
-        "conventions": "OceanSITES QC Flags",
+        **OF_FLAGS, "flag_values": np.array(list(FLAGS), np.int8),
     })  # fmt: skip
     _add_salinity(copy, instruments, depth)
     _drop_references(copy)

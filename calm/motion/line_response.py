@@ -35,26 +35,26 @@ class LineResponse:
         group: Integers | None = None,
     ) -> None:  # fmt: skip
         self.measured, self.forward, self.shifted = measured, forward, shifted
-        self.group = measured.group if group is None else group
+        self.group = np.arange(measured.u.shape[1]) if group is None else group
         self.groups = int(self.group.max()) + 1 if len(self.group) else 0
 
-    def depths(self, way: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
+    def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
         """Return (n, p) depths of the points with factors on the currents.
 
         Parameters
         ----------
-        way : interpretation of the currents
+        read : interpretation of the currents
         logs : (n, g) logarithms of the factors on the currents
         forward : mooring to use; by default that of the block
         """
         factor = np.exp(logs[:, self.group])
-        return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
+        return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
-    def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
+    def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
         """Return depths and slopes for factors of the currents, given as logarithms (n, g)."""
-        there = self.depths(way, logs)
-        own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
-        common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
+        there = self.depths(read, logs)
+        own = [self.depths(read, logs + ahead) for ahead in STEP * np.eye(self.groups)]
+        common = [self.depths(read, logs, forward) for forward in self.shifted.values()]
         return Linear(logs, there, _slopes(own, there), _slopes(common, there))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -25,7 +25,6 @@ from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS, instruments_of
 from calm.motion.matching import without
 from calm.motion.measurements import (
-    CurrentMeasurements,
     MooringMeasurements,
     joined,
     read_currents,
@@ -47,14 +46,6 @@ CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
 """Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
 GAP = np.timedelta64(2, "h")
 """Default limit on the gap over which values are interpolated."""
-
-
-def by_clocks(
-    one: CurrentMeasurements, clocks: Mapping[str, matching.Clock]
-) -> CurrentMeasurements:
-    """Correct the times of currents if their file has one clock, and this clock was checked."""
-    found = [clocks[label] for label in one.label if label in clocks]
-    return replace(one, time=found[0].true_times(one.time)) if found else one
 
 
 RARE = 0.1
@@ -187,7 +178,9 @@ class RecoveredMooring:
         points = self._without(points, line.label)
         first = min(time[0] for time in [one.time for one in read] + [one.time for one in given])
         clocks = matching.clocks_of(mooring, first)
-        read = [by_clocks(one, clocks) for one in read]
+        for i, one in enumerate(read):  # a file has one clock
+            for clock in [clocks[label] for label in one.label if label in clocks][:1]:
+                read[i] = replace(one, time=clock.true_times(one.time))
         used, absolute = [], "air" in self.correct
         for i, at in points.items():
             depth = given[i].value - sensors.AIR * absolute

@@ -50,7 +50,7 @@ class Suspect:
     column : (n, s) change in the measured depths per unit of its size
     wide : prior deviation of its size; 0 for a fixed size
     log : logarithm of its prior probability
-    shift : (n, s) fixed change in the depths [m]
+    shift : (n, s) fixed change in the depths [m]; 0 if the size is fitted
     ahead : (n, s) change in the depths for a size that applies throughout [m]; None if linear
     share : (n, 1) share of the size at each time; None if it is constant
     """
@@ -59,7 +59,7 @@ class Suspect:
     column: Floats
     wide: float
     log: float
-    shift: Floats
+    shift: Floats | float = 0.0
     ahead: Callable[[float], Floats] | None = None
     share: Floats | None = None
 
@@ -79,19 +79,18 @@ class Suspect:
 
 
 def line_suspects(
-    task: Task, moments: LineResponse, way: ReadCurrents, at: Linear
+    task: Task, moments: LineResponse, read: ReadCurrents, at: Linear
 ) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
     Parameters
     ----------
     moments : line response at several times
-    way, at : currents at these times, and the line in them
+    read, at : currents at these times, and the line in them
     """
     one, factors = moments.measured, task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
-    span = task.measured.time[[0, -1]]
-    share = ((one.time[good] - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")))[:, None]
+    share = task.measured.elapsed(one.time[good])[:, None]
 
     def seen(slope: Floats) -> Floats:
         return slope[good][:, one.point]
@@ -101,19 +100,18 @@ def line_suspects(
         ahead: Callable[[float], Floats] | None = None, part: Floats | None = None,
     ) -> Suspect:  # fmt: skip
         wide, chance = CAUSES[kind]
-        fault = Fault(label, kind, value=1.0)
-        log, none = float(np.log(chance / among)), np.zeros_like(column)
-        return Suspect(fault, column, wide, log, none, ahead, part)
+        log = float(np.log(chance / among))
+        return Suspect(Fault(label, kind, value=1.0), column, wide, log, 0.0, ahead, part)
 
     def dragged(size: float) -> Floats:
         grown = {n: v * np.exp(size * n.endswith("drag")) for n, v in factors.items()}
-        there = moments.depths(way, at.logs, Forward(task.mooring, grown))
+        there = moments.depths(read, at.logs, Forward(task.mooring, grown))
         return np.nan_to_num(seen(there - at.depth))
 
     def misread(level: int) -> Callable[[float], Floats]:
         mine = np.arange(moments.groups) == level
         return lambda size: np.nan_to_num(
-            seen(moments.depths(way, at.logs - size * mine) - at.depth)
+            seen(moments.depths(read, at.logs - size * mine) - at.depth)
         )
 
     names = list(factors)
@@ -121,7 +119,7 @@ def line_suspects(
     for name in FACTORS:
         if name not in columns:
             forward = Forward(task.mooring, {**factors, name: float(np.exp(STEP))})
-            ahead = moments.depths(way, at.logs, forward)
+            ahead = moments.depths(read, at.logs, forward)
             columns[name] = np.nan_to_num(seen((ahead - at.depth) / STEP))
     yield suspect(LINE, "length", columns["length"])
     yield suspect(LINE, "buoyancy", columns["buoyancy"])

@@ -14,7 +14,7 @@ from calm.motion.common_unknowns import (
     common_step,
     fall,
     first_time,
-    moves,
+    moved_by,
 )
 
 TIMES, SENSORS = 12, 3
@@ -61,7 +61,7 @@ def test_a_sensor_that_drifts_has_not_slipped(code):
     left[:, 1] += 12.0 * RAMPS[code]
     first = first_time(law_of(left), np.zeros(5), np.diag(BEFORE))
     assert first[1] == code
-    column = moves(first, FALL, SHARE)[:, 1]
+    column = moved_by(int(first[1]), FALL[:, 1], SHARE)
     assert column == pytest.approx(RAMPS[code])
 
 
