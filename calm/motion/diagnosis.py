@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import (
     DATUM,
-    NEVER,
     ROBUST,
     LinearLaw,
     common_beforehand,
     fixed_slopes,
     repeated,
+    step_times,
 )
 from calm.motion.correction import Task
 from calm.motion.line_response import LineResponse
@@ -293,17 +293,19 @@ class Diagnosis:
             if one.wide:
                 raw = raw - one.column * one.fault.size
         rest = replace(law, raw=raw, left=begun.left)
-        first = common_unknowns.first_time(rest, np.zeros(len(self.spread)), self.spread)
+        sensors = np.arange(len(self.label))
+        columns = [law.fall * (sensors == j) for j in sensors]
+        *slips, start = step_times(rest, self.spread, [*columns, none + 1.0])
         for j, label in enumerate(self.label):
-            mine = np.arange(len(self.label)) == j
+            mine = sensors == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
             # inferred currents adapt to the zero of a sensor
             if not self.alone:
                 codes[0] = "offset"
-            if first[j] > 0:
-                codes[int(first[j])] = "slip"
+            if slips[j]:
+                codes[slips[j]] = "slip"
             for code, kind in codes.items():
-                if (label, kind) in had or first[j] == common_unknowns.NEVER:
+                if (label, kind) in had or law.known[:, j].sum() < common_unknowns.FEWEST:
                     continue
                 column = mine * common_unknowns.moved_by(code, law.fall[:, j], law.share)[:, None]
                 chance, wide = common_unknowns.chance_of(code, len(law.time))
@@ -314,12 +316,8 @@ class Diagnosis:
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, since=since, until=until)
                 yield Suspect(fault, column, wide, chance)
-        start = (
-            NEVER
-            if self.alone
-            else common_unknowns.common_step(rest, np.zeros(len(self.spread)), self.spread)
-        )
-        if start != NEVER and len(self.label) > 1 and (ALL, "moved") not in had:
+        several = len(self.label) > 1 and not self.alone
+        if several and start and (ALL, "moved") not in had:
             step = np.where(np.arange(len(law.time)) >= start, 1.0, 0.0)[:, None] + none
             fault = Fault(ALL, "moved", since=law.time[start])
             chance = float(np.log(common_unknowns.MOVED / len(law.time)))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Design
 from calm.files.pieces import clamps_down
-from calm.motion.common_unknowns import Common
+from calm.motion.common_unknowns import FACTORS, Common
 from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
@@ -62,14 +62,6 @@ def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
     """Return (n, p, m) slopes, from depths (n, p) and depths a step ahead in each direction [m]."""
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
-
-
-FACTORS = ("cable_drag", "rigid_drag", "buoyancy", "length")
-"""Factors that may be estimated for a whole record.
-
-They apply to the drag of cables and chains; the drag of rigid pieces and clamped instruments; the
-net force of all buoyant pieces; and the lengths of cables and chains.
-"""
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:

@@ -240,7 +240,7 @@ class CurrentSmoother:
         self.sensor_weight = np.ones(one.depth.shape)
         factors, datum = dict.fromkeys(self.names, 1.0), common_unknowns.DATUM * self.seabed
         prior = common_unknowns.common_beforehand(factors, datum, sensors).covariance
-        self.common_covariance = prior
+        self.common_covariance: Floats = prior
         self.factor_prior, self.begin = np.split(prior.diagonal(), [len(factors)])
         self.first = self.begin
         self._last, self._longer = 0.0, 4.0
@@ -362,7 +362,8 @@ class CurrentSmoother:
         fade = np.tile(np.exp(-step / self.scales.hours), (1, len(steady)))
         flow = np.hstack([one.u, one.v]) - weights @ self.mean
         noise = np.tile(self.alike * self.meter_noise / self.meter_weight, (1, 2))
-        return StateSpace(fade, steady, np.zeros_like(fade), steady, (weights[None],), flow, noise)
+        seen = np.broadcast_to(weights, (len(fade), *weights.shape))
+        return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
         """Return the linear law about the state, and (n, p, q) slopes of all points."""
@@ -386,15 +387,16 @@ class CurrentSmoother:
         slope[:, :, at.factor] = self.slope[:, :, flows:]
         slope[:, :, at.share] = self.scales.share * self.by_line(there)
         slope[:, :, at.tide] = slope[:, :, at.datum] = 1.0
-        meters = np.zeros((1, own.read.shape[1], at.count))
-        meters[:, :, at.current] = own.seen[0]
-        seen = slope[:, one.point].copy()
-        seen[:, :, at.offset] = np.eye(len(one.label))
+        sensors = slice(own.read.shape[1], None)
+        seen = np.zeros((n, sensors.start + len(one.label), at.count))
+        seen[:, : sensors.start, at.current] = own.seen
+        seen[:, sensors] = slope[:, one.point]
+        seen[:, sensors, at.offset] = np.eye(len(one.label))
         base = (there + self.bend)[:, one.point]
-        base -= np.einsum("nsq,nq->ns", seen[:, :, at.current], self.state[:, at.current])
+        base -= np.einsum("nsq,nq->ns", seen[:, sensors, at.current], self.state[:, at.current])
         read = np.hstack([own.read, one.depth - base - one.surface[:, None]])
         noise = np.hstack([own.noise, common_unknowns.NOISE**2 / self.sensor_weight])
-        return StateSpace(fade, steady, stepped, first, (meters, seen), read, noise), slope
+        return StateSpace(fade, steady, stepped, first, seen, read, noise), slope
 
     @cached_property
     def alike(self) -> float:
@@ -474,7 +476,8 @@ class CurrentSmoother:
         before = np.diag(1.0 / np.concatenate([self.factor_prior, self.first]))
         pulls = law.pulls(law.fixed, raw)
         alike = common_unknowns.repeated(law.pulls(law.fixed, left)[:, 0])
-        self.common_covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        self.common_covariance = np.asarray(covariance, np.float64)
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
         # drag times the square of the speed fits the pressures
@@ -508,7 +511,7 @@ class CurrentSmoother:
         for each in smoothed(law):
             t, spread = each.times, each.covariance
             now[t] = each.mean
-            seen, here = law.slopes(t), slope[t]
+            seen, here = law.seen[t], slope[t]
             left[t] -= np.einsum("nmq,nq->nm", seen, each.mean)
             wide[t] = (seen @ spread * seen).sum(axis=2)
             variance[t] = (here @ spread * here).sum(axis=2)

@@ -20,9 +20,10 @@ from calm.dataset.discovery import hashed
 from calm.errors import UsageError, not_among, unknown
 from calm.files.mooring_file import refuse_all_but_moorings
 from calm.motion import matching, sensors
+from calm.motion.common_unknowns import FACTORS
 from calm.motion.correction import BLOCK, MeasuredRecord, Task, motion_layout, solve_times
 from calm.motion.diagnosis import diagnosed
-from calm.motion.line_response import FACTORS, instruments_of
+from calm.motion.line_response import instruments_of
 from calm.motion.matching import without
 from calm.motion.measurements import (
     MooringMeasurements,
@@ -161,9 +162,12 @@ class RecoveredMooring:
         wanted = sensors.parse_flags(self.flags)
         given = sensors.read_sensors(self.pressures, wanted, position.latitude, seabed)
         if self.match == "label":
-            points, notes = matching.matched_by_label(given, line)
+            points, notes = matching.points_of(given, line)
         else:
             points, notes = matching.matched_by_place(given, line, instruments_of(mooring))
+        parts = [line.label[at] for at in points.values()]
+        if twice := next((label for label in parts if parts.count(label) > 1), ""):
+            raise UsageError(f"--pressures: two sensors are called `{twice}`")
         of_files = {id(one.card): one.card for one in given if one.card is not None}
         read = read_currents(
             self.currents, seabed, (position.latitude, position.longitude), self.declination,
@@ -178,9 +182,9 @@ class RecoveredMooring:
         points = self._without(points, line.label)
         first = min(time[0] for time in [one.time for one in read] + [one.time for one in given])
         clocks = matching.clocks_of(mooring, first)
-        for i, one in enumerate(read):  # a file has one clock
-            for clock in [clocks[label] for label in one.label if label in clocks][:1]:
-                read[i] = replace(one, time=clock.true_times(one.time))
+        for i, current in enumerate(read):  # a file has one clock
+            for checked in [clocks[label] for label in current.label if label in clocks][:1]:
+                read[i] = replace(current, time=checked.true_times(current.time))
         used, absolute = [], "air" in self.correct
         for i, at in points.items():
             depth = given[i].value - sensors.AIR * absolute

@@ -17,10 +17,10 @@ import numpy as np
 from calm.case import Design
 from calm.files.pieces import clamps_down
 from calm.motion import line_response
-from calm.motion.common_unknowns import NOISE, NORMAL
+from calm.motion.common_unknowns import FACTORS, NOISE, NORMAL
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.line_response import FACTORS, STEP, Forward, LineResponse
+from calm.motion.line_response import STEP, Forward, LineResponse
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
