@@ -562,7 +562,9 @@ class CurrentSmoother:
         now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
         self.state = now
         there = self.depths(now[:, at.current], self.factor, slice(None))
-        self.levels = self._levels_at(there)
+        on_line = one.level_point != FREE
+        hung = there[:, one.level_point[on_line]]
+        self.levels[:, on_line] = np.where(np.isfinite(hung), hung, self.levels[:, on_line])
         self.knot_depth = self.knots.at(self.levels)
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
@@ -574,13 +576,6 @@ class CurrentSmoother:
             + np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
         )
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
-
-    def _levels_at(self, there: Floats) -> Floats:
-        levels = self.levels.copy()
-        for k, point in enumerate(self.measured.level_point.tolist()):
-            if point != FREE:
-                levels[:, k] = np.where(np.isfinite(there[:, point]), there[:, point], levels[:, k])
-        return levels
 
     # --- results
 

@@ -187,17 +187,8 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
     return np.where(near, result, np.nan)
 
 
-def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Return depths of a sensor at other times.
-
-    A reading at exactly that time, even a missing one, is returned without interpolation.
-
-    Parameters
-    ----------
-    one : series of the sensor
-    wanted : (n,) other times
-    gap : longest gap over which values are interpolated
-    """
+def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
+    """Interpolate depths to other times, except a reading at that time, even a missing one."""
     result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
@@ -264,7 +255,7 @@ def joined(
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
     sensors, point = [sensors[i] for i in order], np.array([points[i] for i in order], np.int64)
-    depth = np.stack([measured_at(one, time, gap) for one in sensors], axis=1)
+    depth = np.stack([_measured_at(one, time, gap) for one in sensors], axis=1)
     columns: list[tuple[float, int, Floats, Floats, Floats, NDArray[np.int8]]] = []
     for one in currents:
         for k, label in enumerate(one.label):

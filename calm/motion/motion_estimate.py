@@ -78,7 +78,7 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     return [shared]
 
 
-def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
+def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     """Return the factors to estimate: the defaults, and the requested factors.
 
     By default these are the drag factors. Without currents, a factor on all drag is equivalent to
@@ -86,11 +86,11 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
 
     UsageError: a requested factor cannot be estimated.
     """
-    for name in asked:
+    for name in requested:
         if name not in FACTORS:
             raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
     usual = ("cable_drag", "rigid_drag") if currents else ("rigid_drag", "length")
-    return tuple(name for name in FACTORS if name in asked or name in usual)
+    return tuple(name for name in FACTORS if name in requested or name in usual)
 
 
 @dataclass
@@ -238,8 +238,8 @@ class RecoveredMooring:
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
         """Return the points of the sensors in use. Labels to ignore must exist."""
         known = [labels[at] for at in points.values()]
-        for option, asked in (("--without", self.without), ("--hold-out", self.hidden)):
-            for label in asked:
+        for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
+            for label in given:
                 if label not in known:
                     what = f"{option}: no sensor is called `{label}`"
                     raise UsageError(unknown(what, label, known))

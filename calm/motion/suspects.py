@@ -162,7 +162,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             return 0j, 0j, 1.0
         return np.vdot(b, a) / (own * his), a @ b / (own * his), float(own / his)
 
-    said = []
+    remarks = []
     for k, name in enumerate(names if len(names) > 2 else []):
         near = sorted((j for j in range(len(names)) if j != k), key=lambda j: abs(j - k))[:2]
         (*straight, agree), (*mirror, _), (*fast, usual) = zip(
@@ -183,17 +183,17 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             count = len(known) * (1.0 - alike) / (1.0 + alike)  # number of independent times
             part = min(min(np.abs(straight)), 1.0) ** 2
             band = BAND * np.degrees(np.sqrt((1.0 - part) / (2.0 * part * count)))
-            way = "clockwise" if mean > 0.0 else "anticlockwise"
+            sense = "clockwise" if mean > 0.0 else "anticlockwise"
             why = "its compass, its declination, or a current that veers there"
             if abs(mean) > 180.0 - least - band:
                 why = "it says where the current comes from, or both signs are wrong"
-            what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {way}: {why}"
+            what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {sense}: {why}"
         elif max(fast) * UNLIKE < min(1.0, usual) or min(fast) > UNLIKE * max(1.0, usual):
             what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} of theirs: its unit"
         else:
             continue
-        said.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
-    return said
+        remarks.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
+    return remarks
 
 
 STRETCHED, AMISS = 1.25, 20.0
