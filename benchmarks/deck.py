@@ -22,7 +22,7 @@ from calm.deck.deck_items import Order, deck_items_of
 from calm.deck.hardware import cuts_of
 from calm.drop import drop_plan
 from calm.report.deck_files import deck_report
-from calm.report.diagram import Paper
+from calm.report.diagram import PageSize
 from calm.report.folder import printed
 
 COMPONENTS = """
@@ -72,7 +72,7 @@ def main(counts: list[int], times: int) -> None:
                 lambda result=result, parts=parts: cuts_of(result, parts, Order.ANCHOR_LAST),
                 lambda line=line: deck_of([line], Order.ANCHOR_FIRST),
                 lambda line=line: drop_plan(line),
-                lambda deck=deck: printed(deck_report(deck, Paper("a4")), Paper("a4")),
+                lambda deck=deck: printed(deck_report(deck, PageSize("a4")), PageSize("a4")),
                 lambda line=line, more=more: comparison_of(("a", "b"), line, more),
             ]
             figures = "".join(f"{fastest(work, times):10.3f}" for work in works)

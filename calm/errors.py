@@ -14,7 +14,7 @@ import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from calm.units import QuantityError
@@ -25,6 +25,11 @@ T = TypeVar("T")
 
 class CalmError(Exception):
     """Base class of all errors raised intentionally by CALM; messages are written for users."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Python restores an exception by calling its class with its message alone, which fails in
+        # a class with other parameters; processes exchange these errors
+        return type(self).__new__, (type(self), *self.args), vars(self)
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def beside(target: Path) -> Iterator[Path]:
     Raises
     ------
     OSError
-        The system refuses; the target is unchanged, and no temporary file is left.
+        The system rejects the file; the target is unchanged, and no temporary file is left.
     """
     part = target.with_name(f".{target.name[:_LONGEST]}.{os.urandom(6).hex()}{UNFINISHED}")
     part.touch(exist_ok=False)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import calm
 from calm.checks.assessment import Assessment
-from calm.checks.design_check import assessment_of, stands_of
+from calm.checks.design_check import assessment_of, environments_checked
 
 LINES = Path(__file__).resolve().parents[1] / "lines"
 
@@ -40,7 +40,7 @@ def judged(path: Path, *environments: str) -> Assessment:
     moorings = [calm.load(path, environment=name) for name in (None, *environments)]
     name = moorings[0].file.name
     return assessment_of(
-        name, [stand for mooring in moorings for stand in stands_of(mooring, name)]
+        name, [stand for mooring in moorings for stand in environments_checked(mooring, name)]
     )
 
 

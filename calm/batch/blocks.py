@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from calm.batch.dataset import laid_out
 from calm.batch.profiles import Batch, processors
 from calm.batch.statuses import STATUSES, Ending, endings
-from calm.dataset.netcdf import Chunks, ResultLayout, packed, write_netcdf
+from calm.dataset.netcdf import Attributes, Chunks, ResultLayout, packed, write_netcdf
 from calm.records.record import Levels
 
 IN_PROGRESS = 2
@@ -125,7 +125,7 @@ def write_solved(
     solved: Iterator[SolvedBlock],
     output: Path,
     progress: Callable[[Progress], None] | None = None,
-    last: Callable[[], Mapping[str, str]] = dict,
+    last: Callable[[], Attributes] = dict,
 ) -> dict[str, int]:
     """Write solved blocks to a file, and return the number of profiles with each status.
 

@@ -142,7 +142,7 @@ def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
                 return False
             first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[leg_numbers.HUNG] and above_bed(net, i, arrays.x, record, n) < -near:
+            if n < state[leg_numbers.SUSPENDED] and above_bed(net, i, arrays.x, record, n) < -near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False

@@ -28,7 +28,7 @@ OF_ENDS = (
     "other_used_buoyancy",
 )  # fmt: skip
 
-NO_CURRENT, LEVELS_COINCIDE, HEAPED, LACKS_ROOM = range(100, 104)
+NO_CURRENT, LEVELS_COINCIDE, LIES_ON_SEABED, LACKS_ROOM = range(100, 104)
 """Outcomes of a profile in addition to those in `calm.solve.solution`: no level with a value; two
 levels at one depth; a piece other than chain on the seabed, for a sub-surface line; too many
 segments for the work arrays.
@@ -124,8 +124,8 @@ def solve_rows(
                 ending = LACKS_ROOM
         endings[case] = ending
         if ending == FOUND:
-            if is_heap(problem, arrays):
-                endings[case] = HEAPED
+            if lies_on_seabed(problem, arrays):
+                endings[case] = LIES_ON_SEABED
             measure(problem, referee, arrays, results, case)
 
 
@@ -180,7 +180,7 @@ def refused_at_once(limits: Limits) -> int:
     return UNSUPPORTED if refused == TOO_HEAVY else FOLDED
 
 
-def is_heap(problem: LineProblem, arrays: ProfileArrays) -> bool:
+def lies_on_seabed(problem: LineProblem, arrays: ProfileArrays) -> bool:
     """Return whether a piece of a sub-surface line lies on the seabed where it must not."""
     found, record = problem.work.found, problem.work.records[FINE]
     if found[SOUGHT] != BELOW:

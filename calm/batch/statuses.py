@@ -6,7 +6,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.solving import HEAPED, LEVELS_COINCIDE, NO_CURRENT
+from calm.batch.solving import LEVELS_COINCIDE, LIES_ON_SEABED, NO_CURRENT
 from calm.case.leg import Leg
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, IMPOSSIBLE
@@ -48,8 +48,8 @@ OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
 
 def status_of(leg: Leg, ending: int) -> int:
     """Return the index in `STATUSES` for an outcome of the solver, for a profile of a mooring."""
-    if ending == HEAPED:
-        return STATUSES.index(leg.heaped("a piece").status)
+    if ending == LIES_ON_SEABED:
+        return STATUSES.index(leg.grounded_error("a piece").status)
     return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)
 
 

@@ -105,7 +105,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         to=to,
         bounded=False,
         note="Only the net buoyancy changes; size, drag and mass do not. A real part with this "
-        "buoyancy has a different drag: put it in the file and solve the mooring again.",
+        "buoyancy has a different drag: put that part in the file and solve the mooring again.",
     )
 
 

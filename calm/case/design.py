@@ -705,16 +705,16 @@ def load_in(
     Raises InputError with the mistakes of all environments.
     """
     reader = MooringReader(path, catalogs=catalogs, text=text)
-    asked, read = [*(environments or (None,))], []
+    chosen, read = [*(environments or (None,))], []
     problems: dict[Problem, None] = {}
-    for name in asked:
+    for name in chosen:
         try:
             file = reader.in_environment(name)
         except InputError as error:
             problems |= dict.fromkeys(error.problems)
             continue
         if environments is None and name is None and file.tow is None:
-            asked += file.variants
+            chosen += file.variants
         read.append(Design(file, origin=Origin(path, name, tuple(map(Path, catalogs)), text)))
     if problems:
         raise InputError(list(problems))

@@ -214,7 +214,7 @@ class Leg:
                 return self.memory.of(solve_tow, self.line, water, self.towing, self.settings)
             solution = self.memory.of(solve_mooring, self.line, water, self.settings)
         self.refuse_a_lifted_anchor(solution)
-        self._refuse_a_heap(solution)
+        self._refuse_grounded_pieces(solution)
         self.refuse_in_the_slope(solution)
         return solution
 
@@ -230,7 +230,7 @@ class Leg:
                 f"{weight:.0f} N."
             )
 
-    def _refuse_a_heap(self, solution: Solution) -> None:
+    def _refuse_grounded_pieces(self, solution: Solution) -> None:
         """Raise NoEquilibrium if a piece other than chain of a sub-surface line lies on the
         seabed.
         """
@@ -239,9 +239,9 @@ class Leg:
         pieces = self.file.pieces
         for lying in sorted(set(solution.element_piece[solution.hanging :].tolist())):
             if pieces[lying].component.kind != "chain":
-                raise self.heaped(pieces[lying].label)
+                raise self.grounded_error(pieces[lying].label)
 
-    def heaped(self, label: str) -> NoEquilibrium:
+    def grounded_error(self, label: str) -> NoEquilibrium:
         """Return the exception for a sub-surface line with a piece other than chain on the
         seabed.
         """

@@ -773,6 +773,7 @@ MOORED_ENDS = (
         "depth of the free end",
         _OF_ENDS,
         found=lambda line: _free(line) * line.top.depth,
+        attributes=_LEVEL,
     ),
     ResultColumn(
         "anchor_vertical",
@@ -812,6 +813,7 @@ TOWED_ENDS = (
         "speed of the ship over the ground",
         Output.NETCDF,
         found=lambda tow: tow.file.tow.speed,
+        attributes={"standard_name": "platform_speed_wrt_ground"},
     ),
     ResultColumn(
         "body_depth",
@@ -819,6 +821,7 @@ TOWED_ENDS = (
         "depth of the towed body",
         Output.NETCDF,
         found=lambda tow: tow.body.depth,
+        attributes=_LEVEL,
     ),
     ResultColumn(
         "layback",

@@ -155,7 +155,7 @@ def size(
     before = at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
-            f"{wanted.text}: the mooring as given has no such value to start "
+            f"{wanted.text}: the present mooring has no such value to start "
             f"from{f' ({before.failure})' if before.failure else ''}; write <= or >="
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
@@ -254,5 +254,5 @@ def _why_not(
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):
         failure = at(neighbour).failure
         if failure is not None:
-            message += f" {side} that: {failure.status}: {failure.message}"
+            message += f" {side} this value: {failure.status}: {failure.message}"
     return message, "Relax the target, change another part, or extend the range with --between."

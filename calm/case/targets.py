@@ -117,7 +117,7 @@ def parse_target(text: str, file: MooringFile) -> Target:
             correction = f"no leg `{leg}` has an anchor" if leg else "name the leg of the anchor"
             raise mistake("part" if leg else "quantity", unknown(correction, leg or "", anchored))
     elif found["part"] is not None and quantity == "required_weight":
-        raise mistake("part", "the required weight belongs to the anchor; leave out the brackets")
+        raise mistake("part", "the required weight belongs to the anchor; omit the brackets")
     part = TOP if found["part"] is None else found["label"].strip()
     called_top = any(each.label == TOP for each in parts_of(pieces))
     if quantity != "required_weight" and (part != TOP or called_top):

@@ -323,7 +323,7 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
             else "are several floats at the surface"
         )
         state = "just immersed" if riding is None else "at the surface with drag `k_surface`"
-        yield f"{', '.join(afloat)} {reason}: assumed {state}, without a draft."
+        yield f"{', '.join(afloat)} {reason}; assumed {state}, so the draft is unknown."
 
 
 def _wind_ignored(result: _Measured, solution: Solution) -> Iterator[str]:

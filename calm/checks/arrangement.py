@@ -89,9 +89,9 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             f"{LEAST_BELOW_RELEASE:g} m keeps a release clear of mud and of falling gear."
         )
         doubts.append((piece, message, "Insert rope or chain between release and anchor."))
-    said = _words(piece.use, piece.component.name, piece.label)
+    text = _words(piece.use, piece.component.name, piece.label)
     alone = sum(component.role == "release" for component in above) == 1
-    if alone and leg.water.depth > GRAPPLED and not _TWICE.search(said):
+    if alone and leg.water.depth > GRAPPLED and not _TWICE.search(text):
         message = f"{piece.label} is the only release: if it fails, the line stays moored."
         remedy = "Use two releases in parallel, with `pair` in their label."
         doubts.append((piece, message, remedy))
@@ -136,8 +136,8 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
     for index, piece in enumerate(pieces):
         if not _bears_torque(piece.component):
             continue
-        ways = (pieces[:index][::-1], pieces[index + 1 :])
-        ends = [held for way in ways if (held := _held_by(way)) is not None]
+        directions = (pieces[:index][::-1], pieces[index + 1 :])
+        ends = [held for pieces_there in directions if (held := _held_by(pieces_there)) is not None]
         if not ends:
             continue
         turning = next((beside for beside, has_swivel in ends if has_swivel), None)
@@ -156,18 +156,18 @@ def _bears_torque(component: Component) -> bool:
         return False
     balanced = component.torque_balanced
     if balanced is None:
-        said = _words(component.material, component.name, component.note)
-        balanced = bool(_BALANCED.search(said)) and not _UNBALANCED.search(said)
+        text = _words(component.material, component.name, component.note)
+        balanced = bool(_BALANCED.search(text)) and not _UNBALANCED.search(text)
     of_steel = any("steel" in each.name for each in materials_in(component.material))
     return of_steel and not balanced
 
 
-def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
+def _held_by(pieces_there: Sequence[Piece]) -> tuple[Piece, bool] | None:
     """Find the float at one end of a wire, and whether a swivel lies between them; None without a
     float.
     """
     has_swivel = False
-    for piece in way:
+    for piece in pieces_there:
         if isinstance(piece.component, Flexible):
             return None
         if piece.component.role == "float" and piece.component.net_buoyancy > 0.0:
@@ -221,8 +221,8 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 def metals(handling: Handling) -> Iterator[Verdict]:
     """Report contacts between metals far apart in the galvanic series, if both materials are known.
 
-    Pieces and clamps that are `insulated` touch nothing. The jaws of clamps for instruments are of
-    plastic, so a clamp touches its line only if the component of the clamp has `insulated: false`.
+    Pieces and clamps that are `insulated` have no contact. Instrument clamps have plastic jaws, so
+    a clamp is in contact with its line only if its component has `insulated: false`.
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
@@ -245,12 +245,12 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
     """Yield the contacts of dissimilar metals: the less noble part, the more noble part, their
     potential difference [V].
 
-    A part that is `insulated` touches nothing.
+    A part that is `insulated` has no contact.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
-        said = _words(piece.use, piece.component.name, piece.component.material)
-        if not any(word in said for word in _INSULATED):
+        text = _words(piece.use, piece.component.name, piece.component.material)
+        if not any(word in text for word in _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
         if _is_insulated(one) or _is_insulated(other):
@@ -286,7 +286,7 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
-def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
+def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
     """Check the larger axial force on each clamp [N] during anchor descent and ascent.
 
     The descent speed is the maximum of the launch, the ascent speed the terminal rise speed. Drag
@@ -311,7 +311,7 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
-"""Diameter range of jacketed wire for the wheels of moored profilers, 1/4 to 3/8 in [m]. Source:
+"""Diameter range of jacketed wire on which moored profilers travel, 1/4 to 3/8 in [m]. Source:
 McLane Moored Profiler, user manual.
 """
 
@@ -340,7 +340,7 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
         f"the profiler needs {say('load', least)} to travel."
     )
     yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
-    yield from _way_of(part, wire)
+    yield from _path_obstacles(part, wire)
     if component.drive_force is None:
         message = f"The drive force of {part.label} is unknown; it may be too weak to climb."
         yield unknown(part, message, "Set its `drive_force` and `speed`.", lacks="drive_force")
@@ -372,7 +372,7 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
             yield verdict_on(part, State.WARN, message, "Shorten the profile, or increase `speed`.")
 
 
-def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
+def _path_obstacles(part: Clamp, wire: Piece) -> Iterator[Verdict]:
     """Yield obstacles to a profiler: clamps on its path, or a wire of unsuitable diameter."""
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
@@ -406,9 +406,9 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     grip, breaking = part.component.grip, part.component.breaking_load
     load = f"Load on the clamp of {part.label}{when} is {say('load', pull)}"
     if grip is not None:
-        message = f"{load}; it grips {say('load', grip)}."
+        message = f"{load}; its grip is {say('load', grip)}."
         return at_most(part, pull, grip, message, _HOLDS)
     if breaking is not None:
-        message = f"{load}; it breaks at {say('load', breaking)}."
+        message = f"{load}; its breaking load is {say('load', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
     return verdict_on(part, State.NOT_JUDGED, f"{load}; its `grip` is unknown.", value=pull)

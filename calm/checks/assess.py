@@ -49,9 +49,10 @@ from calm.checks.drag_range import drag_coefficient
 from calm.checks.environments import environment
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing, grouped_by
 from calm.checks.inventory import inventory_of
+from calm.checks.leg_graph import LegGraph
 from calm.checks.missing import is_lacking, missing, with_missing
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
-from calm.checks.recovery import breaks_of, losses_of, recovery_of
+from calm.checks.recovery import recovery_of
 from calm.checks.situations import STRUMMING, currents, equilibrium
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
@@ -62,7 +63,7 @@ from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import CompiledPart, expect_many
 
 
-def judged_stand(
+def checked_environment(
     situations: tuple[Situation, ...],
     leg: Leg,
     name: str,
@@ -118,7 +119,7 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 
 
 def assessment_of(
-    name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
+    name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
     """Assess a mooring in all its environments, and its handling in one environment.
 
@@ -128,26 +129,28 @@ def assessment_of(
     ----------
     day : date on which acceptances must be valid; today by default
     """
-    stands = with_cases(stands)
-    first = next((stand for stand in stands if stand.result is not None), stands[0])
+    in_environments = with_cases(in_environments)
+    first = next(
+        (stand for stand in in_environments if stand.result is not None), in_environments[0]
+    )
     handling = _handled(first)
     acceptance = Acceptance.of_file(first.leg.file, day)
-    standing = [stand.leg for stand in stands if stand.result is not None]
+    standing = [stand.leg for stand in in_environments if stand.result is not None]
     findings = list(findings_of_currents(standing, name, acceptance)) if standing else []
-    results = [stand.result for stand in stands if stand.result is not None]
+    results = [stand.result for stand in in_environments if stand.result is not None]
     findings += findings_of_drag(results, name, acceptance)
     for each in ONCE:
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
-    findings = cased(findings, stands)
-    lacking = [one for stand in stands for one in stand.lacking]
+    findings = cased(findings, in_environments)
+    lacking = [one for stand in in_environments for one in stand.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
-    if first.result is not None and not moving(stand.leg for stand in stands):
+    if first.result is not None and not moving(stand.leg for stand in in_environments):
         still = equilibrium.find(situations.STILL_ONLY, name, first.environment)
         findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
     return Assessment(
         name=name,
-        stands=tuple(stands),
+        in_environments=tuple(in_environments),
         launch=None if isinstance(handling.launch, NoEquilibrium) else handling.launch,
         recovery=None if isinstance(handling.recovery, NoEquilibrium) else handling.recovery,
         backup=handling.backup,
@@ -156,16 +159,18 @@ def assessment_of(
         inventory=inventory_of(first.leg),
         findings=tuple(findings),
         notices=tuple(
-            acceptance.notices([*(one for stand in stands for one in stand.accepted), *findings])
+            acceptance.notices(
+                [*(one for stand in in_environments for one in stand.accepted), *findings]
+            )
         ),
     )
 
 
-def with_cases(stands: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
+def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
     """Return the moorings in their environments, with the codes of load cases added to their
     findings.
     """
-    numbers = _numbers(stands)
+    numbers = _numbers(in_environments)
 
     def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
         return tuple(
@@ -186,13 +191,15 @@ def with_cases(stands: Sequence[MooringInEnvironment]) -> tuple[MooringInEnviron
             accepted=coded(stand.accepted),
             lacking=coded(stand.lacking),
         )
-        for stand in stands
+        for stand in in_environments
     )
 
 
-def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -> list[Finding]:
+def cased(
+    findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
+) -> list[Finding]:
     """Add the load case of the environment to findings on currents and drag coefficients."""
-    numbers = _numbers(stands)
+    numbers = _numbers(in_environments)
     return [
         replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
         if one.rule in (currents.name, drag_coefficient.name)
@@ -201,12 +208,12 @@ def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -
     ]
 
 
-def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
+def _numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
     """Number the environments in order; each counts under its own name and under its name in
-    `stands`.
+    `in_environments`.
     """
     numbers: dict[str, int] = {}
-    for stand in stands:
+    for stand in in_environments:
         number = numbers.setdefault(
             stand.leg.file.environment.name or OWN, len({*numbers.values()}) + 1
         )
@@ -282,8 +289,8 @@ def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
     """Return whether a rule applies to a piece of a line, which may be a leg of a net."""
     anchored = file.pieces[-1].use != STAND_IN
-    asked = anchored or not (rule.of_anchor or piece == len(file.pieces) - 1)
-    return asked and rule.name not in left_out_of_a_leg(file)
+    applies = anchored or not (rule.of_anchor or piece == len(file.pieces) - 1)
+    return applies and rule.name not in left_out_of_a_leg(file)
 
 
 def _findings_in_waves(
@@ -307,7 +314,8 @@ def handled(leg: Leg, result: LegResult) -> Handling:
     """
     launch = or_why_not(launch_of, leg)
     recovery = or_why_not(recovery_of, leg, result)
-    return Handling(leg, launch, recovery, breaks_of(leg), losses_of(leg), result)
+    graph = LegGraph.upright(leg)
+    return Handling(leg, launch, recovery, graph.breaks(leg), graph.losses(leg), result)
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
@@ -317,7 +325,8 @@ def _handled(stand: MooringInEnvironment) -> Handling:
         return replace(handled(leg, result), leg=estimated(leg))
     failure = stand.situations[0].failure
     assert failure is not None
-    return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
+    graph = LegGraph.upright(leg)
+    return Handling(leg, failure, failure, graph.breaks(leg), graph.losses(leg))
 
 
 _MODULES = (
@@ -364,8 +373,8 @@ RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 
 
 HANDLED = 64
-"""Number of samples for which launch and recovery are solved: the first samples of the sequence,
-which are a valid sequence themselves.
+"""Number of samples for which launch and recovery are solved: the first of the sequence, since the
+beginning of a Sobol' sequence is itself a valid sequence.
 """
 
 Key = tuple[str, "Place | None"]
@@ -387,15 +396,17 @@ def with_probabilities(
         The number of samples is not a power of two within the limits.
     """
     normals = normals_of(checked_samples(samples), seed)
-    expect_many(samples * len(assessment.stands), CompiledPart.NEARBY)
+    expect_many(samples * len(assessment.in_environments), CompiledPart.NEARBY)
     draws = draws_of(assessment.file.uncertainty, normals)
-    stands = tuple(_stand(stand, draws, mapped) for stand in assessment.stands)
-    first = next((stand for stand in assessment.stands if stand.result is not None), None)
+    in_environments = tuple(_stand(stand, draws, mapped) for stand in assessment.in_environments)
+    first = next((stand for stand in assessment.in_environments if stand.result is not None), None)
     findings = assessment.findings
     if first is not None:
         broken = _broken(first.leg, draws[:HANDLED], mapped, standing=False)
         findings = _probable(findings, broken, min(samples, HANDLED))
-    return replace(assessment, stands=stands, findings=findings, draws=(samples, seed))
+    return replace(
+        assessment, in_environments=in_environments, findings=findings, draws=(samples, seed)
+    )
 
 
 def _stand(

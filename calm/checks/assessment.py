@@ -25,8 +25,9 @@ from calm.checks.finding import (
     worst_state,
 )
 from calm.checks.inventory import InventoryItem
+from calm.checks.leg_graph import Break, Loss
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Break, Loss, Recovery
+from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
@@ -94,7 +95,7 @@ class Assessment:
     Attributes
     ----------
     name : name of the mooring, unique among the moorings checked together
-    stands : one entry per environment, at least one
+    in_environments : one entry per environment, at least one
     launch, recovery : in the first environment; None if they could not be solved
     backup : a break at each connection above the release, from the top
     inventory : pieces and clamps as handled on deck
@@ -106,7 +107,7 @@ class Assessment:
     """
 
     name: str
-    stands: tuple[MooringInEnvironment, ...]
+    in_environments: tuple[MooringInEnvironment, ...]
     launch: Launch | None
     recovery: Recovery | None
     backup: tuple[Break, ...]
@@ -120,17 +121,17 @@ class Assessment:
     def __repr__(self) -> str:
         """Number of findings in each state, as text."""
         counts = Counter(finding.state for finding in self.all_findings())
-        told = ", ".join(f"{count} {state}" for state, count in counts.items())
-        return f"{self.name}: {self.state} ({told})"
+        numbers = ", ".join(f"{count} {state}" for state, count in counts.items())
+        return f"{self.name}: {self.state} ({numbers})"
 
     @property
     def file(self) -> MooringFile:
         """Mooring file in the first environment (of the first leg, if there are several)."""
-        return self.stands[0].leg.file
+        return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
         """Yield all findings: those of the environments first, then launch, recovery and breaks."""
-        for stand in self.stands:
+        for stand in self.in_environments:
             yield from stand.findings
         yield from self.findings
 
@@ -165,7 +166,7 @@ class Assessment:
 
     def accepted_findings(self) -> list[Finding]:
         """Return the governing accepted finding of each rule and component."""
-        every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
+        every = (*(one for stand in self.in_environments for one in stand.accepted), *self.findings)
         accepted = (one for one in every if one.accept is not None)
         found = grouped_by(accepted, lambda one: (one.rule, one.component))
         return [governing(each) for each in found.values()]
@@ -174,7 +175,7 @@ class Assessment:
         """Yield the findings of other situations with a larger utilisation, environment by
         environment.
         """
-        for stand in self.stands:
+        for stand in self.in_environments:
             yield from stand.tighter
 
 

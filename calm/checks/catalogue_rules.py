@@ -203,8 +203,8 @@ def impossible(component: Component) -> Iterator[str]:
         speed = sqrt(-net / component.kt)
         slowest, fastest = ANCHOR_SPEEDS
         if not slowest <= speed <= fastest:
-            way = "slow" if speed < slowest else "fast"
-            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {way}"
+            fault = "slow" if speed < slowest else "fast"
+            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {fault}"
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 
@@ -244,7 +244,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             f"weighs {-net:.4g} N/m in water; a solid bar of its diameter weighs {weight:.4g} N/m"
         )
     if net > lift:
-        yield f"has a buoyancy of {net:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
+        yield f"has a buoyancy of {net:.4g} N/m; water of the same diameter weighs {lift:.4g} N/m"
     elif rope.mass is not None and not (
         LOOSEST * lift <= _displaced(rope, rope.mass) <= NOMINAL * lift
     ):

@@ -126,11 +126,11 @@ def criteria(
 ) -> Callable[[Callable[[Leg], Iterator[Criterion]]], Rule]:
     """Create the rule of a given name from a function that yields the criteria of a mooring."""
 
-    def of(asked: Callable[[Leg], Iterator[Criterion]]) -> Rule:
+    def of(criteria_of: Callable[[Leg], Iterator[Criterion]]) -> Rule:
         def judge(result: LegResult) -> Iterator[Verdict]:
-            return verdicts(asked(result.leg), result)
+            return verdicts(criteria_of(result.leg), result)
 
-        return replace(rule(name, of_anchor=of_anchor)(judge), criteria=asked)
+        return replace(rule(name, of_anchor=of_anchor)(judge), criteria=criteria_of)
 
     return of
 

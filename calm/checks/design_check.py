@@ -40,7 +40,7 @@ NOT_HANDLED = (
     "a net of legs: each leg is checked by the rules for a single line; launch, recovery and "
     "waves are not checked"
 )
-_NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
+_NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not computed.")
 
 
 def check(*designs: Design, day: date | None = None) -> Assessment:
@@ -60,11 +60,13 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
         refuse_tow(each.file)
     name = designs[0].file.name
     expect_many(situations.SOLVES * len(designs))
-    stands = [stand for each in designs for stand in stands_of(each, name, day)]
-    return assessment_of(name, stands, day)
+    in_environments = [stand for each in designs for stand in environments_checked(each, name, day)]
+    return assessment_of(name, in_environments, day)
 
 
-def stands_of(design: Design, name: str, day: date | None = None) -> list[MooringInEnvironment]:
+def environments_checked(
+    design: Design, name: str, day: date | None = None
+) -> list[MooringInEnvironment]:
     """Solve a design in its environment and in all situations, and apply the rules to each leg.
 
     A design without equilibrium has one stand, with the reason.
@@ -77,9 +79,9 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
     environment = design.environment.name or OWN
     given, *changed = situations.situations_of(design)
     if given[0].failure is not None:
-        return [failed_stand(design, name, given[0].failure)]
+        return [failed_environment(design, name, given[0].failure)]
     return [
-        assess.judged_stand(
+        assess.checked_environment(
             # a failure of a net is the failure of each leg
             (given[number], *(each[number if len(each) > 1 else 0] for each in changed)),
             leg,
@@ -91,34 +93,34 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
     ]
 
 
-def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
+def failed_environment(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
     """Record a design for which there is no equilibrium, or for which the check failed."""
     environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
-    return assess.judged_stand((situation,), design.legs[0], name, environment)
+    return assess.checked_environment((situation,), design.legs[0], name, environment)
 
 
 def assessment_of(
-    name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
+    name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
     """Check the composition, the breaks and the handling of a design.
 
     Parameters
     ----------
-    stands : results of `stands_of`, one environment after the other
+    in_environments : results of `environments_checked`, one environment after the other
     day : date on which acceptances must be valid
     """
-    if not stands[0].leg.of_several:
-        return assess.assessment_of(name, stands, day)
-    stands = assess.with_cases(stands)
+    if not in_environments[0].leg.of_several:
+        return assess.assessment_of(name, in_environments, day)
+    in_environments = assess.with_cases(in_environments)
     own: dict[str, MooringInEnvironment] = {}
-    for stand in stands:
+    for stand in in_environments:
         if stand.result is not None:
             own.setdefault(stand.leg.name, stand)
     found = [stand.result for stand in own.values() if stand.result is not None]
-    legs = [each.leg for each in found] or [stands[0].leg]
+    legs = [each.leg for each in found] or [in_environments[0].leg]
     whole = _whole(legs, any(each.type == "surface" for each in found))
     acceptance = assessment.Acceptance.of_file(whole.file, day)
-    graph = LegGraph(found)
+    graph = LegGraph.in_equilibrium(found)
     breaks, losses = graph.breaks(whole), graph.losses(whole)
     handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
     first = whole.file.environment.name or OWN
@@ -133,23 +135,23 @@ def assessment_of(
     for result in [each for each in found if planned_parts(each)] or found[:1]:
         alone = Handling(estimated(result.leg), _NOT_SOLVED, _NOT_SOLVED, (), result=result)
         once.append((planned_depth, planned_depth.judge(alone), first))
-    waters = {stand.leg.file.environment.name: stand.leg for stand in stands}
+    waters = {stand.leg.file.environment.name: stand.leg for stand in in_environments}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     findings += assess.findings_of_drag(found, name, acceptance)
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
-    findings = assess.cased(findings, stands)
-    lacking = [one for stand in stands for one in stand.lacking]
+    findings = assess.cased(findings, in_environments)
+    lacking = [one for stand in in_environments for one in stand.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if found and max(fast) < situations.LEAST_CURRENT:
         still = situations.equilibrium.find(situations.STILL_ONLY, name, first)
         findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
     surface = bool(whole.for_surface)
-    accepted = [*(one for stand in stands for one in stand.accepted), *findings]
+    accepted = [*(one for stand in in_environments for one in stand.accepted), *findings]
     return Assessment(
         name=name,
-        stands=tuple(stands),
+        in_environments=tuple(in_environments),
         launch=None,
         recovery=None,
         backup=breaks,

@@ -42,11 +42,11 @@ _CHECK = "Check its values and units."
 @rule("environment")
 def environment(legs: Sequence[Leg]) -> Iterator[Found]:
     """Yield warnings about the environments of a mooring; `legs` has one leg per environment."""
-    said: set[str] = set()
+    reported: set[str] = set()
     for leg in legs:
         for doubt in leg.file.environment.doubts:
-            if doubt not in said:
-                said.add(doubt)
+            if doubt not in reported:
+                reported.add(doubt)
                 yield leg, verdict_on(None, State.WARN, doubt, _CHECK)
     for leg in legs[1:]:
         yield from _weaker_than(legs[0], leg)

@@ -215,8 +215,8 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
         return
     net, role = component.net_buoyancy, component.role
     sinks = role in ("instrument", "release", "connector") and not isinstance(component, Sphere)
-    said = "role" in component.model_fields_set  # without one, it may be a float
-    doubted = sinks and said and component.mass is None and net > LIFTS
+    has_role = "role" in component.model_fields_set  # without one, it may be a float
+    doubted = sinks and has_role and component.mass is None and net > LIFTS
     if doubted and not _BUOYANT.search(words_of(component)):
         yield (
             f"has `role: {role}` and a buoyancy of {say('load', net)}; most such components sink"

@@ -26,8 +26,8 @@ OWN = "own"
 DEFAULT_ENVIRONMENT = "default environment"
 """Printed name of the environment that is defined in the mooring file itself."""
 
-ON_THE_WAY = "launch, recovery, breaks"
-"""Label, instead of an environment, of rules that are evaluated once per mooring."""
+HANDLING_LABEL = "launch, recovery, breaks"
+"""Label used in place of an environment name for rules that are evaluated once per mooring."""
 
 
 def environment_text(name: str) -> str:
@@ -232,8 +232,8 @@ def at_most(
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
-    state, said = (State.PASS, None) if keeps else (beyond, remedy)
-    return verdict_on(part, state, message, said, value, limit, sense, source)
+    state, advice = (State.PASS, None) if keeps else (beyond, remedy)
+    return verdict_on(part, state, message, advice, value, limit, sense, source)
 
 
 at_least = partial(at_most, least=True)
@@ -434,12 +434,12 @@ def governing(findings: Iterable[Finding]) -> Finding:
     return min(used, key=lambda pair: (-pair[0], pair[1].rank))[1]
 
 
-def told_of_rule(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Select the findings to report for a rule: the governing one, and the worst one if its state
     is more severe.
 
-    Each has its own value, limit and component. The governing finding stands for other estimates
-    and accepted findings unless it passes.
+    Each has its own value, limit and component. Unless it passes, the governing finding also
+    represents other estimates and accepted findings.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)

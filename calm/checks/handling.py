@@ -8,8 +8,9 @@ from calm.case.warnings import counted_working_load
 from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
+from calm.checks.leg_graph import Break, Loss
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Break, Loss, Recovery
+from calm.checks.recovery import Recovery
 from calm.checks.strength import (
     lesser_load,
     load_text,

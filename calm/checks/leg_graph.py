@@ -1,82 +1,152 @@
-"""Connections between the pieces of a net, and the parts that remain after a break."""
+"""Breaks of a design and losses of its floats: what comes up with the release afterwards.
+
+A design is a graph of its pieces. Every leg is a chain of pieces between nodes, fixed ends and the
+seabed, and a break removes one connection. Back-up buoyancy recovers the release after a break
+above it.
+"""
 
 from collections.abc import Collection, Hashable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from itertools import pairwise, takewhile
 
 import numpy as np
 
+from calm.assemble import net_buoyancy, with_axial_clamps
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.checks.finding import State, Verdict, unknown, verdict_on
-from calm.checks.recovery import (
-    SHORT_LEAD,
-    Break,
-    Loss,
-    drags_of,
-    lifts_of,
-    losses_among,
-    required_margin,
-)
-from calm.files import Flexible, Piece
+from calm.checks.recovery import lifts_of
+from calm.errors import NoEquilibrium
+from calm.files import Component, Flexible, Piece, Place
+from calm.files.definition import CATALOGUE_DENSITY
 from calm.physics.line import Floats
+from calm.physics.materials import materials_in
+from calm.solve.solution import standing_lift
+
+SHORT_LEAD = 50.0
+"""Maximum length of line between the lowest floats and the release that is exempt from break checks
+[m]; a default of CALM.
+
+Those floats are the back-up of everything above them. If all floats are so close to the release, as
+on a bottom lander or a short line below one float, they alone recover the mooring.
+"""
 
 _SEABED, _HELD = object(), object()
 
 
+@dataclass(frozen=True)
+class Break:
+    """A break of the line below one of its pieces.
+
+    Attributes
+    ----------
+    break_after, label : the piece above the break
+    margin : net buoyancy of the section that still holds a release [N]
+    weight_lifted : weight in water of its non-buoyant pieces [N]
+    required : required margin [N]
+    judged : whether a better design could avoid the loss of the release
+    loose : net buoyancy of the section that breaks away at once and drifts, + up [N]
+    """
+
+    break_after: int
+    label: str
+    margin: float
+    weight_lifted: float
+    required: float
+    judged: bool
+    loose: float = 0.0
+
+
+@dataclass(frozen=True)
+class Loss:
+    """Loss of one buoyant element, such as a flooded ball, while the line stays intact.
+
+    Attributes
+    ----------
+    index, label : index of the piece (that carries the clamp), label of the lost element
+    margin : net buoyancy of the release and the remaining pieces above it [N]
+    weight_lifted : weight in water of the non-buoyant pieces [N]
+    required : required margin [N]
+    place : place of the lost element, in the line as read
+    """
+
+    index: int
+    label: str
+    margin: float
+    weight_lifted: float
+    required: float
+    place: Place
+
+
 class LegGraph:
-    """Connections of a net between pieces, by their index in the file, nodes, and fixed ends.
+    """Connections of a design between pieces, by their index in the file, nodes, and fixed ends.
+
+    In each leg only the lowest release opens.
 
     Parameters
     ----------
-    legs : results of the legs; empty for a net without equilibrium
+    legs : the legs; none for a design without equilibrium
+    lifts : net forces (n,) of the pieces of each leg with their clamps, without the anchor [N]
     """
 
-    def __init__(self, legs: Sequence[LegResult]) -> None:
+    def __init__(self, legs: Sequence[Leg], lifts: Sequence[Floats]) -> None:
         self.pieces: list[Piece] = []
         self.chains: list[list[Hashable]] = []
+        self.opened: dict[tuple[int, int], int] = {}
         columns: list[Floats] = []
-        for leg in legs:
-            own, above = leg.leg, leg.leg.pieces
-            upper, lower = (
-                _HELD if end.held else end.join for end in (leg.leg.top, leg.leg.bottom)
-            )
+        for number, (leg, lift) in enumerate(zip(legs, lifts, strict=True)):
+            above = leg.pieces
+            upper, lower = (_HELD if end.held else end.join for end in (leg.top, leg.bottom))
             first = len(self.pieces)
             chain: list[Hashable] = [upper, *range(first, first + len(above)), lower]
-            if own.anchored:
+            if leg.anchored:
                 chain[-2:] = [_SEABED]
             self.pieces += above
             self.chains.append(chain)
-            force = lifts_of(own.line, own.water, leg)
-            figures = np.stack([force, drags_of(own.line, above), own.line.length])
+            releases = [at for at, one in enumerate(above) if one.component.role == "release"]
+            for at in releases[-1:]:
+                self.opened[number, at + 1] = first + at
+            drag = with_axial_clamps(leg.line, above[: len(lift)]).plumb_drag
+            figures = np.stack([lift, drag, leg.line.length])
             # anchors have no buoyancy
             columns.append(np.pad(figures, ((0, 0), (0, 1)))[:, : len(above)])
         self.lifts, self.drags, self.lengths = np.hstack([np.zeros((3, 0)), *columns])
-        self.opened = {
-            (number, at)
-            for number, chain in enumerate(self.chains)
-            for at, one in enumerate(chain)
-            if isinstance(one, int) and self.pieces[one].component.role == "release"
-        }
+        self.releases = set(self.opened.values())
+
+    @classmethod
+    def in_equilibrium(cls, results: Sequence[LegResult]) -> "LegGraph":
+        """Return the graph of a solved design, with net forces at the depths of its pieces."""
+        lifts = [lifts_of(each.leg.line, each.leg.water, each) for each in results]
+        return cls([each.leg for each in results], lifts)
+
+    @classmethod
+    def upright(cls, leg: Leg) -> "LegGraph":
+        """Return the graph of a single line with net forces at the depths of the upright line.
+
+        It is empty if no length fits.
+        """
+        with suppress(NoEquilibrium):
+            return cls([leg], [standing_lift(leg.line, leg.water)])
+        return cls([], [])
 
     @property
     def anchored(self) -> bool:
-        """Whether the net has an anchor."""
+        """Whether the design has an anchor."""
         return any(_SEABED in chain for chain in self.chains)
 
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
-        """Return the connected parts of the net after a break below given places (`cut`) of its
+        """Return the connected parts of the design after breaks below given places (`cut`) of its
         chains.
         """
         parts: list[set[Hashable]] = []
         for number, chain in enumerate(self.chains):
-            for at, one in enumerate(chain):
-                if one is None:
-                    continue
-                goes_on = at + 1 < len(chain) and (number, at) not in cut
-                own = {one, chain[at + 1]} - {None} if goes_on else {one}
-                touched = [part for part in parts if part & own]
-                parts = [part for part in parts if not part & own]
-                parts.append(own.union(*touched))
+            ends = sorted(at + 1 for leg, at in cut if leg == number)
+            for first, end in pairwise([0, *ends, len(chain)]):
+                run = {one for one in chain[first:end] if one is not None}
+                touched = [part for part in parts if part & run]
+                parts = [part for part in parts if not part & run]
+                parts.append(run.union(*touched))
         return parts
 
     def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
@@ -89,11 +159,8 @@ class LegGraph:
 
     def _rising(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
         """Return the free parts that contain a release, after all releases open."""
-        return [
-            part
-            for part in self._free(self.opened | set(cut))
-            if any(self.pieces[one].component.role == "release" for one in part)
-        ]
+        parts = self._free({*self.opened, *cut})
+        return [part for part in parts if not self.releases.isdisjoint(part)]
 
     @property
     def coming_up(self) -> set[int]:
@@ -107,11 +174,22 @@ class LegGraph:
         """Return the breaks below every piece that surfaces, in file order.
 
         The margin of a break refers to the section that still holds a release after all releases
-        have opened; `loose` is the net buoyancy of the section that drifts off before that.
+        have opened; `loose` is the net buoyancy of the section that drifts off before that. For a
+        break inside a cable, the margin lies between those of the breaks at its two ends.
+
+        Successive floats with only connectors and chain between them form a cluster. A break inside
+        the last cluster above a release, or in a lead of at most `SHORT_LEAD` from it to the
+        release, strands the release in any design and is not judged. If that is the whole design,
+        chain separates clusters, too; if it is still a single cluster, its losses alone are judged.
+
+        Parameters
+        ----------
+        whole : all pieces of the design as one leg, for the limits of its check
         """
         rising = {one for part in self._rising(()) for one in part}
         before = {one for part in self._free(()) for one in part}
-        found = []
+        found: list[Break] = []
+        places: list[tuple[Sequence[Hashable], int, list[int]]] = []
         for number, chain in enumerate(self.chains):
             for at, (one, below) in enumerate(pairwise(chain)):
                 # no break below a free end; the lower end of a release is not a break either
@@ -125,30 +203,38 @@ class LegGraph:
                     continue
                 margin, weight, required, part = min(margins, key=lambda each: each[0] - each[2])
                 label, loose = self.pieces[one].label, float(self.lifts[off].sum())
-                judged = not self._beyond_help(chain, at, part)
-                found.append(Break(one, label, margin, weight, required, judged, loose))
-        return tuple(found)
+                found.append(Break(one, label, margin, weight, required, False, loose))
+                places.append((chain, at, part))
+        for between in (("connector", "chain"), ("connector",)):
+            judged = [not self._beyond_help(*place, between) for place in places]
+            if any(judged):
+                break
+        return tuple(replace(one, judged=judge) for one, judge in zip(found, judged, strict=True))
 
     def _margin(self, part: list[int], whole: Leg) -> tuple[float, float, float]:
         lift = self.lifts[part]
         weight = float(-lift[lift < 0.0].sum())
         drag = float(self.drags[part].sum())
-        return float(lift.sum()), weight, required_margin(whole, weight, drag)
+        return float(lift.sum()), weight, _required_margin(whole, weight, drag)
 
-    def _beyond_help(self, chain: Sequence[Hashable], at: int, part: list[int]) -> bool:
-        """Return whether a break strands the net in any design: it divides the cluster of all
+    def _beyond_help(
+        self, chain: Sequence[Hashable], at: int, part: list[int], between: tuple[str, ...]
+    ) -> bool:
+        """Return whether a break strands the release in any design: it divides the cluster of all
         remaining floats, or a short lead from that cluster to the release.
+
+        `between` lists kinds and roles of pieces allowed between the floats of a cluster.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
             above = takewhile(self._leads, reversed(chain[: at + 1]))
-            lead = {one for one in (*above, *part) if isinstance(one, int)}
+            lead = {one for one in (*above, *part) if isinstance(one, int)} - self.releases
             return float(self.lengths[sorted(lead)].sum()) <= SHORT_LEAD
-        below = list(takewhile(self._in_a_cluster, chain[at:]))
-        return floats <= set(below[1:])
+        below = takewhile(lambda one: self._in_a_cluster(one, between), chain[at:])
+        return floats <= set([*below][1:])
 
-    def _in_a_cluster(self, one: Hashable) -> bool:
-        return isinstance(one, int) and (self._floats(one) or self._is(one, "connector", "chain"))
+    def _in_a_cluster(self, one: Hashable, between: tuple[str, ...]) -> bool:
+        return isinstance(one, int) and (self._floats(one) or self._is(one, *between))
 
     def _leads(self, one: Hashable) -> bool:
         return isinstance(one, int) and not self._floats(one)
@@ -161,17 +247,38 @@ class LegGraph:
         return component.kind in what or component.role in what
 
     def losses(self, whole: Leg) -> tuple[Loss, ...]:
-        """Return the loss of each buoyant piece or clamp that would otherwise surface."""
-        return tuple(
-            loss
-            for part in self._rising(())
-            for loss in losses_among(
-                whole,
-                [whole.file.pieces[one] for one in part],
-                self.lifts[part],
-                float(self.drags[part].sum()),
-            )
-        )
+        """Return the loss of each buoyant piece or clamp that would otherwise surface, in file
+        order.
+
+        A lost element provides no buoyancy. If its mass and the density of its material are known,
+        it is assumed flooded and its weight in water is added; otherwise it is assumed gone. Cables
+        are never lost. The other pieces keep their net forces.
+
+        Parameters
+        ----------
+        whole : all pieces of the design as one leg, for gravity and the limits of its check
+        """
+        return tuple(loss for part in self._rising(()) for loss in self._losses_of(part, whole))
+
+    def _losses_of(self, rising: list[int], whole: Leg) -> Iterator[Loss]:
+        gravity, lift = whole.water.gravity, self.lifts[rising]
+        weight, drag = float(-lift[lift < 0.0].sum()), float(self.drags[rising].sum())
+        for index in rising:
+            piece = whole.file.pieces[index]
+            own = () if isinstance(piece.component, Flexible) else (piece,)
+            for part in (*own, *piece.clamps):
+                lifted = net_buoyancy(part.component, gravity)
+                if lifted <= 0.0:
+                    continue
+                sunk = _weight_when_flooded(part.component, gravity)
+                yield Loss(
+                    index=index,
+                    label=part.label,
+                    margin=float(lift.sum()) - lifted - sunk,
+                    weight_lifted=weight + sunk,
+                    required=_required_margin(whole, weight + sunk, drag),
+                    place=part.place,
+                )
 
     def release_verdicts(self) -> Iterator[Verdict]:
         """Report the floats that stay attached to an anchor after all releases open."""
@@ -186,8 +293,22 @@ class LegGraph:
             message = f"No release lies between {piece.label} and an anchor that holds it."
             yield unknown(piece, message, "Mark the release with `role: release`.")
         if not held and self.opened:
-            number, at = min(self.opened)
-            one = self.chains[number][at]
-            assert isinstance(one, int)
             message = "The releases free every buoyant part from its anchors."
-            yield verdict_on(self.pieces[one], State.PASS, message)
+            yield verdict_on(self.pieces[min(self.releases)], State.PASS, message)
+
+
+def _weight_when_flooded(component: Component, gravity: float) -> float:
+    """Return the weight in water of a flooded float's shell [N]; 0 if unknown."""
+    named = (material.density for material in materials_in(component.material))
+    density = next((value for value in named if value and value > CATALOGUE_DENSITY), None)
+    if density is None or component.mass is None:
+        return 0.0
+    return component.mass * gravity * (1.0 - CATALOGUE_DENSITY / density)
+
+
+def _required_margin(leg: Leg, weight: float, drag: float) -> float:
+    """Return the net buoyancy required after a break [N], for a remaining weight in water [N] and
+    drag [N/(m/s)²]: a fraction of the weight, and at least enough to rise at `minimum_rise_speed`.
+    """
+    checks = leg.file.checks
+    return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)

@@ -102,8 +102,8 @@ def with_missing(
     """
     every = list(findings)
     lacking = gathered(filter(is_lacking, every), parts)
-    told = [missing.find(one, mooring, environment) for one in missing.judge(lacking)]
-    return [*told, *(one for one in every if not is_lacking(one))]
+    missing_findings = [missing.find(one, mooring, environment) for one in missing.judge(lacking)]
+    return [*missing_findings, *(one for one in every if not is_lacking(one))]
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -147,9 +147,9 @@ def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) 
 
 def _amount(least: float, most: float) -> str:
     """Format an amount, or a range of amounts."""
-    way = "too deep" if most > 0.0 else "too shallow"
+    direction = "too deep" if most > 0.0 else "too shallow"
     shown = dict.fromkeys(say("depth", abs(each)) for each in (least, most))
-    return f"{' to '.join(shown)} {way}"
+    return f"{' to '.join(shown)} {direction}"
 
 
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:

@@ -250,11 +250,11 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     moved, what = depth - designed - longer, "the top of the upright line"
     if reaches_the_surface(leg):
         moved, what = depth - designed, "the water"
-    way = "deeper" if moved > 0.0 else "shallower"
+    direction = "deeper" if moved > 0.0 else "shallower"
     message = (
         f"Deployed in {say('depth', depth)} of water instead of {say('depth', designed)}: "
-        f"{what} is {say('depth', abs(moved))} {way} than designed; the error of a sounding is "
-        f"{say('depth', limit)}."
+        f"{what} is {say('depth', abs(moved))} {direction} than designed; the error of a sounding "
+        f"is {say('depth', limit)}."
     )
     remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
@@ -323,13 +323,12 @@ USUAL_CURRENT = 0.2
 """Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
-"""Ratio to the strongest current of the underlying record below which the design current is too
-weak.
+"""Ratio of the design current to the strongest current of its record, below which it is too weak.
 """
 
 WEAK_BESIDE_OTHERS = 0.02
-"""Ratio to the strongest current of all environments below which a current has probably another
-unit: 1/100 is cm/s.
+"""Ratio of a current to the strongest of all environments, below which its unit is probably wrong;
+1/100 suggests cm/s.
 """
 
 
@@ -338,7 +337,7 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     """Check the strongest current of all environments, and the depths that the current profiles do
     not cover.
 
-    Each verdict comes with the leg in its environment.
+    Yields each verdict with the leg in its environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
     for leg, speed in zip(legs, speeds, strict=True):

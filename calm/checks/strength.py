@@ -11,8 +11,8 @@ from calm.case.warnings import counted_working_load, is_synthetic
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
+from calm.checks.leg_graph import SHORT_LEAD
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import SHORT_LEAD
 from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
 from calm.files.mooring_file import legs_of
 from calm.quantities import say
@@ -50,8 +50,8 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load to ask for if a component has none: breaking load for ropes and
-    wires, working load for other components.
+    """Return the key of the load to request for a component without loads: breaking load for ropes
+    and wires, working load for other components.
     """
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 

@@ -131,7 +131,9 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "
                 f"to {_years(one.life_high)}) by {one.curve}; {_years(limit / YEAR)} is required."
             )
-            remedy = "Use a thicker component, add stretch to the line, or renew it sooner."
+            remedy = (
+                "Use a thicker component, add stretch to the line, or renew the component sooner."
+            )
             life = one.life * YEAR
             yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
 

@@ -12,7 +12,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, narrate, narrate_card, show_parts
+from calm.cli.outputs import ExitCode, check_suffix, narrate, narrate_card, show_parts
 from calm.cli.progress import ProgressTeller, grouped
 from calm.errors import UsageError
 
@@ -56,16 +56,16 @@ def batch(
     output
         The result, .nc.
     time
-        Only profiles from A to B, both included, as A/B, such as 2024-03/2024-05.
+        Only profiles from A to B, both included, such as 2024-03/2024-05.
     every
         Only every Nth profile.
     at
-        Latitude and longitude [degrees] of the column to take from a grid, as
-        LAT,LON; by default the `position` of the mooring file.
+        Latitude and longitude [degrees] of the grid column to use; by default the `position` of the
+        mooring file.
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
     no_statistics
-        Write no statistics, for a part of a longer record.
+        Write no statistics, for instance for part of a longer record.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def batch(
 
 
 def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> str:
-    """Describe the number of profiles with an implausible current, and the first one."""
+    """Describe the number of profiles with an implausible current, and the first such profile."""
     from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed
@@ -172,8 +172,7 @@ def check_output(output: Path, *inputs: Path) -> None:
     for path in inputs:
         if place == os.path.realpath(path):
             raise UsageError(f"{output} is an input file and was not overwritten")
-    if output.suffix != ".nc":
-        raise UsageError(f"cannot write {output}: its name must end in .nc")
+    check_suffix(output, (".nc",))
     if os.path.isdir(output):
         raise UsageError(f"cannot write {output}: it is a folder")
 
@@ -182,10 +181,10 @@ def check_output(output: Path, *inputs: Path) -> None:
 def stopped_by_a_signal(
     progress: Callable[[Progress], None],
 ) -> Iterator[Callable[[Progress], None]]:
-    """Turn SIGINT and SIGTERM into KeyboardInterrupt while a batch runs.
+    """Convert SIGINT and SIGTERM to KeyboardInterrupt while a batch runs.
 
-    A stop request of a batch system then ends the work like Ctrl-C, without leftovers. Python
-    ignores exceptions raised by a signal handler in the callback of a weak reference, so the
+    A stop request of a queueing system then ends the batch like Ctrl-C, without temporary files.
+    Python ignores exceptions raised by a signal handler in the callback of a weak reference, so the
     returned `progress` raises KeyboardInterrupt, too.
     """
     if current_thread() is not main_thread():
@@ -202,12 +201,12 @@ def stopped_by_a_signal(
             raise KeyboardInterrupt
         progress(now)
 
-    heeded = [
+    handled = [
         number
         for number in (signal.SIGINT, signal.SIGTERM)
         if signal.getsignal(number) is not signal.SIG_IGN
     ]
-    before = {number: signal.signal(number, stop) for number in heeded}
+    before = {number: signal.signal(number, stop) for number in handled}
     try:
         yield stopping
     finally:

@@ -9,13 +9,11 @@ from calm.cli.outputs import ExitCode
 from calm.errors import UsageError
 
 _NO_TERMINAL = (
-    "calm build needs a terminal and a keyboard; `calm page` makes a web page of it, "
+    "calm build needs a terminal and a keyboard; `calm page` writes the builder as a web page, and "
     "`calm run FILE --schematic` prints the line"
 )
 
-_REDIRECTED = (
-    "calm build draws its screen on the standard error output, which is redirected: leave out `2>`"
-)
+_REDIRECTED = "calm build draws its screen on standard error, which is redirected here; omit `2>`"
 
 
 def build(
@@ -35,7 +33,7 @@ def build(
     Parameters
     ----------
     file
-        A mooring file, old or new. Without it, a new file that is named when you save.
+        A mooring file, existing or new. Without FILE, you name the file when you save.
     environment
         The environment to start in: a name from the file, or an environment
         file.

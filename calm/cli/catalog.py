@@ -1,4 +1,4 @@
-"""``calm catalog``: look into the component catalogue, and check it."""
+"""``calm catalog``: search and check the component catalogue."""
 
 from __future__ import annotations
 
@@ -38,18 +38,19 @@ Kind = Literal["sphere", "cylinder", "body", "profiler", "cable", "chain", "anch
 def list_components(
     words: list[str] | None = None, /, *, kind: Kind | None = None, json: bool = False
 ) -> ExitCode:
-    """List the components, family by family, or those that have every word.
+    """List all components by family, or those that match every word.
 
-    Of components found by words, favourites and those last used in the line
-    builder come first, then those that the shipped lines use. Misspelt words
-    are corrected. If no component has every word, those with most words are listed.
+    Among the matches, favourites and components recently used in the line builder
+    come first, followed by components used in the shipped lines. Misspelt words
+    are corrected. If no component matches every word, the best matches are
+    listed.
 
     Parameters
     ----------
     words
-        Words or parts of words from the id, name, maker, trade name, material
-        or source. Sizes in millimetres or inches (`8mm wire`, `17in glass`) and
-        limits (`breaking>50kN`, `net<-100`, `depth>=6000`) are understood.
+        Words, or parts of words, of the id, name, manufacturer, trade name, material or source.
+        Sizes in millimetres or inches (`8mm wire`, `17in glass`) and limits (`breaking>50kN`,
+        `net<-100`, `depth>=6000`) are understood.
     kind
         Only components of one kind.
     json
@@ -79,8 +80,12 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
         if not found:
             narrate(f"no component matches `{spelt}`; define one with `calm catalog add`")
             return {}
-        without = f", none has {' or '.join(f'`{word}`' for word in unknown)}" if unknown else ""
-        narrate(f"no component has all words of `{spelt}`{without}; these have most of them:")
+        without = (
+            (f", and none matches {' or '.join(f'`{word}`' for word in unknown)}")
+            if unknown
+            else ""
+        )
+        narrate(f"no component matches all words of `{spelt}`{without}; these match most of them:")
     return {each.id: catalogue.get(each.id) for each in found}
 
 
@@ -123,21 +128,19 @@ def add(
 ) -> ExitCode:
     """Add a component to your own catalogue, which every command reads, and show its card.
 
-    The component is checked first, as by `calm catalog check`, which rejects
-    impossible values and values without a source, and lists values that the
-    design check will need.
+    As in `calm catalog check`, impossible values and values without a source are
+    rejected, and missing values that the design check needs are listed.
 
     Parameters
     ----------
     id
-        Its id: small letters, figures and hyphens. It replaces an entry of the
-        catalogue with the same id.
+        Id of the component: lower-case letters, digits and hyphens. It overrides a catalogue entry
+        with the same id.
     figures
-        Its `kind` and its values with their units, such as `diameter=432 mm`,
-        in quotes if they contain a space. The manual's page on components lists
-        the keys of each kind.
+        The `kind` and the values with their units, such as `diameter=432 mm`, in quotes if they
+        contain a space. The manual's page on components lists the keys of each kind.
     output
-        The catalogue file to add it to; by default your own.
+        Catalogue file to which the component is added; by default your own.
     """
     from calm.checks.catalogue_rules import check_catalogue, missing_figures
     from calm.errors import Problem
@@ -147,11 +150,12 @@ def add(
 
     if tidy_id(id) != id:
         raise UsageError(
-            f"an id has small letters, figures and hyphens; did you mean `{tidy_id(id)}`?"
+            "an id consists of lower-case letters, digits and hyphens; did you mean "
+            f"`{tidy_id(id)}`?"
         )
     pairs = [figure.partition("=") for figure in figures]
     if bare := [key for key, equals, _ in pairs if not equals]:
-        raise UsageError(f"not KEY=VALUE: {', '.join(bare)}; quote a value that has blanks")
+        raise UsageError(f"not KEY=VALUE: {', '.join(bare)}; put a value with blanks in quotes")
     values = {key.strip(): value.strip() for key, _, value in pairs}
     path = output or user_folder() / "own.yaml"
     if output is None:
@@ -173,7 +177,10 @@ def add(
         f"  {key}: {json_module.dumps(each, ensure_ascii=False)}" for key, each in values.items()
     ]
     folder.write_file(path, "\n".join([f"{before}{id}:", *lines, ""]).encode())
-    narrate(f"{id} added to {path}" + (", in place of the catalogue's" * bool(catalogue.entry(id))))
+    narrate(
+        f"{id} added to {path}"
+        + (", where it overrides the entry of the catalogue" * bool(catalogue.entry(id)))
+    )
     for each in missing_figures(definitions):
         narrate(f"{each.id}: {component_cards.in_words(each)}")
     show_parts(component_cards.to_card(id, component, catalogue))
@@ -182,11 +189,12 @@ def add(
 
 @catalog.command(usage="Usage: calm catalog check [OPTIONS] [FILE]")
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
-    """Find impossible values in a catalogue, and list missing values.
+    """Find impossible and missing values in a catalogue.
 
-    A sphere that lifts more than its volume, a rope heavier than a solid bar of
-    its diameter and a cable stiffer than steel are impossible. Values without
-    a source are findings, too. The exit code is 1 if there is a finding.
+    Impossible are, for example, a sphere with more buoyancy than its volume
+    allows, a rope heavier than a solid bar of its diameter, and a cable stiffer
+    than steel. Values without a source are findings, too. The exit code is 1 if
+    there is a finding.
 
     Missing values that a design check or the total mass needs are listed, but
     are not findings. Values that are known to be unpublished are marked.

@@ -63,14 +63,14 @@ def solve(
 ) -> ExitCode:
     """Find every cable that matches three given quantities.
 
-    The cable hangs in a uniform current from A, its lower end, to B, its upper;
-    drag is normal to it. Give quantities with their units. The exit code is 3
-    when no cable fits.
+    The cable hangs in a uniform current, from its lower end A to its upper end B;
+    its drag is normal to the cable. Quantities need units. The exit code is 3 if
+    no cable matches.
 
     Parameters
     ----------
     weight
-        Weight of a metre in water; negative for a cable that floats.
+        Weight per metre in water; negative for a buoyant cable.
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     diameter
@@ -128,7 +128,7 @@ def draw(
     output: options.OutputFile,
     lower_end: Literal["below-90", "above-90"] = "below-90",
 ) -> ExitCode:
-    """Draw the chart of one K, on a page of A4.
+    """Draw the chart for one value of K on an A4 page.
 
     Parameters
     ----------

@@ -44,10 +44,10 @@ def check(
     """Check designs: solve each mooring in each environment and apply the design rules.
 
     Each mooring is solved as given, in still water, with strumming cables and, if
-    its file requires it, at high and low water and with biofouling. An anchor-last
-    launch, the release, and a break at each connection follow. The exit code is
-    1 if a rule fails or lacks a value, 3 if a mooring has no equilibrium, and 0
-    otherwise.
+    its file requires it, at high and low water and with biofouling. CALM also
+    simulates an anchor-last deployment, the release, and a break at each
+    connection. The exit code is 1 if a rule fails or lacks a value, 3 if a
+    mooring has no equilibrium, and 0 otherwise.
 
     Parameters
     ----------
@@ -55,17 +55,18 @@ def check(
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.
     json
-        Write the findings as JSON (- for standard output): the governing one of each rule,
-        all that do not pass, and those with a utilisation of at least one half.
+        Write the findings as JSON (- for standard output): the governing finding of each rule, all
+        findings that do not pass, and those with a utilisation of at least one half.
     report
-        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
-        five pages or more for one mooring, a matrix and a page each for several.
+        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder: at
+        least five pages for one mooring; for several moorings, a matrix and one page each.
     page
         Page size of the report.
     full
         For several moorings, also write all pages of each mooring as a separate PDF file.
     against
-        An earlier design, with which the report compares the mooring; needs --report.
+        Mooring file of an earlier design, with which the report compares the mooring. Requires
+        --report.
     all_findings
         Write every finding into the JSON and checks.csv, for every piece and situation.
     missing
@@ -74,7 +75,7 @@ def check(
     output
         Write the block of --missing to this file.
     allow_unknown
-        Ignore unknowns in the exit code; the output stays the same.
+        Ignore unknown findings in the exit code; the output stays the same.
     uncertainty
         Report for each finding the probability of exceeding its limit, given the input
         uncertainties under `uncertainty` in the file, and rank the designs by it.
@@ -109,7 +110,7 @@ def check(
     ready = partial(load_ahead, count, drawn is not None)
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
-        narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
+        narrate(f"tows are not checked: {', '.join(map(str, tows))}")
     nets = [design.path for design in designs if design.moorings[0].several]
     if nets and uncertainty:
         from calm.files.legs import NET_SURE
@@ -185,10 +186,10 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
     for name in REPORT_FILES:
         real = os.path.realpath(folder / name)
         if json is not None and os.path.realpath(json) == real:
-            raise UsageError(f"two outputs would go to {json}")
+            raise UsageError(f"two outputs have the same path, {json}")
         for path in given:
             if os.path.realpath(path) == real:
-                raise UsageError(f"{path} is read here; the report would overwrite it")
+                raise UsageError(f"{path} is an input file; the report would overwrite it")
 
 
 def _check_missing(
@@ -206,7 +207,7 @@ def _check_missing(
 
         check_destination(output)
         if os.path.realpath(output) in map(os.path.realpath, files):
-            raise UsageError(f"{output} would overwrite the file that is read")
+            raise UsageError(f"{output} is the input file; choose another output")
 
 
 def _write_missing(
@@ -229,7 +230,7 @@ def _answer(
     drawings: Sequence[DrawnSection],
     outputs: Outputs,
     folder: Path | None,
-    paper: str,
+    page_size: str,
     names: Sequence[str],
     *,
     every: bool,
@@ -256,7 +257,7 @@ def _answer(
 
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as pool:
-        pdf = pool.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
+        pdf = pool.submit(printed, report, page_size, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),
@@ -271,13 +272,13 @@ def _answer(
             if each.full is not None
         }
         write_report(folder, files | {"report.pdf": pdf.result()} | own)
-    narrate(f"the report is in {folder}")
+    narrate(f"Report written to {folder}")
 
 
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
     from calm.checks.finding import Conclusion
 
-    if any(stand.result is None for stand in assessment.stands):
+    if any(stand.result is None for stand in assessment.in_environments):
         return ExitCode.NO_EQUILIBRIUM
     stops = {Conclusion.FAILS} | ({Conclusion.INCOMPLETE} if not allow_unknown else set())
     return ExitCode.FINDING if assessment.verdict in stops else ExitCode.DONE

@@ -13,7 +13,7 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.report.diagram import Paper
+    from calm.report.diagram import PageSize
 
 
 def deck(
@@ -30,36 +30,36 @@ def deck(
     catalog: options.CatalogFiles = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Draw the diagram and write the lists for the deployment of moorings and nets.
+    """Draw the diagram and write the deck sheets of moorings and nets.
 
-    Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
-    logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
-    for anchor-last deployment, the anchor drop plan. Also written are the diagram
-    as diagram.pdf and diagram.svg, the lists as CSV files and as sheets of
+    The file deck.pdf has a mooring diagram, deployment and recovery logs, cutting
+    list, hardware bill, shipping list, lifts, instrument sheet and, for
+    anchor-last deployment, the anchor drop plan. The diagram is also written as
+    diagram.pdf and diagram.svg, the lists as CSV files and as sheets of
     deck.xlsx, and the plan as plan.json. A net is drawn as a whole (also as
     net.svg) and listed leg by leg; its drop is not planned.
 
     Parameters
     ----------
     output
-        The folder to write; several moorings get a subfolder each, with their names.
+        Folder for the sheets. With several moorings, each gets a subfolder with its name.
     page
         Page size.
     environment
-        The environment of depths and lengths: a name from the files, or an
-        environment file; further ones are design currents. By default the
-        default environment of the file, with all named environments.
+        Environment in which depths and lengths are computed: a name from the files, or an
+        environment file. Further environments are design currents. By default, the default
+        environment of the file, with its named environments as design currents.
     order
         Deployment order.
     ship_speed
         Speed over the ground at which the ship tows the line out before the
         anchor is released.
     streamed
-        Horizontal distance from the anchor to the top float when the anchor is
-        released; by default that of the line towed at that speed.
+        Horizontal distance from the anchor to the top float when the anchor is released. By default
+        CALM computes it for a line towed at --ship-speed.
     course
-        Course over the ground while the line is towed out; by default against
-        the surface current.
+        Course over the ground while the line is towed out. By default the ship steams against the
+        surface current.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def deck(
     )
     designs, tows = reading.read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
-        narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
+        narrate(f"Tows have no deck sheets and were skipped: {', '.join(map(str, tows))}")
     options.show_units(units, [one.file for design in designs for one in design.moorings])
     folders = _folders(designs, output)
     decks: list[Deck] = []
@@ -95,29 +95,31 @@ def deck(
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
     for folder, design, one in zip(folders, designs, decks, strict=True):
-        _write(folder, design.path, one, diagram.Paper(page))
+        _write(folder, design.path, one, diagram.PageSize(page))
     return ExitCode.DONE
 
 
-def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
+def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
     from calm.report.folder import write_report
     from calm.report.open_items import assessment_verdict
 
-    narrate(f"{path}: {assessment_verdict(deck.assessment).text}: calm check {path}")
+    narrate(
+        f"{path}: design check {assessment_verdict(deck.assessment).text}; see calm check {path}"
+    )
     notes = _missing_characters(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
-    write_report(folder, _contents(deck, paper, notes))
-    narrate(f"the sheets are in {folder}")
+    write_report(folder, _contents(deck, page_size, notes))
+    narrate(f"Deck sheets written to {folder}")
 
 
-def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
+def _contents(deck: Deck, page_size: PageSize, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
     from calm.report import deck_files, open_items, result_files
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
 
-    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
+    texts = {"diagram.svg": diagram_svg(deck, page_size), **deck_files.deck_csvs(deck)}
     if deck.result.several:
         texts["net.svg"] = deck_files.net_svg(deck)
     counts = open_items.open_counts(deck.assessment)
@@ -134,20 +136,20 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
         [{"calm": __version__, **_plan(deck), "verdict": verdict}]
     )
     return {
-        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper),
+        "deck.pdf": printed(deck_files.deck_report(deck, page_size, notes), page_size),
         "deck.xlsx": deck_files.deck_workbook(deck),
-        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, page_size), page_size),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
 
 
 def _plan(deck: Deck) -> dict[str, Any]:
     if deck.result.several:
-        return {"status": "net", "message": "The drop of a net of legs is not solved."}
+        return {"status": "net", "message": "The anchor drop of a net is not computed."}
     if deck.plan is None:
         return {
             "status": str(deck.order),
-            "message": "There is no anchor drop if the anchor is deployed first.",
+            "message": "With anchor-first deployment there is no anchor drop.",
         }
     if isinstance(deck.plan, NoEquilibrium):
         return {"name": deck.file.name, **deck.plan.to_dict()}

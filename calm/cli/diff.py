@@ -1,4 +1,4 @@
-"""``calm diff``: two designs compared, or a design and its deployment."""
+"""``calm diff``: compare two designs, or a design and its deployment."""
 
 from __future__ import annotations
 
@@ -38,11 +38,12 @@ def diff(
     before
         A mooring file; it may contain a tow or a net.
     after
-        Another; without it, the `deployed:` of the first is compared with its design.
+        Mooring file to compare with. Without it, the design in BEFORE is compared with its own
+        `deployed:`.
     environment
         Use this environment: a name from both files, or an environment file.
     json
-        Write the differences as JSON, - to print it.
+        Write the differences as JSON (- for standard output).
 
     Examples
     --------
@@ -69,7 +70,7 @@ def diff(
 def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
     """Compare two designs, or one design with its deployment.
 
-    UsageError: a mooring and a tow, a single tow, or a file without `deployed:`.
+    Raises UsageError for a mooring and a tow, a single tow, or a file without `deployed:`.
     """
     from calm.case import Design
     from calm.checks.comparison import comparison_of

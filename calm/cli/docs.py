@@ -12,7 +12,7 @@ from calm.cli.outputs import ExitCode, narrate, show
 from calm.errors import UsageError
 
 SITE = "_site"
-"""The folder of the built site inside the manual's."""
+"""Name of the folder with the built site, inside the folder of the manual."""
 
 
 MOST_PAGES = 12
@@ -22,12 +22,12 @@ _LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|[`*]|<!--.*?-->")
 
 
 def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) -> ExitCode:
-    """Print where a page of the manual is on this machine, open it, or list pages by words.
+    """Print the path of a manual page, open the page, or search the manual.
 
-    CALM prints the path of the page's text; `--open` shows the page of the
-    built site in a browser, without a network. Words that are not the name of a
-    page list the pages that contain them, the most relevant first, each with a
-    line of its text.
+    CALM prints the path of the page as text; `--open` opens the page in a browser
+    and needs no network. If the words are not the name of a page, the pages that
+    contain them are listed, the most relevant first, each with a line of its
+    text.
 
     Parameters
     ----------
@@ -64,10 +64,11 @@ def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) 
 
 
 def _list(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
-    """Print name, title and a line of each page that contains the words, or most of them.
+    """List the pages that contain most of the words, with name, title and a line of text.
 
-    Pages with more of them in their headings come first, then those that have them more often.
-    UsageError: no page contains any.
+    Pages with more of the words in their headings come first, then pages in which
+    the words are more frequent. Raises UsageError if no page contains any of the
+    words.
     """
     from calm.errors import unknown
     from calm.whole_file import read_text
@@ -97,8 +98,8 @@ def _list(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
 
 
 def _context(text: str, wanted: Sequence[re.Pattern[str]]) -> str:
-    """Return the title of a page, and below it the line with most of the words, shortened around
-    the first of them. Sentences precede tables and code.
+    """Return the title of a page, and its line with most of the words, shortened
+    around the first word. Sentences are preferred to tables and code.
     """
 
     def fit(line: str) -> tuple[int, bool]:

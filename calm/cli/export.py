@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, narrate, save
+from calm.cli.outputs import ExitCode, check_suffix, narrate, save
 from calm.errors import UsageError
 
 
@@ -29,7 +29,7 @@ def export(
         The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
         with the current in a second file) or csv (a list).
     output
-        The file to write.
+        The file to write: .mat for mdd, .cbl for cbl, .txt or .dat for moordyn, .csv for csv.
 
     Examples
     --------
@@ -38,12 +38,13 @@ def export(
       calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
       calm export mooring.yaml --to csv -o mooring.csv
     """
-    from calm.exchange.exporting import export_file
+    from calm.exchange.exporting import export_file, written_format
     from calm.report.folder import check_destination
 
     check_destination(output)
     if os.path.realpath(output) == os.path.realpath(file):
-        raise UsageError(f"{output} would overwrite the file that is read")
+        raise UsageError(f"{output} is the input file; choose another output")
+    check_suffix(output, written_format(to).suffixes)
     exported = export_file(file, to, environment=environment, catalogs=catalog or [])
     beside = {output.with_name(name): content for name, content in exported.beside.items()}
     for path in beside:

@@ -27,13 +27,13 @@ def grid(
     report: Path | None = None,
     json: OutputPath = None,
 ) -> ExitCode:
-    """Put temperature, salinity and velocity at their moving depths onto fixed levels.
+    """Map temperature, salinity and velocity from moving instruments onto fixed levels.
 
-    A Gaussian process over depth and time, with the scales of the record
-    itself. Each value has a standard deviation, which includes the sensor, the
-    error of its depth times the local gradient, and the gap between sensors;
-    and a flag: 8 between the sensors at that time, 3 beyond them or where the
-    record says little, 9 for no value.
+    The method is a Gaussian process over depth and time, with scales estimated
+    from the record. Each value has a standard deviation, which includes the
+    sensor error, the depth error times the local gradient, and the gap between
+    sensors. Each value has a flag: 8 between the sensors at that time, 3 beyond
+    them or if the data constrain the value poorly, 9 without a value.
 
     Parameters
     ----------
@@ -46,14 +46,13 @@ def grid(
     output
         The gridded file, .nc.
     levels
-        FIRST:STEP:LAST in metres, such as "0:20:1500", or several with commas.
+        FIRST:STEP:LAST in metres, such as "0:20:1500", or levels separated by commas.
     step
         Values are means over this time, such as "1 h"; by default at the times
         of DEPTHS.
     variables
-        temperature, salinity, u, v; by default all that are in the files. As
-        TEMP, PSAL, UCUR, VCUR, all names in the file are in capitals, as in
-        OceanSITES.
+        temperature, salinity, u, v; by default all that are in the files. With TEMP, PSAL, UCUR or
+        VCUR, the file uses the OceanSITES names, in capitals.
     method
         depth-time, or depth, which treats each time separately.
     flags
@@ -61,7 +60,7 @@ def grid(
     report
         Write a page and a PDF, grid.html and grid.pdf, in this folder.
     json
-        Write the scales and what was read as JSON, - to print it.
+        Write the scales and a summary of the input as JSON (- for standard output).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The form of `--help`: its width, the names of values, the examples."""
+"""Format of `--help`: width, value names and examples."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in 
 
 
 def metavar(option: str) -> str | None:
-    """Return the name of the value of an option; None if the option shows its type."""
+    """Return the value name shown for an option; None if the option shows its type."""
     return _VALUE_OF.get(option)
 
 
@@ -60,7 +60,7 @@ class HelpAtWidth:
     """Formatter of `--help`: as wide as the terminal, with a name for the value of each option."""
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
-        """Print a panel. The texts of options are filled anew, without their line breaks."""
+        """Print a panel; texts of options are wrapped to its width."""
         from cyclopts.help import DefaultFormatter
         from rich.text import Text
 
@@ -87,6 +87,6 @@ class HelpAtWidth:
 
 
 def examples(command: Callable[..., object]) -> str:
-    """The examples at the end of a docstring, as the epilogue of `--help`."""
+    """Return the examples at the end of a docstring, for the end of `--help`."""
     text = cleandoc(command.__doc__ or "").partition("Examples\n--------\n")[2]
     return f"Examples:\n\n{text}"

@@ -1,4 +1,4 @@
-"""``calm import``: mooring files from designs of other programs."""
+"""``calm import``: convert designs of other programs to mooring files."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode
 
     (target,) = _targets((file,), output)
     if os.path.realpath(target) == os.path.realpath(onto):
-        raise UsageError(f"{target} is the mooring file that is read; write another one")
+        raise UsageError(f"{target} is the input file; choose another output")
     found = assign_instruments(onto, file)
     for sentence in (*found.assigned, *found.doubts):
         narrate(sentence)
@@ -184,9 +184,9 @@ def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
         targets = [output / f"{file.stem}.yaml" for file in files]
     for target in targets:
         if targets.count(target) > 1:
-            raise UsageError(f"two of the files would both become {target}")
+            raise UsageError(f"two of the input files would be written to {target}")
         if any(os.path.realpath(target) == os.path.realpath(file) for file in files):
-            raise UsageError(f"{target} would overwrite the file that is read")
+            raise UsageError(f"{target} is the input file; choose another output")
     return targets
 
 

@@ -1,4 +1,4 @@
-"""Designs solved and judged in all their environments, shared out over processes."""
+"""Solve and check designs in all their environments, in several processes."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class Drawing(NamedTuple):
     ----------
     alone : whether the report contains all pages of a mooring, instead of one after the summary
     full : whether each of several moorings also gets all its pages as a separate PDF
-    paper : page size
+    page_size : page size
     """
 
     alone: bool = True
     full: bool = False
-    paper: str = "a4"
+    page_size: str = "a4"
 
 
 class DrawnSection(NamedTuple):
@@ -58,7 +58,7 @@ def drawn_section(
 ) -> DrawnSection:
     """Draw the `number`th section of a report for HTML and PDF.
 
-    `against` is the mooring compared with the design that it came from.
+    `against` is the comparison of the mooring with its earlier design.
     """
     from calm.report.check_report import check_report, mooring_section, short_section
     from calm.report.folder import pdf_leaf, printed
@@ -66,9 +66,9 @@ def drawn_section(
 
     full = None
     if drawing.alone or drawing.full:
-        section = mooring_section(assessment, against, drawing.paper)
+        section = mooring_section(assessment, against, drawing.page_size)
     if drawing.full:
-        full = printed(check_report([section]), drawing.paper)
+        full = printed(check_report([section]), drawing.page_size)
     if not drawing.alone:
         section = short_section(assessment)
     bare = replace(section, parts=())
@@ -81,16 +81,16 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Judge designs on one day: the day of the report, by default today.
+    """Check designs on the day of the report, by default today.
 
-    Processes share many moorings, and one process solves, judges and draws a mooring. They share
-    the environments of a few moorings.
+    With many moorings, each process solves, checks and draws whole moorings; with few, the
+    environments are distributed over the processes.
 
     Parameters
-    ----------
-    workers : number of processes; None for one on each core
-    drawn : how the sections of the report are drawn; None without a report
-    draws : samples and seed of the probabilities; None without them
+        ----------
+        workers : number of processes; None for one on each core
+        drawn : settings for the report; None without a report
+        draws : samples and seed of the probabilities; None without them
     """
     from calm.report.provenance import moment
 
@@ -163,12 +163,12 @@ def _solved_cases(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
     """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
     the others.
     """
-    from calm.checks.design_check import failed_stand, stands_of
+    from calm.checks.design_check import environments_checked, failed_environment
 
     name, mooring, day = task
     try:
-        return stands_of(mooring, name, day)
+        return environments_checked(mooring, name, day)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        return [failed_stand(mooring, name, internal_failure(error))]
+        return [failed_environment(mooring, name, internal_failure(error))]

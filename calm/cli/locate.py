@@ -43,10 +43,9 @@ def locate(
     Parameters
     ----------
     file
-        CSV file with the columns latitude, longitude (WGS 84, of the
-        transducer; degrees, or degrees and minutes) and range[m], or the
-        two-way time[s]; or a survey without a heading, in the forms of WHOI's
-        and NOC's programs.
+        CSV file with the columns latitude, longitude (WGS 84, of the transducer; degrees, or
+        degrees and minutes) and range[m], or the two-way time[s]; or a survey file without column
+        headings, as written for the programs of WHOI and NOC.
     sound_speed
         Speed of sound for times: a speed, or a CSV file with the columns
         depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges
@@ -68,13 +67,12 @@ def locate(
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
-        A mooring file: write position and depth into its `deployed:`, and
-        report the distance from its planned position. If two positions remain,
-        if the depth differs from the planned one by more than 30 m or 3 %, or
-        if the position is in doubt for another reason, nothing is written, and
-        the exit code is 1.
+        A mooring file: write position and depth into its `deployed:`, and report the distance from
+        its planned position. If two positions remain, if the depth differs from the planned one by
+        more than 30 m or 3 %, or if the position is doubtful for another reason, nothing is
+        written, and the exit code is 1.
     accept
-        Write the position even if it is in doubt.
+        Write the position even if it is doubtful.
 
     Examples
     --------

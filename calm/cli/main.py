@@ -1,4 +1,4 @@
-"""The command ``calm``: its verbs, and how every error becomes one line and an exit code."""
+"""The command ``calm``: its subcommands, and conversion of errors to a message and exit code."""
 
 from __future__ import annotations
 
@@ -65,12 +65,12 @@ _ZSH_CALL = '\n\nif [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _
 
 
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
-    """Print a script that lets a shell complete commands and options.
+    """Print a script for shell completion of commands and options.
 
     Parameters
     ----------
     shell
-        The shell that reads it.
+        Shell for which the script is written.
 
     Examples
     --------

@@ -30,8 +30,8 @@ def complaint(error: CycloptsError) -> str:
         return f"unexpected argument: {extra}; see `{command} --help`"
     if type(error) is MissingArgumentError and error.argument is not None:
         return _missing(command, error, error.argument)
-    if isinstance(error, UnknownOptionError) and (told := _about_option(error)):
-        return f"`{command}`: {told}"
+    if isinstance(error, UnknownOptionError) and (message := _about_option(error)):
+        return f"`{command}`: {message}"
     if isinstance(error, CoercionError) and error.token is not None:
         path = error.token.value
         file = f" For a file: -o {path}" if Path(path).suffix in (".yaml", ".yml") else ""
@@ -47,8 +47,8 @@ def complaint(error: CycloptsError) -> str:
 
 
 def _about_option(error: UnknownOptionError) -> str:
-    """Name the options that begin with the one typed, such as --environment for --env; "" if none
-    does.
+    """Suggest options that begin with the typed text, such as --environment for
+    --env; "" if there are none.
     """
     word = error.token.keyword or error.token.value
     if word == "-":
@@ -77,7 +77,7 @@ def _missing(command: str, error: MissingArgumentError, argument: Argument) -> s
 
 
 def _form(argument: Argument, app: App | None = None) -> str:
-    """Return an argument as it is typed, such as ``--currents FILE`` or ``FILE...``."""
+    """Return the form of an argument on the command line: ``--currents FILE``, ``FILE...``."""
     if argument.name.startswith("-"):
         short = min(argument.names, key=len)
         return f"{short} {metavar(argument.name) or 'PATH'}"
@@ -87,6 +87,6 @@ def _form(argument: Argument, app: App | None = None) -> str:
 
 
 def _positionals(app: App | None) -> Sequence[str]:
-    """Return the arguments in the usage line of a command, if it is written by hand."""
+    """Return the arguments in a hand-written usage line of a command."""
     usage = "" if app is None or not app.usage else app.usage
     return [word for word in usage.partition("[OPTIONS]")[2].split() if word[0] != "["]

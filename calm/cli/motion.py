@@ -1,4 +1,4 @@
-"""``calm motion``: where the instruments of a mooring were, at every time."""
+"""``calm motion``: depths of the instruments of a mooring at every time."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ def motion(
     The currents move the line; the pressures correct the drag for the whole
     record, and the current at each time. The result has the depth of every
     component and clamped instrument with its standard deviation, and the
-    residuals of the sensors. A current meter on the line is matched by its
-    label and placed where the line has it. Without currents, they are inferred
-    from the pressures of two or more sensors.
+    residuals of the sensors. A current meter on the line is matched by its label,
+    and its position is taken from the mooring file. Without currents, they are
+    inferred from the pressures of two or more sensors.
 
     Parameters
     ----------
@@ -71,16 +71,16 @@ def motion(
     fit
         What to estimate for the whole record besides the drag: buoyancy, length.
     hold_out
-        Labels of sensors, separated by commas, to hide everywhere; the result
-        at these is compared with interpolation between the others.
+        Labels of sensors, separated by commas, to withhold throughout. The result at these sensors
+        is compared with interpolation between the others.
     without
-        Labels of sensors, separated by commas, to leave out altogether.
+        Labels of sensors, separated by commas, to ignore completely.
     cross_validate
-        Hide each sensor in turn, and compare.
+        Withhold each sensor in turn, and compare its depths with the estimate.
     correct
-        What to correct where a sensor is found wrong, separated by commas: clock,
-        gain, offset, drift; air, where pressures are absolute. The history of the
-        output says what was corrected.
+        Faults to correct in sensors that are found faulty, separated by commas: clock, gain,
+        offset, drift; or air, for absolute pressures. The history of the output says what was
+        corrected.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -96,7 +96,7 @@ def motion(
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
-        Write the factors and how well depths agree as JSON, - to print it.
+        Write the estimated factors and the depth residuals as JSON (- for standard output).
 
     Examples
     --------
@@ -129,7 +129,7 @@ def motion(
     if onto is not None and onto.is_dir():
         check_folder(output)
         if output.resolve() == onto.resolve():
-            raise UsageError(f"{output} is an input and is not overwritten")
+            raise UsageError(f"{output} is an input file and was not overwritten")
     else:
         check_output(output, *inputs)
     if onto is not None:
@@ -188,7 +188,9 @@ def write_copies(
     inputs: list[Path],
     source: dict[str, str],
 ) -> None:
-    """Write the copy of each file, into a folder where they come from one."""
+    """Write a copy of each instrument file with depths added, into a folder if
+    the output is a folder.
+    """
     from calm.dataset.discovery import hashed
     from calm.motion.instrument_file import write_depths
 
@@ -198,7 +200,7 @@ def write_copies(
         output.mkdir(parents=True, exist_ok=True)
     for one in instruments:
         if all(point is None for point in one.point):
-            narrate(f"{one.path}: no part of the line; it is not written")
+            narrate(f"{one.path}: it belongs to no part of the line and is not written")
             continue
         name = one.path.name if one.path.suffix == ".nc" else f"{one.path.name}.nc"
         target = output / name if folder else output

@@ -46,7 +46,7 @@ JsonAnswer = Annotated[
     Parameter(help="Write the result as JSON (- for standard output).", allow_leading_hyphen=True),
 ]
 Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
-"""A quantity that may be negative, which must not be taken for an option."""
+"""Option whose value may be a negative quantity; the minus sign does not start another option."""
 Units = Annotated[
     str | None,
     Parameter(
@@ -57,12 +57,12 @@ Units = Annotated[
 
 
 def option(name: str) -> str:
-    """Return how a parameter is written on the command line."""
+    """Return the command-line spelling of a parameter."""
     return f"--{name.replace('_', '-')}"
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Select the units of tables and reports: `given`, else those on which all files agree.
+    """Select the units of tables and reports: `given`, else the units common to all files.
 
     UsageError: the text contains an unknown dimension or unit.
     """
@@ -114,24 +114,24 @@ def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
 
 
 def from_one(**given: int | None) -> None:
-    """Refuse the counts that were given and are not 1 or more, all at once."""
+    """Raise UsageError that lists all given counts below 1."""
     few = {name: count for name, count in given.items() if count is not None and count < 1}
     if few:
-        complaints = (f"{option(name)}: {count} is not 1 or more" for name, count in few.items())
+        complaints = (f"{option(name)}: {count} is below 1" for name, count in few.items())
         raise UsageError("; ".join(complaints))
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
-    """Parse an option that is a span of time, such as ``2 h``.
+    """Parse an option that is a duration, such as ``2 h``.
 
     Parameters
     ----------
-    between, in_words : the least and the greatest [s], and what people call them
+    between, in_words : smallest and largest duration [s], and the same as text
 
     Raises
     ------
     UsageError
-        It is none, or not between them.
+        The text is not a duration, or is outside this range.
     """
     import numpy as np
 

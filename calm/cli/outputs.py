@@ -68,7 +68,9 @@ def show(text: str, *, styled: bool = False) -> None:
 
 
 def show_parts(*parts: TerminalPart) -> None:
-    """Write to the standard output as the terminal allows, a blank line between two things."""
+    """Write parts to standard output in a form that suits the terminal, separated
+    by blank lines.
+    """
     from rich.console import Console
 
     from calm.report.blocks import ReportPart
@@ -117,6 +119,14 @@ def save(path: Path, content: bytes, then: str = "") -> None:
     narrate(f"{path} written{then}")
 
 
+def check_suffix(path: Path, allowed: Sequence[str]) -> None:
+    """Raise UsageError if the suffix of an output file is not one of the given ones, if any."""
+    if allowed and path.suffix.lower() not in allowed:
+        *others, last = allowed
+        names = f"{', '.join(others)} or {last}" if others else last
+        raise UsageError(f"cannot write {path}: its name must end in {names}")
+
+
 def _abandon_output() -> None:
     """Discard buffered output, which would fail again when the interpreter exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -129,7 +139,7 @@ class ExitCode(IntEnum):
     """The command succeeded."""
 
     FINDING = 1
-    """A check failed, or lacks a value that it needs."""
+    """A check failed, or a value that it requires is missing."""
 
     BAD_INPUT = 2
     """A file, an option or an output path is unusable; no result was computed."""
@@ -148,7 +158,7 @@ _GRAVEST_FIRST = (ExitCode.BAD_INPUT, ExitCode.NO_EQUILIBRIUM, ExitCode.FINDING)
 
 
 def gravest(codes: Iterable[ExitCode]) -> ExitCode:
-    """The code of a command that did several things: the first of 2, 3, 1, 0 that occurred."""
+    """Return the most severe of several exit codes, in the order 2, 3, 1, 0."""
     occurred = set(codes)
     return next((code for code in _GRAVEST_FIRST if code in occurred), ExitCode.DONE)
 
@@ -190,10 +200,10 @@ class Outputs:
 
     Parameters
     ----------
-    files : the files the outputs are made from; none where the question is in the options
-    json : where the JSON document goes, ``-`` for the standard output; None where not requested
-    written : further files, each of the kind that its suffix names
-    suffixes : the suffixes that these may have
+    files : the input files; empty for commands without input files
+    json : path of the JSON document, ``-`` for standard output; None if not requested
+    written : further output files, in the formats of their suffixes
+    suffixes : allowed suffixes of these files
     """
 
     files: tuple[Path, ...] = ()
@@ -202,16 +212,18 @@ class Outputs:
     suffixes: tuple[str, ...] = SUFFIXES
 
     def apiece(self, path: Path) -> list[Path]:
-        """The paths of an output that is written once for each file: of several, with its name."""
+        """Return the paths of an output written once per input file; several have the file names
+        added.
+        """
         if len(self.files) == 1:
             return [path]
         return [path.with_stem(f"{path.stem}-{file.stem}") for file in self.files]
 
     def __post_init__(self) -> None:
-        """Refuse outputs that could not be written, before anything is solved.
+        """Reject invalid outputs before anything is solved.
 
-        UsageError: a path that cannot be written, that another output or a mooring file has
-        already, or that looks like an option; an unknown suffix.
+        Raises UsageError for a path that cannot be written, equals another output or a mooring
+        file, looks like an option, or has an unknown suffix.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment
@@ -224,17 +236,14 @@ class Outputs:
                 raise UsageError(
                     f"{path} was given where a path is needed; write ./{path} for a file"
                 )
-        *kinds, last = self.suffixes
         for path in self.written:
-            if path.suffix.lower() not in self.suffixes:
-                allowed = f"{', '.join(kinds)} or {last}"
-                raise UsageError(f"cannot write {path}: its name must end in {allowed}")
+            check_suffix(path, self.suffixes)
         if any(path.suffix.lower() in APIECE for path in self.written):
             moment()
         mooring_files = set(map(os.path.realpath, self.files))
         for real, count in Counter(map(os.path.realpath, paths)).items():
             if count > 1:
-                raise UsageError(f"two outputs would go to {os.path.relpath(real)}")
+                raise UsageError(f"two outputs have the same path, {os.path.relpath(real)}")
             if real in mooring_files:
                 raise UsageError(
                     f"{os.path.relpath(real)} is a mooring file and was not overwritten"
@@ -266,8 +275,8 @@ class Outputs:
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: JSON if requested there, or the tables.
 
-        There is something to show of each of `files`, in order; the CSV table of all of them is
-        made only where it was asked for. UsageError: the system refuses to write.
+        `shown` has one entry per input file, in order. The CSV table is only made if requested.
+        Raises UsageError if the system rejects a file.
         """
         from calm.report.result_files import to_json
 

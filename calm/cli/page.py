@@ -21,7 +21,7 @@ def page(
     Parameters
     ----------
     output
-        The folder to write.
+        Folder for the page.
     runtime
         A folder with a release of Pyodide and with xterm.js and xterm.css, copied into the page so
         that it needs no other server. By default the page loads them from Pyodide's address.
@@ -38,7 +38,7 @@ def page(
     written = write_page(output, runtime)
     size = sum((output / name).stat().st_size for name in written) / 1e6
     narrate(
-        f"the page is in {output} ({size:.1f} MB); "
-        f"to see it: python -m http.server -d {output}, then http://localhost:8000"
+        f"Page written to {output} ({size:.1f} MB). To view it, run python -m http.server -d "
+        f"{output} and open http://localhost:8000"
     )
     return ExitCode.DONE

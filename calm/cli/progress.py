@@ -24,7 +24,7 @@ BAR = 24
 """Number of characters of a full bar."""
 
 FEW = 4
-"""So many tasks are done before another process has started."""
+"""Number of tasks below which starting other processes takes longer than the tasks."""
 
 _PATIENCE = 1.0  # seconds before the progress of a loop is reported
 _REDRAWN = 0.2  # seconds between updates on a terminal
@@ -34,8 +34,8 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 class ProgressTeller:
     """Progress display in one line of the terminal, called with a batch's `Progress`.
 
-    With a `patience` [s], a terminal stays silent for that time. Without it, time starts at the
-    first call.
+    With a `patience` [s], nothing is shown on a terminal for that time. Without
+    it, time is counted from the first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:
@@ -45,7 +45,7 @@ class ProgressTeller:
         self._due = (self._started or 0.0) + (patience or 0.0)
 
     def note(self, text: str) -> None:
-        """Write a line of its own."""
+        """Write a text on a separate line."""
         self.clear()
         narrate(text)
 
@@ -55,7 +55,7 @@ class ProgressTeller:
         self.tell(lambda seconds: head + state(progress, seconds))
 
     def tell(self, text: Callable[[float], str]) -> None:
-        """Write the text for the elapsed time, unless a line was written a moment ago."""
+        """Write the text for the elapsed time, unless the last update is too recent."""
         now = monotonic()
         if self._started is None:
             self._started = now
@@ -75,15 +75,13 @@ class ProgressTeller:
 
 
 def bar(progress: Progress) -> str:
-    """As much of a bar as is done."""
+    """Draw the progress bar."""
     filled = BAR * progress.done // progress.total
     return f"[{'#' * filled}{'.' * (BAR - filled)}]"
 
 
 def state(progress: Progress, seconds: float) -> str:
-    """Return how many are done, the rate, the time that the rest takes at it, and the failures so
-    far.
-    """
+    """Describe the progress: profiles done, rate, remaining time, and failures."""
     from calm.batch.statuses import Ending
 
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
@@ -98,7 +96,7 @@ def state(progress: Progress, seconds: float) -> str:
 
 
 def grouped(number: int) -> str:
-    """A count with its thousands apart."""
+    """Format a number with thousands separated by spaces."""
     return f"{number:,}".replace(",", " ")
 
 
@@ -132,7 +130,7 @@ def mapped(
 
     Parameters
     ----------
-    function : a function of a module, so that another process can import it
+    function : a module-level function, which another process can import
     workers : number of processes; None for one per core
     what : the tasks, in the plural
     meanwhile : called in this process while others work; not called without other processes
@@ -163,8 +161,9 @@ def begun(
 ) -> Callable[[], _Done]:
     """Start a computation in another process, and return a function that waits for its result.
 
-    The function must belong to a module, so that another process can import it. On a machine with
-    one core, it runs in this process when the result is requested.
+    The function must be a module-level function, which another process can
+    import. On a machine with one core, it runs in this process when the result is
+    requested.
     """
     if (os.cpu_count() or 1) < 2:
         return partial(function, *given, **named)

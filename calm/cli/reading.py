@@ -1,4 +1,4 @@
-"""Reading lines, and the moorings of a design check in all the environments it is judged in."""
+"""Read lines, and the moorings of a design check in all their environments."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def read_all(
 
 @dataclass(frozen=True)
 class DesignFile:
-    """A mooring file, under a name that no other has, read in each of its environments."""
+    """A mooring file with a unique name, read in each of its environments."""
 
     path: Path
     name: str
@@ -61,16 +61,16 @@ def read_designs(
 
     Parameters
     ----------
-    environments : names or files of those to take; None for a file's own and all that it names
-    workers : how many processes share the work
-    meanwhile : what this process does while others read
+    environments : names or files of environments; None for all environments of each file
+    workers : number of processes
+    meanwhile : called in this process while others read
 
     Raises
     ------
     InputError
-        With the mistakes of all files.
+        Files have mistakes; all mistakes are listed.
     UsageError
-        Nothing but tows; a file given twice; two environments of one name.
+        All files are tows, a file is given twice, or two environments have the same name.
     """
     given = Counter([*map(str, files), *(environments or ())])
     twice = [word for word, count in given.items() if count > 1]
@@ -94,8 +94,10 @@ def read_designs(
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
     for its in by_path.values():
         _refuse_one_name(its)
-    called = _told_apart({path: its[0].file.name for path, its in by_path.items()})
-    designs = [DesignFile(path, called[path], _cut_alike(its)) for path, its in by_path.items()]
+    called = _unique_names({path: its[0].file.name for path, its in by_path.items()})
+    designs = [
+        DesignFile(path, called[path], _with_equal_cuts(its)) for path, its in by_path.items()
+    ]
     return designs, tows
 
 
@@ -104,8 +106,8 @@ def names_of_files(
 ) -> list[str]:
     """Convert mooring names to names of files or folders.
 
-    Characters that systems reject become hyphens.
-    UsageError: two moorings have the same name, or one that is `taken`.
+    Characters that file systems reject become hyphens. Raises UsageError if two
+    moorings have the same name, or a name in `taken`.
     """
     plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
     names = [name or "mooring" for name in plain]
@@ -116,7 +118,7 @@ def names_of_files(
     return names
 
 
-def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
+def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
     """Add the file to each name that occurs in several files."""
     while True:
         count = Counter(names.values())
@@ -127,7 +129,7 @@ def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
         }
 
 
-def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
+def _with_equal_cuts(moorings: Sequence[Design]) -> tuple[Design, ...]:
     """Use equal cut lengths in every environment: pieces are cut to fit in the first environment.
 
     Results that do not depend on the environment, such as the line in still water, are shared.
@@ -157,10 +159,10 @@ def _load(
 
 def _refuse_one_name(moorings: Sequence[Design]) -> None:
     """Reject environments of equal name, which results could not distinguish."""
-    from calm.checks.finding import ON_THE_WAY, OWN
+    from calm.checks.finding import HANDLING_LABEL, OWN
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
-    names[ON_THE_WAY] += 1  # has a separate column
+    names[HANDLING_LABEL] += 1  # has a separate column
     for name, count in names.items():
         if count > 1:
             raise UsageError(f"{count} environments are named {name}; rename all but one")

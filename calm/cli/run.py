@@ -47,20 +47,21 @@ def run(
 ) -> ExitCode:
     """Solve moorings, tows and nets of legs, and print the table of each line.
 
-    All files are read first: if one cannot be used, its mistakes are listed and
-    nothing is solved. Errors go to the standard error.
+    All files are read first. If any has mistakes, they are listed and nothing is
+    solved. Error messages go to standard error.
 
     Parameters
     ----------
     files
-        Mooring files; one with `tow:` is a tow, one with `legs:` a net.
+        Mooring files. A file with `tow:` describes a tow, a file with `legs:` a net.
     output
-        Write the result in the format of the suffix. Repeatable. One file for all moorings: .json;
-        .csv of the components, or with --speeds of the speeds. One for each mooring (of
-        several, p.svg becomes p-FILE.svg): .svg or .png, the line drawn; .html or .pdf, a
-        report of its table, drawings and inputs; .nc, NetCDF with the names of `calm batch`.
+        Write the result in the format given by the suffix. Repeatable. One file for all moorings:
+        .json; .csv with a row per component, or with --speeds a row per speed. One file per mooring
+        (with several, p.svg becomes p-FILE.svg): .svg or .png, a drawing of the line; .html or
+        .pdf, a report with table, drawings and inputs; .nc, NetCDF with the variable names of `calm
+        batch`.
     json
-        Print the result as JSON in place of the table; for several files an array.
+        Print the result as JSON instead of the table; several files give an array.
     speeds
         Solve tows at the speeds A:B:STEP, both ends included, and print a row for each;
         -o draws depth, layback and tension against speed. A speed without

@@ -1,4 +1,4 @@
-"""``calm size``: the smallest change of a mooring that meets a target."""
+"""``calm size``: find the smallest change of a mooring that meets a target."""
 
 from __future__ import annotations
 

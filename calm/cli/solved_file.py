@@ -108,9 +108,9 @@ def solve_files(
 
     Parameters
     ----------
-    explain, schematic : explain each result; draw each line for the terminal
+    explain, schematic : whether to explain each result, and to draw each line for the terminal
     draws : samples and seed of the uncertainty of the results; None without it
-    verbose : show how each solution was found
+    verbose : whether to report solver statistics
     """
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []

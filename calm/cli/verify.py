@@ -1,4 +1,4 @@
-"""``calm verify``: figures that are known without CALM, or from the sea, against its own."""
+"""``calm verify``: compare CALM with published, analytical and measured values."""
 
 from __future__ import annotations
 
@@ -75,11 +75,13 @@ def _chosen(words: Sequence[str]) -> list[Source]:
 
 WITHHELD = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
 MEAN_RATIO, MAX_RATIO, IN_BAND = 0.55, 0.75, (0.88, 0.99)
-"""Limits of rms over rms of interpolation (mean, each), and of the share in 95 % bands."""
+"""Limits of the rms error relative to that of interpolation (mean, maximum), and of the fraction of
+values within their 95 % bands.
+"""
 
 
 def verify_field(outputs: Outputs) -> ExitCode:
-    """Estimate the hidden depths of dune2, show them, and judge them by the figures above."""
+    """Estimate the depths at withheld sensors of the mooring dune2, and check their errors."""
     import numpy as np
 
     import calm
@@ -120,7 +122,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     part = blocks.ReportPart(
         "",
         (
-            blocks.Heading("dune2, Denmark Strait: depths at hidden sensors"),
+            blocks.Heading("dune2, Denmark Strait: depths at withheld sensors"),
             motion_report.factors_table(factors, task.common.datum),
             motion_report.held_out_table(held),
             blocks.Prose((verdict,), State.PASS if good else State.FAIL),

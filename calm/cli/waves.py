@@ -35,11 +35,11 @@ def waves(
 ) -> ExitCode:
     """Estimate tensions and motions of a mooring in waves, about its equilibrium.
 
-    Linear: small waves about the shape in the mean current, with drag
-    linearised for equal dissipation. If a piece falls slack this is no longer
-    valid: the status is slack-in-waves and the exit code 3. Without --hs,
-    --scatter or a file as the --spectrum, the seas are those under `waves:` in
-    the environment.
+    The model is linear: small waves about the shape in the mean current, with
+    drag linearised for equal dissipation. It is not valid if a piece goes slack;
+    the status is then slack-in-waves and the exit code 3. Without --hs, --scatter
+    or a file as the --spectrum, the seas are those under `waves:` in the
+    environment.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def waves(
     duration
         Duration for the most probable maximum and minimum tension; 3 h by default.
     report
-        A folder for waves.html and waves.pdf, with pictures of the tension.
+        Folder for waves.html and waves.pdf, with plots of the tension.
 
     Examples
     --------

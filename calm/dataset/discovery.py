@@ -16,7 +16,18 @@ from numpy.typing import NDArray
 
 from calm.dataset.netcdf import Attributes, ResultLayout, Variable, source_date
 
-CONVENTIONS = "CF-1.11, ACDD-1.3, OceanSITES-1.4"
+ARCHIVED: Attributes = {
+    "Conventions": "CF-1.11, ACDD-1.3, OceanSITES-1.4",
+    "naming_authority": "OceanSITES",
+    "data_type": "OceanSITES time-series data",
+    "format_version": "1.4",
+    "data_mode": "D",
+    "cdm_data_type": "Station",
+    "standard_name_vocabulary": "CF Standard Name Table v93",
+}
+"""Attributes common to all files in the form of archives."""
+GCMD = "GCMD Science Keywords"
+"""Vocabulary of keywords."""
 FLAGS: Mapping[int, str] = {
     0: "unknown", 1: "good_data", 2: "probably_good_data",
     3: "potentially_correctable_bad_data", 4: "bad_data", 7: "nominal_value",
@@ -40,7 +51,7 @@ def written() -> str:
 
 
 def hashed(path: Path) -> str:
-    """Return the name of a file with its SHA-256 hash; for a folder, only the name."""
+    """Return a file name followed by the SHA-256 hash of the file; a folder has no hash."""
     if not path.is_file():
         return path.name
     with path.open("rb") as file:
@@ -59,39 +70,25 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 
 
 def coverage(
-    time: NDArray[np.datetime64], depth: Sequence[float], place: Sequence[float]
+    time: NDArray[np.datetime64], depth: NDArray[np.floating[Any]], place: Sequence[float]
 ) -> Attributes:
     """Return the attributes for the coverage in time, depth and position.
 
     Parameters
     ----------
     time : times of the result, ascending
-    depth : smallest and largest depth [m]; empty if unknown
+    depth : depths of the data [m], of any shape; NaN if unknown
     place : latitude and longitude [degrees]; empty if unknown
     """
     first, last = (np.datetime_as_string(one, "s") + "Z" for one in (time[0], time[-1]))
     attributes: Attributes = {
-        "Conventions": CONVENTIONS,
-        "naming_authority": "OceanSITES",
-        "data_type": "OceanSITES time-series data",
-        "format_version": "1.4",
-        "data_mode": "D",
-        "cdm_data_type": "Station",
-        "standard_name_vocabulary": "CF Standard Name Table v93",
-        "keywords_vocabulary": "GCMD Science Keywords",
         "time_coverage_start": first,
         "time_coverage_end": last,
         "time_coverage_duration": _duration(time[-1] - time[0]),
     }
     if len(time) > 1:
         attributes["time_coverage_resolution"] = _duration(np.median(np.diff(time)))
-    if len(depth):
-        attributes |= {
-            "geospatial_vertical_min": float(min(depth)),
-            "geospatial_vertical_max": float(max(depth)),
-            "geospatial_vertical_positive": "down",
-            "geospatial_vertical_units": "m",
-        }
+    attributes |= vertical_extent(depth)
     for axis, unit, value in zip(
         ("lat", "lon"), ("degrees_north", "degrees_east"), place, strict=False
     ):
@@ -106,6 +103,25 @@ def coverage(
                  "geospatial_bounds_crs": "EPSG:4326",
                  "geospatial_bounds_vertical_crs": "EPSG:5831"}  # fmt: skip
     return attributes
+
+
+def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
+    """Return the attributes for the range of depths [m]; none if all are NaN."""
+    known = depth[np.isfinite(depth)]
+    if not known.size:
+        return {}
+    return {
+        "geospatial_vertical_min": float(known.min()),
+        "geospatial_vertical_max": float(known.max()),
+        "geospatial_vertical_positive": "down",
+        "geospatial_vertical_units": "m",
+    }
+
+
+def archive_id(name: str, start: np.datetime64, product: str) -> str:
+    """Return an `id` in the form of OceanSITES: site, month of the first time, product."""
+    site = "".join(letter if letter.isalnum() else "-" for letter in name)
+    return f"OS_{site}_{np.datetime_as_string(start, 'M').replace('-', '')}_D_{product}"
 
 
 def _duration(span: np.timedelta64) -> str:

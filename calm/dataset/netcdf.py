@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import h5netcdf
 
 LEVEL = 1
-"""Compression level; higher levels take twice the time and save 3 % of the space."""
+"""Compression level. Higher levels take twice the time and save 3 % of the space."""
 
 Chunks = Mapping[str, bytes]
 """Compressed bytes of one block, by name of the time-dependent variable."""
@@ -54,7 +54,7 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Convert a block to the storage format of HDF5: one shuffled and deflated chunk per variable.
+    """Convert a block to HDF5 chunks, one shuffled and deflated chunk per variable.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def write_netcdf(
     block: int,
     blocks: Iterable[Chunks],
     path: Path,
-    last: Callable[[], Mapping[str, str]] = dict,
+    last: Callable[[], Attributes] = dict,
 ) -> None:
     """Write a file block by block, under a temporary name until it is complete.
 
@@ -86,7 +86,7 @@ def write_netcdf(
     block : number of times in a block
     blocks : the results of `packed`, in order; one is in memory at a time
     last : returns attributes known only after the last block; the layout already has them,
-        with values of the same length
+        as numbers or as texts of the same length
 
     Raises
     ------
@@ -114,7 +114,7 @@ def write_netcdf(
                             begin = number * block, *(0 for _ in file[name].shape[1:])
                             file[name].id.write_direct_chunk(begin, content)
                     for name, value in last().items():
-                        file.attrs.modify(name, np.bytes_(value))
+                        file.attrs.modify(name, _text(value))
                     file.flush()
                     size = file.id.get_filesize()
             os.truncate(part, size)
@@ -133,7 +133,7 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the chunk shape of a time-dependent variable; the last chunk has the full size, too.
+    """Return the chunk shape of a time-dependent variable, which the last chunk has, too.
 
     Parameters
     ----------
@@ -333,8 +333,7 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Create the variables of a mooring as a CF station; also return the names to append to the
-    attribute `coordinates`.
+    """Create the CF station variables of a mooring, and the names to append to `coordinates`.
 
     Parameters
     ----------

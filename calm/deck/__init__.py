@@ -100,7 +100,7 @@ class Lifts:
 
     @property
     def heaviest(self) -> Lift | None:
-        """Heaviest single lift among those of known mass in air."""
+        """Heaviest single lift of known mass in air."""
         known = [lift for lift in self.deployment if lift.mass is not None]
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
@@ -205,12 +205,12 @@ def deck_of(
     plan: DropPlan | NoEquilibrium | None = None
     if first.several:
         notes += assessment.notices
-        rising = LegGraph(result.legs).coming_up
+        rising = LegGraph.in_equilibrium(result.legs).coming_up
     else:
         try:
             rise = recovery_of(first.leg, result.leg)
         except NoEquilibrium as failure:
-            notes.append(f"The rise of the line is not known: {failure}")
+            notes.append(f"The ascent of the line could not be computed: {failure}")
         released = first.file.pieces[-1].index if rise is None else rise.released + 1
         rising = set(range(released))
     if order is Order.ANCHOR_LAST and not first.several:
@@ -220,7 +220,7 @@ def deck_of(
             plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
-            notes.append(f"The anchor drop cannot be planned: {failure}")
+            notes.append(f"The anchor drop could not be computed: {failure}")
     return Deck(
         result=result,
         environment=_name(first),
@@ -314,7 +314,7 @@ def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
 def lifts_of(
     inventory: Sequence[InventoryItem], legs: Sequence[int], rising: Collection[int], order: Order
 ) -> Lifts:
-    """List the lifts of a mooring, leg by leg.
+    """Compute the crane loads of a mooring, leg by leg.
 
     Parameters
     ----------

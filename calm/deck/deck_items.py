@@ -94,7 +94,7 @@ class DeckItem:
     @property
     def is_joint(self) -> bool:
         """Whether the item only connects pieces and has no data of its own."""
-        return self.is_connector and not self._is_told_of
+        return self.is_connector and not self._has_own_data
 
     @property
     def is_connector(self) -> bool:
@@ -107,7 +107,7 @@ class DeckItem:
         return "swivel" in f"{self.part.use} {self.name} {self.label}".lower()
 
     @property
-    def _is_told_of(self) -> bool:
+    def _has_own_data(self) -> bool:
         return any((self.serial, self.deployed_serial, self.remark))
 
     @property
@@ -121,11 +121,11 @@ class DeckItem:
     def kind(self) -> tuple[object, ...]:
         """Key that is equal for consecutive items which may share a row.
 
-        Floats and clamps of one component share a row. Items with a serial number or a remark,
-        instruments, releases, anchors and cut pieces never do.
+        Floats and clamps of one component share a row. Cut pieces, instruments, releases, anchors,
+        and all items with a serial number or a remark have separate rows.
         """
         alone = not self.is_rigid or self.role in ("instrument", "release", "anchor")
-        return (self.label,) if alone or self._is_told_of else (self.name, self.on)
+        return (self.label,) if alone or self._has_own_data else (self.name, self.on)
 
 
 @dataclass(frozen=True)
@@ -172,8 +172,10 @@ class DeckRow:
 
     @property
     def cluster(self) -> tuple[object, ...]:
-        """Key of chains with floats that may share a row; empty for other items."""
-        if not self.floats or any(one._is_told_of for one in (*self.items, *self.floats)):
+        """Key that chains with floats have in common if they may share a row; empty for other
+        items.
+        """
+        if not self.floats or any(one._has_own_data for one in (*self.items, *self.floats)):
             return ()
         first, floats = self.first, [(one.name, one.places) for one in self.floats]
         stem = first.label.rstrip("0123456789")
@@ -187,15 +189,15 @@ class DeckRow:
 
 
 def hardware_text(joints: Iterable[DeckItem]) -> str:
-    """Describe connecting hardware, such as `2 × 13 shackle`; "" for none."""
+    """Describe connecting hardware, such as `2 × 13 shackle`; empty without hardware."""
     counts = Counter(one.hardware for one in joints)
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
-def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
+def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
     """Group successive items into the rows in which they are listed or drawn, in line order.
 
-    In a drawing, hardware that stands apart has a row of its own.
+    In a drawing, hardware marked as `apart` has a separate row.
     """
 
     def is_joint(one: DeckItem) -> bool:
@@ -275,8 +277,8 @@ SHOWN_USE = 0.4999
 
 
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
-    """List the items down the line to the anchor, or down each leg; the clamps of a piece follow
-    the piece.
+    """List the items down the line to the anchor, or down each leg, with the clamps after their
+    piece.
 
     Connecting hardware with a label in `apart` is drawn in a row of its own.
     """

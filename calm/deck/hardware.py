@@ -135,7 +135,7 @@ def _effect(result: Result, index: int, length: float) -> float | None:
 
 
 SPARE_SHARE = 0.1
-"""Ratio of spares to fitted items, with a minimum of one, or two for small parts (CALM default)."""
+"""Ratio of spares to fitted items (CALM default); at least one spare, or two for small parts."""
 
 _KINDS = {
     "cotter pins": r"cotter",
@@ -147,7 +147,7 @@ _KINDS = {
     "rings": r"\bring\b",
     "links": r"\blink\b|\bpear\b|\bsling\b|hammerlock",
 }
-"""Kinds of hardware by words in id, name and label; the first match applies."""
+"""Kinds of hardware by words in id, name and label. The first match applies."""
 _OTHER, _CHAIN = "other connectors", "chains"
 ORDER = ("shackles", "pins", "cotter pins", *(kind for kind in _KINDS if kind not in
          ("shackles", "cotter pins")), _CHAIN, _OTHER)  # fmt: skip
@@ -249,10 +249,13 @@ def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
     ]
     names = Counter(tuple(sorted((base.use, noble.use))) for base, noble in contacts)
     for (one, other), count in names.items():
-        name, basis = f"isolator between {one} and {other}", "one for each contact of unlike metals"
+        name, basis = (
+            f"isolator between {one} and {other}",
+            ("one for each contact of dissimilar metals"),
+        )
         yield Stock("isolators", "", name, count, basis=basis)
     for use, count in Counter({base.label: base.use for base, _ in contacts}.values()).items():
-        basis = "one for each piece of the baser metal"
+        basis = "one for each piece of the less noble metal"
         yield Stock("anodes", use, f"anode on {use}", count, basis=basis)
 
 
@@ -264,7 +267,7 @@ def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
         and "thimble" in (one.part.equipment.termination or "").lower()
     )
     for (use, name), pieces in ends.items():
-        basis = "two for each cable, by its termination"
+        basis = "two for each cable, according to its termination"
         yield Stock("thimbles", use, f"thimble for {name}", 2 * pieces, basis=basis)
 
 

@@ -215,8 +215,8 @@ def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tupl
     """
     first, end = bars[piece].T
     begin, stop = span[piece].T
-    way = begin + share * (stop - begin)
-    whole = way * np.maximum(end - first, 1)
+    fraction = begin + share * (stop - begin)
+    whole = fraction * np.maximum(end - first, 1)
     bar = np.minimum(whole.astype(np.intp), np.maximum(end - first - 1, 0))
     return first + bar, np.clip(whole - bar, 0.0, 1.0)
 

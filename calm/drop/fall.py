@@ -129,8 +129,8 @@ def fall(
     while states[-1].node[-1, 2] > bottom:
         if len(states) > _MOST * fineness.steps or step >= MAX_STEP:
             raise Status.ANCHOR_LIFTS.because(
-                f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line to "
-                "the seabed."
+                f"The anchor weighs only {anchor.weight:.0f} N in water, too little to pull the "
+                "line to the seabed."
             )
         # released at once, without inertia, the anchor would pass the line next to it
         carried = RELEASED_SHARE ** (len(states) - 1)
@@ -271,13 +271,13 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     while excess(share := max(0.5 * share, least)) > 0.0:
         if share == least:
             raise UsageError(
-                f"even behind a very slow ship the line streams {_streamed(state):.1f} m, so "
-                f"it cannot be streamed to {streamed:g} m"
+                f"even behind a very slow ship the line extends {_streamed(state):.1f} m astern; a "
+                f"distance of {streamed:g} m is not possible"
             )
     excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
     if abs(_streamed(state) - streamed) > STREAMED_WITHIN * reach:
         raise Status.NOT_CONVERGED.because(
-            f"No speed of the ship streams the line to {streamed:g} m."
+            f"The line does not extend {streamed:g} m astern at any speed of the ship."
         )
     return state
 

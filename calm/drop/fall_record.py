@@ -157,7 +157,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
     shown = [drop.states[i] for i in chosen]
-    names = ["let go", *(f"after {state.time:.0f} s" for state in shown[1:-1]), "touchdown"]
+    names = ["release", *(f"after {state.time:.0f} s" for state in shown[1:-1]), "touchdown"]
     if rest is not None:
         shown.append(rest.states[-1])
         names.append("at rest")

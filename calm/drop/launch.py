@@ -160,8 +160,8 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
     length = float(leg.line.length.sum())
     if streamed is not None and not 0.0 < streamed < length:
         raise UsageError(
-            f"a line of {length:.1f} m cannot be streamed to {streamed:g} m: give less than its "
-            "length"
+            f"the line is {length:.1f} m long and cannot extend {streamed:g} m astern; the "
+            "distance must be shorter than the line"
         )
     return Ship(east, north, streamed)
 

@@ -177,9 +177,9 @@ def _afloat(
     if top.max() > 0.0:
         weight = REFERENCE_DENSITY * gravity * on.volume - on.buoyancy
         dry = np.where(on.out & (on.volume > 0.0), weight, np.maximum(weight, 0.0))
-        way = np.clip(1.0 - top / sea.skin, 0.0, 1.0)
-        share = way**2 * (3.0 - 2.0 * way)
-        rise = -6.0 * way * (1.0 - way) / sea.skin
+        immersion = np.clip(1.0 - top / sea.skin, 0.0, 1.0)
+        share = immersion**2 * (3.0 - 2.0 * immersion)
+        rise = -6.0 * immersion * (1.0 - immersion) / sea.skin
         emerges = (net > 0.0) | on.out
         lift = np.where(emerges, share * (net + dry) - dry, net)
         stiffness = np.where(emerges, rise * (net + dry), 0.0)

@@ -143,7 +143,9 @@ class DropPlan:
                 "half a second and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
-            texts.append("Strumming is neglected; the drag of cables is that at rest.")
+            texts.append(
+                "Strumming is neglected; cables have the drag of a cable that does not vibrate."
+            )
         names = ", ".join(each.label for each in self.depths if each.beyond)
         if names:
             texts.append(f"Depth rating exceeded during the drop: {names}.")
@@ -291,9 +293,9 @@ def drop_plan(
     delays = [other.states[-1].time - landed.time for other in (slower, coarser)]
     backs = [_split(other, toward)[0] - float(missed[0][0]) for other in others]
     times = [other.time - late.time + landed.time for other in others]
-    way = np.array([sin(radians(course)), cos(radians(course))])
+    heading = np.array([sin(radians(course)), cos(radians(course))])
     released = -landed.node[-1, :2]
-    past = float(released @ way)
+    past = float(released @ heading)
     pulls = fall_record.pulls_of(leg.file.pieces, drop)
     return DropPlan(
         mooring=mooring,
@@ -313,7 +315,7 @@ def drop_plan(
         tow_past=past,
         let_go=(float(released[0]), float(released[1])),
         deck_time=deck_time,
-        start=None if deck_time is None else _run_start(leg, way, ship_speed, past, deck_time),
+        start=None if deck_time is None else _run_start(leg, heading, ship_speed, past, deck_time),
         anchor_drag=anchor.drag,
         drag_known=leg.file.anchor.kt is not None,
         path=fall_record.path_of(drop, toward, leg.line.anchor_height),
@@ -351,13 +353,13 @@ def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
 
 
 def _run_start(
-    leg: Leg, way: Floats, speed: float, past: float, deck_time: Mapping[str, float]
+    leg: Leg, heading: Floats, speed: float, past: float, deck_time: Mapping[str, float]
 ) -> RunStart:
     """Compute the start of the run, with cables paid out at the speed of the ship.
 
     Parameters
     ----------
-    way : (2,) direction of the ship
+    heading : (2,) direction of the ship
     speed : speed of the ship over the ground [m/s]
     past : distance past the target at which the anchor is released, along the course [m]
     deck_time : see `drop_plan`
@@ -369,4 +371,4 @@ def _run_start(
     cables = sum(leg.line.length[: len(pieces)][leg.line.flexible[: len(pieces)]])
     time = handled + cables / speed
     distance = speed * time - past
-    return RunStart(distance, time, (float(-distance * way[0]), float(-distance * way[1])))
+    return RunStart(distance, time, (float(-distance * heading[0]), float(-distance * heading[1])))

@@ -33,17 +33,17 @@ def export_file(
 
     Parameters
     ----------
-    to : name of a format that is written, as `registry.register_format` has it
+    to : name of a registered format that can be written
     environment : a name in the file, or an environment file
-    catalogs : as `calm.load` takes them
+    catalogs : see `calm.load`
 
     Raises
     ------
     InputError, NoEquilibrium, UsageError
-        The file has mistakes, no length of a piece that is cut to fit is right, or `to` is no
-        program.
+        The file has mistakes, no length fits a piece that is cut to fit, or `to` is not a
+        registered format.
     """
-    chosen = _format_of(to)
+    chosen = written_format(to)
     assert chosen.write is not None
     read = load(path, environment, list(catalogs))
     if not read.several:
@@ -62,7 +62,8 @@ def export_file(
     return chosen.write(ExportedDesign(read.file.name, legs))
 
 
-def _format_of(to: str) -> FileFormat:
+def written_format(to: str) -> FileFormat:
+    """Return a format that is written, by name; UsageError: there is none of that name."""
     try:
         chosen = file_format(to)
     except KeyError:

@@ -1,28 +1,36 @@
 """Instrument lists of moorings, as used by observing groups, with nominal depths or heights.
 
-Read are CSV tables, `info.dat` of RODB (RAPID, OSNAP), configurations of oceanarray, and NetCDF
-files whose instruments have serial numbers and nominal depths, such as the products of IMOS.
+Supported are CSV tables and workbooks, `info.dat` of RODB (RAPID, OSNAP), configurations of
+oceanarray, and NetCDF files whose instruments have serial numbers and nominal depths, such as the
+products of IMOS.
 """
 
 from __future__ import annotations
 
+import csv
+import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import nan
 from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
 
 from calm.errors import InputError, Problem, refused
 from calm.exchange.model import MOST_PIECES
 from calm.exchange.oceanarray import is_oceanarray, listed_instruments
+from calm.exchange.table.cells import SheetRows, is_workbook, read_sheets
 from calm.records import cf_files, velocity
-from calm.records.delimited import is_gap, no_number, read_table
-from calm.records.headings import column_unit, heading
+from calm.records.current_terms import TimeChoiceError, parse_time
+from calm.records.delimited import NumberedLine, is_gap, no_number, read_table
+from calm.records.headings import column_unit, heading, zone_complaint
 from calm.records.instrument_series import instruments_apart, who_along
 from calm.units import QuantityError
 from calm.whole_file import read_head, read_text
 
-_EXAMPLE = "name,serial,nominal depth[m],clock offset[s]"
+_EXAMPLE = "name,serial,nominal depth[m],clock offset[s],clock checked"
 _HEAD = 70_000  # bytes from which a form is recognised
 _LARGEST = 5_000_000
 _COLUMNS = {
@@ -30,9 +38,21 @@ _COLUMNS = {
     "name": r"name|instrument(_?(name|type|model))?|type|model|label",
     "nominal": r"(nominal|planned|instr(ument)?|sensor|target)?[ _]*depth|z",
     "height": r"hab|height.*|.*above.*(bottom|seabed|sea ?floor)",
+    "checked": r"(clock[ _]*)?checked([ _](at|on))?|clock[ _]*check([ _]*(time|date))?"
+    r"|(time|date)[ _]of[ _](the[ _])?clock[ _]*check",
+    "own": r"instrument[ _]*(clock|time)([ _]at[ _]recovery)?|time_?drift_?instrument",
+    "true": r"(gps|utc|computer)[ _]*(clock|time)([ _]at[ _]recovery)?|time_?drift_?gps",
+    "end": r"(time|date)[ _]of[ _]recovery|recover(y|ed).*|time_deployment_end"
+    r"|end([ _]*(time|date))?",
     "clock": r"clock.*|time[ _]offset|drift.*|late",
 }  # fmt: skip
-_DIMENSIONS = {"nominal": "length", "height": "length", "clock": "time"}
+_TIMES = ("checked", "true", "own", "end")
+_OF_OCEANARRAY = {
+    "clock_drift_seconds": "clock", "clock_offset": "constant", "recovery_time": "end",
+    "computer_clock_at_recovery": "true", "instrument_clock_at_recovery": "own",
+}  # fmt: skip
+_DIMENSIONS = {"nominal": "length", "height": "length", "clock": "time", "constant": "time"}
+_USUAL = {"length": "m", "time": "s"}
 _PAIR = re.compile(r"\s*(\w+)\s*=\s*(.*?)\s*$")
 
 
@@ -42,10 +62,12 @@ class ListedInstrument:
 
     Attributes
     ----------
-    where : in the list, for people
-    name, serial : empty where the list does not say
-    nominal : its depth [m]; NaN where not known
-    clock : how late its clock was [s]; None where not known
+    where : position in the list, for messages
+    name, serial : empty if missing in the list
+    nominal : nominal depth [m]; NaN if unknown
+    clock : lag of its clock [s]; None if unknown
+    checked : time at which this lag was measured; None if unknown
+    remark : other error of its clock, in words
     """
 
     where: str
@@ -53,6 +75,13 @@ class ListedInstrument:
     serial: str
     nominal: float
     clock: float | None = None
+    checked: np.datetime64 | None = None
+    remark: str = ""
+
+
+def in_words(late: float) -> str:
+    """Describe the error of a clock [s]."""
+    return f"{abs(late):g} s {'late' if late >= 0.0 else 'early'}"
 
 
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
@@ -65,21 +94,18 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     Raises
     ------
     InputError
-        It cannot be read, is of none of the forms, or lists no instrument by a serial number or a
-        nominal depth.
+        The list cannot be read, has an unknown format, or has no instrument with a serial number or
+        a nominal depth.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):
         found = [*_of_arrays(path, seabed)]
     elif is_oceanarray(head):
-        found = [
-            ListedInstrument(f"{path.name}, line {line}", name, serial, seabed - height)
-            for line, name, serial, height in listed_instruments(path)
-        ]
+        found = [*_of_oceanarray(path, seabed)]
     elif re.search(rb"(?mi)^\s*columns\s*=.*\binstrument\b", head):
-        found = [*_of_rodb(path)]
+        found = [*_of_rodb(path, seabed)]
     else:
-        found = [*_of_table(path, seabed)]
+        found = _of_table(path, seabed, _of_workbook(path) if is_workbook(head) else None)
     found = [one for one in found if one.serial or one.nominal == one.nominal]
     if not found:
         raise refused(path, "lists no instrument with a serial number or a nominal depth")
@@ -98,59 +124,122 @@ def _of_arrays(path: Path, seabed: float) -> Iterator[ListedInstrument]:
                 yield ListedInstrument(path.name, one.label, one.serial, one.nominal)
 
 
-def _of_rodb(path: Path) -> Iterator[ListedInstrument]:
-    """Yield the rows of `info.dat`, `Columns = z:instrument:serialnumber`; models are numbers."""
+def _listed(
+    where: str,
+    texts: Mapping[str, str],
+    seabed: float,
+    factors: Mapping[str, float] = MappingProxyType({}),
+) -> tuple[ListedInstrument, dict[str, str]]:
+    """Return an instrument from its texts by the kinds of `_COLUMNS`, and mistakes by kind.
+
+    Its clock was late by `clock`, or by the difference of the times that both clocks showed. If the
+    time of this comparison is unknown, it is the time of recovery. Numbers times `factors` are SI.
+    """
+    figures, times, wrong = dict[str, float](), dict[str, np.datetime64](), dict[str, str]()
+    compared = not all(is_gap(texts.get(kind, "")) for kind in ("clock", "true"))
+    for kind, text in texts.items():
+        if is_gap(text) or (kind == "end" and not compared):
+            continue
+        if kind in _TIMES:
+            try:
+                times[kind] = parse_time(text.replace("/", "-"))  # RODB has slashes
+            except TimeChoiceError as error:
+                wrong[kind] = str(error)
+        elif kind in _DIMENSIONS:
+            if complaint := no_number(text):
+                wrong[kind] = f"`{text}` {complaint}"
+            else:
+                figures[kind] = float(text) * factors.get(kind, 1.0)
+    late, remark = figures.get("clock"), ""
+    if {"true", "own"} <= times.keys():
+        late = float((times["true"] - times["own"]) / np.timedelta64(1, "us")) / 1e6
+    if constant := figures.get("constant"):
+        late, remark = None, f"clock {in_words(constant)} from the deployment on"
+    checked = next((times[kind] for kind in ("checked", "true", "end") if kind in times), None)
+    nominal = figures.get("nominal", seabed - figures.get("height", nan))
+    name, serial = texts.get("name", ""), texts.get("serial", "")
+    return ListedInstrument(where, name, serial, nominal, late, checked, remark), wrong
+
+
+def _of_oceanarray(path: Path, seabed: float) -> Iterator[ListedInstrument]:
+    for line, name, serial, height, keys in listed_instruments(path):
+        texts = {kind: str(keys[key]) for key, kind in _OF_OCEANARRAY.items() if keys.get(key)}
+        texts = {kind: text for kind, text in texts.items() if text != "unknown"}
+        texts |= {"name": name, "serial": serial, "height": str(height)}
+        one, wrong = _listed(f"{path.name}, line {line}", texts, seabed)
+        for message in wrong.values():
+            raise refused(path, message, line=line)
+        yield one
+
+
+def _of_workbook(path: Path) -> list[NumberedLine]:
+    """Return the first sheet of a workbook as lines of CSV."""
+    rows: SheetRows = next(iter(read_sheets(path).rows.values()), [[]])
+    text, width = io.StringIO(), len(rows[0])
+    csv.writer(text).writerows([*row, *[""] * width][:width] for row in rows)
+    return [*enumerate(text.getvalue().splitlines(), 1)]
+
+
+def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
+    """Yield the rows of `info.dat`, `Columns = z:instrument:serialnumber`; models are numbers.
+
+    A column of clock offsets [s] is compared at the end of the record, `End_Date` and `End_Time`.
+    """
     names: list[str] = []
+    header: dict[str, str] = {}
     for number, line in enumerate(read_text(path, largest=_LARGEST).splitlines(), 1):
         pair, cells = _PAIR.match(line), line.split()
         if pair is not None:
+            header[pair[1].lower()] = pair[2]
             names = pair[2].lower().split(":") if pair[1].lower() == "columns" else names
         elif names and cells:
             if len(cells) != len(names) or "z" not in names or no_number(cells[names.index("z")]):
                 raise refused(path, f"the row is not {':'.join(names)}", line=number)
-            of = dict(zip(names, cells, strict=True))
-            serial = of.get("serialnumber", "")
-            where, model = f"{path.name}, line {number}", of.get("instrument", "")
-            yield ListedInstrument(where, f"RODB {model}", serial, float(of["z"]))
+            texts = {_kind_of(name): text for name, text in zip(names, cells, strict=True)}
+            texts["name"] = f"RODB {texts.get('name', '')}"
+            texts["end"] = f"{header.get('end_date', '')} {header.get('end_time', '')}".strip()
+            one, wrong = _listed(f"{path.name}, line {number}", texts, seabed)
+            for message in wrong.values():
+                raise refused(path, message, line=number)
+            yield one
 
 
-def _of_table(path: Path, seabed: float) -> Iterator[ListedInstrument]:
-    table, problems = read_table(path, _EXAMPLE), list[Problem]()
+def _kind_of(name: str) -> str:
+    """Return the kind of a column; empty for one that is not read."""
+    plain = name.strip().lower()
+    return next((kind for kind, text in _COLUMNS.items() if re.fullmatch(text, plain)), "")
+
+
+def _of_table(
+    path: Path, seabed: float, lines: list[NumberedLine] | None
+) -> list[ListedInstrument]:
+    table, problems = read_table(path, _EXAMPLE, lines), list[Problem]()
     places: dict[str, int] = {}
     factors: dict[str, float] = {}
     for j, column in enumerate(table.header.cells):
         name, unit = heading(column)
-        plain = name.strip().lower()
-        kind = next((kind for kind, text in _COLUMNS.items() if re.fullmatch(text, plain)), None)
-        if kind is None or kind in places:
+        whole = _kind_of(column)  # the last word of the name of a time is no unit
+        kind = whole if whole in _TIMES else _kind_of(name)
+        if not kind or kind in places:
             continue
         places[kind] = j
+        if kind in _TIMES and kind != whole and (complaint := zone_complaint(column)):
+            problems.append(table.header.problem(complaint, j))
         if kind in _DIMENSIONS:
             try:
-                usual = {"length": "m", "time": "s"}[_DIMENSIONS[kind]]
+                usual = _USUAL[_DIMENSIONS[kind]]
                 factors[kind] = column_unit(column, unit, [_DIMENSIONS[kind]], usual)[1]
             except QuantityError as error:
                 problems.append(table.header.problem(str(error), j))
     if not {"serial", "nominal", "height"} & places.keys():
         message = f"there is no column for serial numbers or nominal depths: write {_EXAMPLE}"
         problems.append(table.header.problem(message))
-    rows = table.whole_rows(problems)
-    for row in rows:
-        for kind in factors:
-            cell = row.cells[places[kind]]
-            if not is_gap(cell) and (complaint := no_number(cell)):
-                problems.append(row.problem(f"`{cell}` {complaint}", places[kind]))
+    found = []
+    for row in table.whole_rows(problems):
+        texts = {kind: row.cells[j].strip() for kind, j in places.items()}
+        one, wrong = _listed(f"{path.name}, line {row.number}", texts, seabed, factors)
+        problems += [row.problem(message, places[kind]) for kind, message in wrong.items()]
+        found.append(one)
     if problems:
         raise InputError(problems)
-    for row in rows:
-        texts = {kind: row.cells[j].strip() for kind, j in places.items()}
-        known = {
-            kind: float(texts[kind]) * factor
-            for kind, factor in factors.items()
-            if not is_gap(texts[kind])
-        }
-        nominal = known.get("nominal", seabed - known["height"] if "height" in known else nan)
-        where = f"{path.name}, line {row.number}"
-        yield ListedInstrument(
-            where, texts.get("name", ""), texts.get("serial", ""), nominal, known.get("clock")
-        )
+    return found

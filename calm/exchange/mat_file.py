@@ -107,7 +107,6 @@ def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _is_octave_text(content: bytes) -> bool:
-    """Return whether a file begins like an Octave text file."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 

@@ -82,10 +82,11 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     return design
 
 
-def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
-    """Return line, label, serial number and height above the bottom [m] of each instrument.
+def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[str, Any]]]:
+    """Return line, label, serial number and height above the bottom [m] of each instrument, and its
+    keys with the `recovery_time` of the file.
 
-    One without a serial number or a height is left out. InputError: the file is damaged.
+    Instruments without a serial number or a height are omitted. InputError: the file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)
@@ -94,7 +95,13 @@ def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
     if problems:
         raise InputError(problems)
     return [
-        (document.problem(one.place, "").line, one.label, one.serial, one.height)
+        (
+            document.problem(one.place, "").line,
+            one.label,
+            one.serial,
+            one.height,
+            {"recovery_time": document.data.get("recovery_time"), **one.item},
+        )
         for one in entries
         if one.serial and one.height is not None
     ]
@@ -113,7 +120,7 @@ class _Entry:
 
     `place` is its location in the file, `names` are its names, the most exact first, and
     `instrument` is oceanarray's word for the kind of instrument. At most one of `middle`, `bottom`
-    and `top` is given.
+    and `top` is given. `item` has all keys of the file.
     """
 
     place: _Location
@@ -126,6 +133,7 @@ class _Entry:
     bottom: float | None
     top: float | None
     count: int
+    item: Mapping[str, Any]
 
     @property
     def height(self) -> float | None:
@@ -205,7 +213,9 @@ class _Reading:
         label = str(item.get("label") or words[0]).strip()
         serial = str(item.get("serial") or "").strip().rstrip("*")
         names, count = tuple(dict.fromkeys(words)), int(repeat or 1.0)
-        return _Entry(place, names, instrument, label, serial, length, middle, bottom, top, count)
+        return _Entry(
+            place, names, instrument, label, serial, length, middle, bottom, top, count, item
+        )
 
 
 @dataclass

@@ -6,7 +6,7 @@ used. Other packages add formats by the entry point ``calm.formats``, which name
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -42,7 +42,7 @@ class Exported:
 
     Attributes
     ----------
-    content : of the file
+    content : content of the file
     lost : features of the design that the format cannot represent
     beside : content of further files, by their names in the same folder
     """
@@ -75,6 +75,7 @@ class FileFormat:
     write: Write | None
     takes_elements: bool
     writes_nets: bool
+    suffixes: tuple[str, ...]
 
 
 _registered: dict[str, FileFormat] = {}
@@ -89,6 +90,7 @@ def register_format(
     program: str = "",
     takes_elements: bool = False,
     writes_nets: bool = False,
+    suffixes: Sequence[str] = (),
 ) -> None:
     """Register a format for `calm import` or `calm export`.
 
@@ -101,11 +103,13 @@ def register_format(
     program : that the format belongs to, for messages; by default `name`
     takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
     writes_nets : whether `write` takes designs of several legs
+    suffixes : suffixes that the program expects of the files that `write` makes, such as ".mat";
+        by default any
     """
     if name in _registered:
         raise ValueError(f"there is a format `{name}` already")
     _registered[name] = FileFormat(
-        name, program or name, detect, read, write, takes_elements, writes_nets
+        name, program or name, detect, read, write, takes_elements, writes_nets, tuple(suffixes)
     )
 
 

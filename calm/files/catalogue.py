@@ -135,7 +135,7 @@ class Catalogue:
         return nearest(id, self.ids())
 
     def of_a_sort(self, word: str) -> list[str]:
-        """Return the first six ids in a family, role or kind; none for any other word."""
+        """Return the first six ids of a family, role or kind; empty for any other word."""
         sort = word.casefold().rstrip("s")
         return [
             id

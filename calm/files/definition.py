@@ -100,7 +100,7 @@ def _as_text(value: object) -> object:
 
 
 Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
-"""Text; a bare number is kept as written, digit by digit."""
+"""Type of a text; a bare number is kept as written, digit by digit."""
 
 POSITIVE_LENGTH = QuantityField("length", above=0)
 DIAMETER = QuantityField("length", usual_unit="mm", above=0)
@@ -129,7 +129,8 @@ def quantity_of(field: FieldInfo) -> QuantityField | None:
 def in_si(name: str, value: float | str, dimension: str) -> float:
     """Convert an argument to SI (degrees, degC): text with its unit; a number is unchanged.
 
-    UsageError, with the name of the argument: the text is no quantity of this dimension.
+    Raises UsageError, with the name of the argument, if the text is not a quantity of this
+    dimension.
     """
     if not isinstance(value, str):
         return value
@@ -263,7 +264,7 @@ class FatigueKeys(Model):
         "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
         "sots-shackle", "sots-peened-shackle", "sots-link", "sots-wire",
     ] | None = described(
-        "curve of DNV-OS-E301, API RP 2SK or SOTS, if it is not the one of its kind",
+        "curve of DNV-OS-E301, API RP 2SK or SOTS, if not the default of its kind",
         "dnv-stud-chain",
         default=None,
     )  # fmt: skip
@@ -337,7 +338,7 @@ class Definition(Model):
         ],
     )
     fatigue: FatigueKeys | None = optional(
-        "curve of its fatigue in waves, if it is not the one of its kind",
+        "fatigue curve in waves, if not the default of its kind",
         {"curve": "dnv-stud-chain"},
     )
     slack: Literal["allowed"] | None = optional(

@@ -283,7 +283,7 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """Content of a part, with its label before `numbered` added a number.
+    """Content of a part, with its label as it was before `numbered` added a number.
 
     `contents` are keys of decreasing strictness; parts with an equal key are alike.
     """

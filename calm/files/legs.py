@@ -23,13 +23,14 @@ from calm.units import QuantityError
 
 MOST_LEGS = 40
 ONE_LEG_ONLY = (
-    "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
-    "this takes a single line: one free end, one anchor. `calm batch` gives the depths of a net's "
-    "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
+    "this file is a net of legs, which only `calm run`, `check`, `batch`, `deck`, `size`, `diff` "
+    "and `export` accept; a single line with one free end and one anchor is needed here. Use `calm "
+    "batch` for the depths of a net's instruments in a record of currents; for waves or an anchor "
+    "drop, make a file of its most loaded leg alone"
 )
 NET_SURE = (
-    "single lines; for the effect of drag, buoyancy or current on a net, use "
-    "`calm run --explain`; a copy of its file, or `with_` in Python, solves it with other figures"
+    "single lines; for the effect of drag, buoyancy or current on a net, use `calm run --explain`, "
+    "or solve it with other values in a copy of its file or by `with_` in Python"
 )
 
 _Offset = Annotated[float, QuantityField("length")]

@@ -217,7 +217,7 @@ class LineReader:
             kind = QuantityField("length") if self._in_air else LENGTH
             return self._quantity(item, key, kind, "`length: fit` needs it")
         if key in item.data:
-            item.refuse((key,), f"`{key}` goes with `length: fit`", key=True)
+            item.refuse((key,), f"`{key}` is only for `length: fit`", key=True)
         return None
 
     def _tell_of_mass(self, use: str, component: Component) -> None:

@@ -285,14 +285,14 @@ class Shaped(Rigid):
         if self.made_of == () or self.drag_measurements == ():
             raise ValueError(f"`{given[0][0]}` is empty")
         if (self.drag_area is None) != (self.cd is None):
-            raise ValueError("`drag_area` and `cd` go together")
+            raise ValueError("`drag_area` and `cd` must be given together")
         if self.kn is not None and self.kt is None and self.inclination != "insensitive":
             raise ValueError("`kn` needs `kt`, or `inclination: insensitive`")
         if self.inclination == "follows" and self.kt is None and not self.made_of:
             raise ValueError("`inclination: follows` needs `kt`")
         if self.kt is not None and (self.made_of or self.inclination == "insensitive"):
             other = "`made_of`" if self.made_of else "`inclination: insensitive`"
-            raise ValueError(f"`kt` has no meaning with {other}")
+            raise ValueError(f"`kt` is not used with {other}")
         return self
 
 

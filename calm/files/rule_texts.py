@@ -43,18 +43,19 @@ RULES = {
         "A mooring without an equilibrium cannot be checked"),
     "current": RuleText("Current", "speed",
         "the strongest current of all environments; the levels of each profile",
-        "a warning below 0.2 m/s, below 0.9 of the strongest current of the record that "
-        "an environment is taken from, below a fiftieth of another environment's strongest "
-        "current, or if the levels leave out a tenth of the depth and 25 m at either end",
-        "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
+        "a warning below 0.2 m/s, below 0.9 times the strongest current of the record behind an "
+        "environment, below 1/50 of the strongest current of another environment, or if the levels "
+        "do not cover a tenth of the depth, and 25 m, at either end",
+        "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
     "drag-coefficient": RuleText("Drag coefficient", "",
         "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
         "`drag: reynolds`",
         "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
-        "surface, greater by 5 %; else not judged, with the effect",
-        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "surface, greater by 5 %; otherwise not judged, but the effect is reported",
+        "Constant coefficients are valid up to 2e5; above this number the drag of smooth shapes "
+        "falls",
         "the profiles of a record are solved with one law of drag"),
     "environment": RuleText("Environment", "",
         "possible but unusual values of an environment: directions that look like radians, a level "
@@ -66,16 +67,17 @@ RULES = {
         "Defaults of CALM: ranges found at sea, and common typing errors",
         "environments are compared with each other, by `calm check`"),
     "missing": RuleText("Missing values", "",
-        "figures that rules need and a component lacks: one finding for each component id "
-        "and figure, with these rules and the pieces that they cannot check",
+        "values that rules need but a component lacks: one finding per component id and value, "
+        "with the rules and the pieces concerned",
         "unknown",
-        "The sources of the rules that need the figure",
+        "The sources of the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
-        "maximum tension of every piece; of the top one and the anchor if they have a load limit",
-        "the smaller of its working load and its breaking load over `safety_factor`: 3 steel, "
-        "5 synthetic, 5 anything in a surface mooring; of a synthetic rope with a breaking load "
-        "that alone, since rope tables give working loads for lifting",
+        "maximum tension of every piece; the top piece and the anchor are checked only if they "
+        "have a load limit",
+        "the smaller of its working load and its breaking load over `safety_factor`: 3 for steel, "
+        "5 for synthetics, 5 for all pieces of a surface mooring; only the breaking load of a "
+        "synthetic rope counts if it is known, since rope tables give working loads for lifting",
         "The smaller of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
         "chain and wire), oceanographic practice MBL/3 to MBL/5",
         figures=("working_load", "breaking_load")),
@@ -87,7 +89,7 @@ RULES = {
     "clamp-grip": RuleText("Clamp grip", "load",
         "weight in water and drag of every clamp, in the current, the fall and the rise",
         "its `grip`, or its `breaking_load`; not judged if neither is given",
-        "Figures of the clamp given by the manufacturer",
+        "Values given by the manufacturer of the clamp",
         "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "load",
         "tension of the wire, obstacles on it and the force that the drive needs, at both "
@@ -99,8 +101,8 @@ RULES = {
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
         "every piece, compared with the cables above and below it",
-        "half of their strength, if sources give both, for a piece with more than half of its "
-        "allowable load: a warning",
+        "a warning if it has less than half the strength of these cables, sources give both "
+        "strengths, and it carries more than half of its allowable load",
         "A default of CALM: half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -117,20 +119,21 @@ RULES = {
     "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
         "`minimum_top_depth`: a failure; by default 10 m: a warning",
-        "A default of CALM: clear of waves, hulls and nets"),
+        "A default of CALM: the top stays clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
-        "distance of every piece and clamp with a `planned_depth`, or with a depth in its label, "
-        "from that depth in still water",
+        "difference between the planned depth and the depth in still water, for every piece and "
+        "clamp with a `planned_depth` or a depth in its label",
         "the larger of `planned_depth_warning`, 10 m, and 2 % of the planned depth: a warning; "
-        "`planned_depth_limit`, 10 % of the planned depth: a failure; not checked without one",
-        "A default of CALM: an instrument at another depth than planned measures "
-        "other water, or a length or the water depth is wrong",
+        "`planned_depth_limit`, 10 % of the planned depth: a failure; parts without a planned "
+        "depth are not checked",
+        "A default of CALM: with a large difference, the instrument measures other water than "
+        "planned, or a length or the water depth is wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
         "synthetic ropes without `stiffness` or `elongation`; the load of a `length_at`",
         "unknown if published stiffnesses of such ropes mean a stretch of more than 2 % of the "
-        "water depth; a warning if it is measured under more than its working load, or "
-        "a fifth of its breaking load",
+        "water depth; a warning if the rope is measured under more than its working load, or a "
+        "fifth of its breaking load",
         "A default of CALM: soundings have a similar error; ropes are measured under "
         "a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
@@ -171,23 +174,23 @@ RULES = {
         "Practice of mooring groups, 50 to 100 kgf above the release; no value is published, so "
         "the limits are defaults of CALM"),
     "wave-strength": RuleText("Strength in waves", "load",
-        "maximum tension of every piece in `waves:`: mean and most probable maximum of 3 h",
+        "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
         "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
-        "with the loads used for `strength`; "
-        "unknown for a surface mooring without `waves:`",
-        "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically",
+        "with the loads used for `strength`; unknown for a surface mooring without `waves:`",
+        "API RP 2SK: 1.67 on the breaking strength of the intact mooring, with tensions from a "
+        "dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
-        "minimum tension of every piece in `waves:`: mean and most probable minimum of 3 h",
+        "minimum tension of every piece in `waves:`: the most probable minimum in 3 h",
         "above 0; `slack: allowed` on a piece exempts it",
-        "A slack line snatches when it tightens, and linear tensions are not valid",
+        "A slack line takes snap loads as it tightens, and linear tensions are not valid",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
         "life of every piece below the float in the sea states of `waves: scatter:`",
         "`fatigue_factor`, 3, × `service_time`, 365 days; not judged without a table of sea "
         "states; unknown without a published curve",
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
-        "(wire); a life of three times the service",
+        "(wire); a life of three times the service time",
         _WAVES),
     "reserve": RuleText("Reserve buoyancy", "used_buoyancy",
         "unused share of the surface float's buoyancy",
@@ -199,23 +202,25 @@ RULES = {
         "The hull of a surface float extends above the water",
         "the result does not contain the draft of the float"),
     "watch-circle": RuleText("Watch circle", "offset",
-        "√(L² − h²): the line as stretched, the water above the anchor's top",
+        "radius √(L² − h²), with the stretched length L and the water depth h above the anchor's "
+        "top",
         "`maximum_excursion`; not judged if it is not given",
-        "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
+        "Worst case √(L² - h²), with the water depth h above the anchor, against the design's own "
+        "`maximum_excursion`",
         "the result does not contain the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported, not judged",
-        "Reported, not judged",
+        "none; the scope is only reported",
+        "Reported without a limit",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
-        "change of the depth of the upright line's top by the depth and lengths of `deployed`",
+        "change in top depth of the upright line due to the depth and lengths of `deployed`",
         "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
         "IHO S-44, order 2: the error of a sounding, 95 %",
         _ONCE),
     "figures": RuleText("Component values",
         "",
-        "figures of pieces and clamps that are impossible for their size and material: buoyancy, "
+        "values of pieces and clamps that are impossible for their size and material: buoyancy, "
         "mass, density, stiffness, strength, depth rating, coefficients of drag",
         "a failure; a warning if `warn_tilt` exceeds `max_tilt`, for an instrument that floats and "
         "for a `wind_area` out of proportion; unknown if the line replaces a value by a more "
@@ -257,8 +262,9 @@ RULES = {
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them or at its other end, or wire that is `torque_balanced` by that key "
-        "or, without it, by its name, material or note: otherwise a warning",
+        "a warning, unless there is a swivel between them or at the other end of the wire, or the "
+        "wire is torque-balanced according to `torque_balanced` or, without this key, its name, "
+        "material or note",
         "A default of CALM: wire that twists under load kinks when it is unloaded",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
@@ -271,9 +277,10 @@ RULES = {
     "backup": RuleText("Back-up buoyancy", "load",
         "minimum net buoyancy of the part that remains connected to the release, over all breaks "
         "and losses of a float considered (below)",
-        "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
-        "more; not judged for a float that alone brings up a line, at most 50 m above the release; "
-        "a warning for a surface mooring without floats below its buoy",
+        "the larger of `backup_margin`, 0.1, times the weight lifted and its drag at "
+        "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
+        "most 50 m above the release; a warning for a surface mooring without floats below its "
+        "buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats; the margin and the 50 m are defaults of CALM",
         _ONCE),
@@ -281,8 +288,8 @@ RULES = {
         "tension of every piece as the line falls behind its anchor",
         "the smaller of `launch_working_factor`, 1, times its working load and its breaking load "
         "over `launch_safety_factor`, 2, with the loads used for `strength`",
-        "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
-        "load over 2",
+        "Anchor-last launch at terminal speed (URI GSO program); limits: working load, and "
+        "breaking load over 2",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",

@@ -51,7 +51,7 @@ class BourgetMarichalKeys(Model):
     """Towed-cable model of Bourget & Marichal: a/D = a1 + b1 φ + c1 φ² (φ in degrees); Cn at rest
     is c0.
 
-    Missing coefficients have the defaults of `calm.physics.strumming.BourgetMarichal`.
+    Coefficients that are not given have the defaults of `calm.physics.strumming.BourgetMarichal`.
     """
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})
@@ -136,7 +136,7 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
         raise ValueError(f"`strumming` has {given}, which exclude each other")
     law = value.get("model")
     if law in get_args(AmplitudeName):
-        raise ValueError(f"`{law}` has no figures to give; write `strumming: {law}`")
+        raise ValueError(f"`{law}` takes no values; write `strumming: {law}`")
     return value
 
 

@@ -127,8 +127,8 @@ def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> Qua
     section, place : the mapping, and the keys of the table in it
     """
 
-    def problem(at: Sequence[str | int], said: str) -> Problem:
-        return section.problem((*place, *at), said)
+    def problem(at: Sequence[str | int], message: str) -> Problem:
+        return section.problem((*place, *at), message)
 
     return QuantityTable(table.columns, table.rows, problem, section.problems)
 

@@ -88,8 +88,8 @@ class WaveKeys(Model):
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
     """Read the sea states of `waves:`; return an empty tuple if there are mistakes.
 
-    Sea states of a scatter table have their shares of the time; another one beside them has a share
-    of 0.
+    Sea states of a scatter table have their shares of the time; an additional single sea state has
+    a share of 0.
 
     Parameters
     ----------

@@ -150,8 +150,8 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 
 
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
-    """Return mean and standard deviation of a record over depth: local lines, weighted by a normal
-    curve as wide as the sensors are apart.
+    """Return mean and standard deviation of a record over depth: local linear fits with Gaussian
+    weights as wide as the sensor spacing.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
@@ -266,7 +266,7 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
     Parameters
     ----------
     times : (n,) indices of the samples' times
-    levels : (k,), or (n, k) where they go with time [m]
+    levels : (k,), or (n, k) if they vary with time [m]
     """
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))

@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 
 from calm.batch.dataset import laid_out, time_axis
 from calm.dataset import netcdf
-from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, written
+from calm.dataset.discovery import (
+    ARCHIVED,
+    GCMD,
+    archive_id,
+    coverage,
+    in_capitals,
+    kept,
+    with_flags,
+    written,
+)
 from calm.errors import UsageError
 from calm.gridding.field import BLOCK, GriddedQuantity, estimate
 from calm.gridding.samples import MooringDepths
@@ -120,11 +129,11 @@ def grid_layout(
     before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
     labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
     attributes: netcdf.Attributes = {
-        **coverage(time, (levels[0], levels[-1]), depths.place),
+        **ARCHIVED,
+        **coverage(time, levels, depths.place),
         **kept(depths.attributes),
         "title": f"{title}: on fixed levels",
-        "id": f"OS_{''.join(c if c.isalnum() else '-' for c in title)}_"
-        f"{np.datetime_as_string(time[0], 'M').replace('-', '')}_D_GRID",
+        "id": archive_id(title, time[0], "GRID"),
         "summary": (
             f"{', '.join(QUANTITIES_MEASURED[name].long_name for name in fields)} of the mooring "
             f"{title} on {len(levels)} fixed levels: measured at the moving depths of its "
@@ -133,6 +142,7 @@ def grid_layout(
         ),
         "keywords": "EARTH SCIENCE > OCEANS > OCEAN TEMPERATURE, EARTH SCIENCE > OCEANS > "
         "OCEAN CIRCULATION, EARTH SCIENCE > OCEANS > SALINITY/DENSITY",
+        "keywords_vocabulary": GCMD,
         "source": "subsurface mooring",
         "processing_level": "Data interpolated",
         "comment": "Flag 8: between instruments; 3: beyond them, or little is known; 9: no value",

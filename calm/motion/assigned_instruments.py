@@ -10,12 +10,13 @@ import numpy as np
 
 from calm.case import load
 from calm.errors import UsageError
-from calm.exchange.instrument_list import read_instrument_list
+from calm.exchange.instrument_list import ListedInstrument, in_words, read_instrument_list
 from calm.files import read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
 from calm.files.mooring_file import refuse_all_but_moorings
 from calm.motion.line_response import instruments_of
 from calm.motion.matching import CERTAIN, in_order, named_point, places_of
+from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
 ASTRAY = 0.02, 5.0
@@ -40,7 +41,7 @@ class AssignedInstruments:
 
 
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
-    """Return a mooring file whose `deployed` has the serial numbers of a list.
+    """Return a mooring file whose `deployed` has the serial numbers and clock errors of a list.
 
     An instrument is matched by its name or serial number, or else by its nominal depth, in
     their order down the line. The rest of the file is unchanged.
@@ -74,7 +75,10 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     if not isinstance(before, list):
         raise UsageError(f"{path}: `deployed: items` is not a list")
     rows: dict[str, dict[str, Any]] = {str(row["label"]): dict(row) for row in before}
-    assigned = []
+    assigned, timeless = list[str](), list[ListedInstrument]()
+    deployed = mooring.file.deployed
+    date = None if deployed is None else deployed.date
+    since = np.datetime64("1950") if date is None else parse_time(date)
     doubts = [f"{one.where}: {one.name} {one.serial} is at no place of the line"
               for i, one in enumerate(listed) if i not in points]  # fmt: skip
     twice = {at for at in points.values() if [*points.values()].count(at) > 1}
@@ -86,16 +90,29 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
         row = rows.setdefault(label, {"label": label})
         if one.serial:
             row["serial"] = one.serial
-        if one.clock is not None:
-            late = "late" if one.clock >= 0.0 else "early"
-            row["remark"] = f"clock {abs(one.clock):g} s {late}"
+        remark, clock = one.remark, ""
+        if one.clock is not None and one.checked is not None and one.checked > since:
+            checked = time_text(one.checked)
+            row["clock"] = {"checked": checked, "late": f"{one.clock:g} s"}
+            clock = f"; its clock was {in_words(one.clock)} at {checked}"
+        elif one.clock is not None:
+            remark = f"clock {in_words(one.clock)}"
+            timeless.append(one)
+        if remark:
+            row["remark"] = remark
         name = " ".join(filter(None, (one.name, one.serial)))
         depth = "" if np.isnan(one.nominal) else f", nominally at {one.nominal:g} m"
-        assigned.append(f"{one.where}: {name}{depth}: `{label}`, at {still:.1f} m")
+        assigned.append(f"{one.where}: {name}{depth}: `{label}`, at {still:.1f} m{clock}")
         if abs(one.nominal - still) > max(ASTRAY[0] * still, ASTRAY[1]):
             doubts.append(
                 f"{one.where}: {name} is {abs(one.nominal - still):.0f} m from its nominal depth"
             )
+    if timeless:
+        when = "" if date is None else f", after the deployment at {date}"
+        doubts.append(
+            f"{list_of_instruments.name}: {len(timeless)} clock offsets are remarks only, and "
+            f"correct no times: add a column `clock checked`, the time of the comparison{when}"
+        )
     kept = [row for row in rows.values() if len(row) > 1]
     try:
         text = draft.put_at(_ITEMS, kept).text

@@ -16,7 +16,14 @@ from calm.batch.dataset import laid_out, layout_of
 from calm.batch.profiles import Profiles, processors
 from calm.batch.statuses import STATUSES
 from calm.case import Design
-from calm.dataset.discovery import coverage, with_flags, written
+from calm.dataset.discovery import (
+    ARCHIVED,
+    GCMD,
+    archive_id,
+    coverage,
+    with_flags,
+    written,
+)
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
 from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
@@ -53,7 +60,11 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
     "residual": (("sensor",), ("m", "measured less estimated depth of the sensor", {})),
     "plain_depth": (
         ("sensor",),
-        ("m", "depth of the sensor by the currents alone, nothing fitted", {"positive": "down"}),
+        (
+            "m",
+            "depth of the sensor by the currents alone, nothing fitted",
+            {"standard_name": "depth", "positive": "down"},
+        ),
     ),
 }
 """Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
@@ -72,13 +83,20 @@ _OF_DOCUMENT = {
 """Attributes of ACDD and OceanSITES, by the keys of `document:`."""
 
 
-def solve_times(task: Task, layout: ResultLayout, start: int) -> SolvedBlock:
-    """Estimate the times of the block that begins at `start`."""
+def solve_times(
+    task: Task, layout: ResultLayout, extent: list[np.float32], start: int
+) -> SolvedBlock:
+    """Estimate the times of the block that begins at `start`; append its extreme depths to
+    `extent` [m].
+    """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
     flags = depth_flags(task.measured.at(slice(start, stop)), profiles)
     columns = {**vars(profiles), **more, **flags}
     arrays = laid_out(layout, task.measured.time[start:stop], columns)
+    depth = np.hstack([arrays[name] for name in FLAGGED if name in arrays])
+    known = depth[np.isfinite(depth)]
+    extent += [known.min(), known.max()] if known.size else []
     return SolvedBlock(profiles.status, packed(layout, BLOCK, arrays))
 
 
@@ -118,11 +136,12 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     attributes: Attributes = {
         **layout.attributes,
         "title": f"{name}: where its parts were",
-        **coverage(measured.time, (0.0, float(mooring.water.depth)), place),
+        **ARCHIVED,
+        **coverage(measured.time, Forward(mooring, {}).still, place),
         **about(mooring),
-        "id": f"OS_{''.join(c if c.isalnum() else '-' for c in name)}_"
-        f"{np.datetime_as_string(measured.time[0], 'M').replace('-', '')}_D_DEPTHS",
+        "id": archive_id(name, measured.time[0], "DEPTHS"),
         "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
+        "keywords_vocabulary": GCMD,
         "processing_level": "Data interpolated",
         "comment": "Depths of a mooring line, estimated from its statics; x, y from the anchor",
         "instrument": ", ".join(measured.label),

@@ -240,7 +240,7 @@ class Diagnosis:
         return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Compute the likelihood of the pressures with several faults and one more.
+        """Compute the likelihood of the pressures with given faults and an additional one.
 
         Parameters
         ----------

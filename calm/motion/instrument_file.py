@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.finished import labels_of
-from calm.dataset.discovery import FLAGS, OF_FLAGS, written
+from calm.dataset.discovery import (
+    ARCHIVED,
+    FLAGS,
+    OF_FLAGS,
+    archive_id,
+    coverage,
+    kept,
+    vertical_extent,
+    written,
+)
+from calm.dataset.netcdf import station
 from calm.errors import UsageError, refused
 from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.matching import LinePlaces, points_of
@@ -40,6 +50,8 @@ _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"
 """New name of the nominal depth of a single instrument, if its old name was `DEPTH`."""
 _TIMES = ("time", "TIME", "Time")
+_OF_MOTION = ("title", "keywords", "references")
+"""Attributes of a result of `calm motion` that describe the result itself."""
 
 
 @dataclass(frozen=True)
@@ -199,6 +211,8 @@ def write_depths(
         copy = cf_files.open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
+    if not engine:
+        _archived(copy, instruments, result)
     for variable in copy.variables.values():  # stop xarray from adding fill values
         if "_FillValue" not in variable.attrs and variable.dtype.kind == "f":
             variable.encoding.setdefault("_FillValue", None)
@@ -223,7 +237,8 @@ def write_depths(
     })  # fmt: skip
     _add_salinity(copy, instruments, depth)
     _drop_references(copy)
-    _tell(copy, instruments, depth, inputs)
+    _at_depths(copy, name, instruments)
+    _describe(copy, instruments, inputs, result)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
     return lost
@@ -307,20 +322,93 @@ def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.flo
     name = salinity.archive if instruments.along is None else "salinity"
     copy[name] = xr.Variable(axes, values, {
         "standard_name": salinity.standard_name, "long_name": salinity.long_name,
-        "units": salinity.units,
+        "units": salinity.units, "coverage_content_type": "physicalMeasurement",
         "comment": "computed by CALM from conductivity, temperature and pressure (TEOS-10)",
     })  # fmt: skip
 
 
-def _tell(
-    copy: Dataset, instruments: Instruments, depth: NDArray[np.float64], inputs: Sequence[str]
+def _archived(copy: Dataset, instruments: Instruments, result: Dataset) -> None:
+    """Add station, position and attributes for archives to the dataset of a text file."""
+    import xarray as xr
+
+    stations, where = station(_mooring(result), _place(copy, result), "the anchor")
+    names = where.upper().split()
+    for one in stations:
+        copy[one.name.upper()] = xr.Variable((), one.values, one.described)
+    measured = [str(name) for name in copy.data_vars if copy[name].dims == (instruments.dimension,)]
+    for name in measured:
+        copy[name].attrs |= {
+            "coordinates": " ".join(names),
+            "coverage_content_type": "physicalMeasurement",
+        }
+    product = "".join(c if c.isalnum() else "-" for c in instruments.path.stem)
+    copy.attrs |= {
+        **ARCHIVED,
+        "id": archive_id(_mooring(result), instruments.time[0], product),
+        "keywords": ", ".join(copy[name].attrs["standard_name"] for name in measured),
+        "keywords_vocabulary": ARCHIVED["standard_name_vocabulary"],
+        "processing_level": "Instrument data that has been converted to geophysical values",
+    }
+    if len(stations) > 1:
+        copy.attrs["featureType"] = "timeSeries"
+
+
+def _mooring(result: Dataset) -> str:
+    """Return the name of the mooring of a result."""
+    return str(result.attrs.get("title", "mooring")).partition(": ")[0]
+
+
+def _at_depths(copy: Dataset, depth: str, instruments: Instruments) -> None:
+    """List the depths among the coordinates of the measurements."""
+    others = {*instruments.names, instruments.clock, *copy.dims}
+    for name, variable in copy.variables.items():
+        along = {*copy[depth].dims} <= {*variable.dims}
+        if name in others or not along or "units" not in variable.attrs:
+            continue
+        attributes = variable.encoding if "coordinates" in variable.encoding else variable.attrs
+        named = str(attributes.get("coordinates", "")).split()
+        attributes["coordinates"] = " ".join(dict.fromkeys([*named, depth]))
+
+
+def _describe(
+    copy: Dataset, instruments: Instruments, inputs: Sequence[str], result: Dataset
 ) -> None:
-    """Add the depths' attributes, and a line in the history, to a copy."""
-    line = f"{written()} calm {__version__} motion --onto: {instruments.names[0]} estimated"
+    """Add global attributes that follow from the depths and from the mooring, and a line in the
+    history.
+
+    Attributes of the original are kept, except for the range of depths. Attributes that begin with
+    the same word, such as those of the creator, belong together: all are those of the original if
+    it has any.
+    """
+    name, _, mark = instruments.names
+    mooring = _mooring(result)
+    time = np.sort(instruments.time[~np.isnat(instruments.time)])
+    known = {
+        **{key: value for key, value in kept(result.attrs).items() if key not in _OF_MOTION},
+        **(coverage(time, copy[name].values, _place(copy, result)) if time.size else {}),
+        "title": f"{mooring}: {instruments.path.name}",
+        "summary": f"Contents of {instruments.path.name}, with depths at the mooring {mooring} "
+        "estimated by CALM from the statics of its line.",
+        "comment": f"{mark} 1: {name} from the pressure of the instrument; 8: estimated; 9: none",
+        "date_created": written(),
+    }
+    extent = vertical_extent(copy[name].values)
+    there = {key.partition("_")[0] for key in copy.attrs if key not in extent}
+    added = {key: value for key, value in known.items() if key.partition("_")[0] not in there}
+    copy.attrs = {**added, **copy.attrs, **extent}
+    line = f"{written()} calm {__version__} motion --onto: {name} estimated"
     line += f" from {', '.join(inputs)}" if inputs else ""
-    before = [str(copy.attrs["history"])] if "history" in copy.attrs else []
-    copy.attrs["history"] = "\n".join([*before, line])
+    copy.attrs["history"] = "\n".join([*filter(None, [copy.attrs.get("history")]), line])
     copy.attrs["date_modified"] = written()
-    if "geospatial_vertical_min" in copy.attrs and np.isfinite(depth).any():
-        copy.attrs["geospatial_vertical_min"] = float(np.nanmin(depth))
-        copy.attrs["geospatial_vertical_max"] = float(np.nanmax(depth))
+
+
+def _place(copy: Dataset, result: Dataset) -> list[float]:
+    """Return latitude and longitude of a file, else of the mooring; empty if unknown [degrees]."""
+    found = []
+    for axis in ("latitude", "longitude"):
+        own = [one for one in copy.variables.values() if one.attrs.get("standard_name") == axis]
+        if len(own) == 1 and own[0].size == 1:
+            found.append(float(own[0].values.item()))
+        elif f"geospatial_{axis[:3]}_min" in result.attrs:
+            found.append(float(result.attrs[f"geospatial_{axis[:3]}_min"]))
+    return found if len(found) == 2 else []

@@ -39,7 +39,7 @@ class LineResponse:
         self.groups = int(self.group.max()) + 1 if len(self.group) else 0
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """Return (n, p) depths of the points with factors on the currents.
+        """Return (n, p) depths of the points in currents that are multiplied by factors.
 
         Parameters
         ----------
@@ -143,8 +143,8 @@ def labels_of(mooring: Design) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Design) -> list[int]:
-    """Return the indices of possible instruments: clamps but for floats, and pieces with that
-    role.
+    """Return the indices of possible instruments: clamps other than floats, and pieces with the
+    role of an instrument.
     """
     pieces = mooring.file.pieces
     clamps = clamps_down(pieces)

@@ -139,9 +139,9 @@ def common_times(
 ) -> Times:
     """Return the times of the first current, or of the first sensor if there are no currents.
 
-    Distant times of the other currents, and then of the sensors, are added. Their distance must
-    exceed half the median step of the times so far. Only the first of several readings within a
-    quarter of the step (a burst) is used.
+    Times of the other currents, and then of the sensors, are added if they are more than half the
+    median step away from all times so far. Only the first of several readings within a quarter of
+    the step (a burst) is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time

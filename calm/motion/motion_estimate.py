@@ -16,7 +16,7 @@ from calm.batch.blocks import Progress, in_threads, write_solved
 from calm.batch.finished import open_result
 from calm.batch.resolved import InputHash, resolved_input, with_input
 from calm.case import Design
-from calm.dataset.discovery import hashed
+from calm.dataset.discovery import hashed, vertical_extent
 from calm.errors import UsageError, not_among, unknown
 from calm.files.mooring_file import refuse_all_but_moorings
 from calm.motion import matching, sensors
@@ -286,8 +286,12 @@ class RecoveredMooring:
         more = {**with_input(text), **measured.attributes()}
         layout = replace(layout, attributes={**layout.attributes, **more})
         starts = range(0, len(self.measured.time), BLOCK)
-        with closing(in_threads(partial(solve_times, task, layout), starts, workers)) as solved:
-            return write_solved(layout, BLOCK, solved, output, progress)
+        extent: list[np.float32] = []
+        solve = partial(solve_times, task, layout, extent)
+        with closing(in_threads(solve, starts, workers)) as solved:
+            return write_solved(
+                layout, BLOCK, solved, output, progress, lambda: vertical_extent(np.array(extent))
+            )
 
     def study(
         self,

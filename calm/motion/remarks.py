@@ -269,7 +269,7 @@ def rms(off: Floats) -> float:
 def agreement(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Agreement:
-    """Compare computed and measured depths at the times `among`.
+    """Compare computed and measured depths at selected times.
 
     Parameters
     ----------

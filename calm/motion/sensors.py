@@ -376,7 +376,7 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
             reasons[label] = "has no good pressure at any time of the currents"
             continue
         if known.size > 2 and np.ptp(known) <= CONSTANT:
-            reasons[label] = f"is constant at {known[0]:.1f} m: it is left out"
+            reasons[label] = f"is constant at {known[0]:.1f} m and was excluded"
             continue
         far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
         if (far or units) and not any(f"`{label}`" in one for one in exchanged):

@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath
 from calm.shipped import shipped_folder
 
 LIBRARIES = ("jinja2", "pint", "rich", "textual", "xlsxwriter")
-"""Distributions that the builder and its documents need."""
+"""Distributions required by the builder and its documents."""
 IN_RUNTIME = ("numpy", "pydantic", "pyyaml", "gsw")
 """Distributions that the runtime contains, compiled for pages, with their dependencies."""
 
@@ -31,7 +31,7 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """Create the ZIP archive of modules; equal files give equal bytes.
+    """Create the ZIP archive of modules. Equal files give equal bytes.
 
     Parameters
     ----------

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
+from textual.widgets import Input, TextArea
+
 from calm.errors import CalmError, InputError, unexpected
 from calm.files.editing import KeptWork
 from calm.files.editing.working_file import SUFFIX
@@ -19,6 +21,7 @@ from calm.tui.app import BuildApp
 from calm.tui.key_table import ACTIONS
 from calm.tui.session import Session
 from calm.tui.start import open_session
+from calm.whole_file import decoded
 
 Post = Callable[[str, str, bytes | None], object]
 """Function that sends a message to the page: kind, text (often a name), and file content."""
@@ -45,7 +48,8 @@ BAR = (
 )
 
 FIRST = "upward-adcp-300m.yaml"
-"""Example shown on the first visit; later visits open the latest file."""
+"""Example shown on the first visit (later visits open the latest file)."""
+_YAML = ".yaml", ".yml"
 NEW = "mooring.yaml"
 """Name of a new file."""
 
@@ -59,6 +63,12 @@ class PageBuilder(BuildApp):
             "The buttons above the line make its report, diagram and bill"
         )
         session.after_save = page.hand_over
+        self._page = page
+
+    def copy_to_clipboard(self, text: str) -> None:
+        """Copy a text, also to the clipboard of the browser."""
+        super().copy_to_clipboard(text)
+        self._page.copy(text)
 
     def get_driver_class(self) -> type[driver.PageDriver]:
         """Driver of the page; Textual's own drivers need a terminal."""
@@ -71,7 +81,8 @@ class WebPage:
     Parameters
     ----------
     post : sends a message: `write` (text for the terminal), `open` (name of the edited file),
-        `saved` and `document` (name and content of a file), `told` and `failed` (a sentence)
+        `saved` and `document` (name and content of a file), `copied` (text for the clipboard),
+        `told` and `failed` (a sentence)
     folder : folder of its files
     columns, rows : size of the terminal
     """
@@ -97,23 +108,29 @@ class WebPage:
         self._path = path
         self._post("saved", path.name, text.encode())
 
+    def copy(self, text: str) -> None:
+        """Send a text to the clipboard of the browser."""
+        self._post("copied", text, None)
+
     # the builder
 
     async def run(self) -> None:
-        """Edit files one after the other without end, since the page has nothing else to show."""
+        """Edit one file after another in an endless loop."""
         while True:
             await self.build()
 
     async def build(self) -> None:
-        """Edit the file opened last, until another file is opened or the user leaves."""
+        """Edit the file opened last, until the user opens another file or leaves."""
+        reason = ""
         try:
             session, kept = open_session(self._path)
         except CalmError as error:
-            self._post("failed", str(error), None)
-            self._path = _free(self._folder)
+            self._path, reason = _free(self._folder), str(error)
             session, kept = open_session(self._path)
         self._app = PageBuilder(session, kept, self)
         self._post("open", self._path.name, None)
+        if reason:
+            self._post("failed", reason, None)
         await self._app.run_async()
         self._app = None
 
@@ -125,13 +142,23 @@ class WebPage:
     def receive(self, message: Mapping[str, Any]) -> None:
         """Handle a message from the page.
 
-        Kinds: `type` (input of keyboard and mouse), `resize` (columns, rows), `act` (action of
-        `BAR`), `open` (names and contents of files), `example` (name of a file in `lines`), `new`,
-        `document` (kind).
+        Kinds: `key` (in Textual's notation), `type` and `paste` (text), `mouse` (see
+        `PageDriver.move_mouse`), `resize` (columns, rows), `act` (action of `BAR`), `open` (names
+        and contents of files), `example` (name of a file in `lines`), `new`, `document` (kind).
         """
-        kind, app = message["kind"], self._app
-        if kind == "type":
-            self.terminal.type(message["text"])
+        kind, app, given = message["kind"], self._app, self.terminal.driver
+        if kind == "key" and given is not None:
+            given.press(message["text"])
+        elif kind == "type" and given is not None:
+            given.type(message["text"])
+        elif kind == "paste" and given is not None and app is not None:
+            if isinstance(app.focused, Input | TextArea):
+                given.paste(message["text"])
+            else:
+                given.press("ctrl+v")  # pastes copied rows
+        elif kind == "mouse" and given is not None:
+            x, y, button = message["x"], message["y"], message["button"]
+            given.move_mouse(message["text"], x, y, button, message["held"])
         elif kind == "resize":
             self.terminal.resize(message["columns"], message["rows"])
         elif kind == "act" and app is not None:
@@ -165,6 +192,12 @@ class WebPage:
         paths = []
         for name, content in files.items():
             path = self._folder / PurePosixPath(name.replace("\\", "/")).name
+            try:
+                if path.suffix in _YAML:
+                    decoded(Path(path.name), content)
+            except InputError as error:
+                self._post("failed", str(error), None)
+                continue
             path.write_bytes(content)
             paths.append(path)
         moorings = [each for each in paths if _is_mooring(each)]
@@ -207,11 +240,11 @@ class WebPage:
 def _is_mooring(path: Path) -> bool:
     from calm.files import yaml_document
 
-    if path.suffix not in (".yaml", ".yml"):
+    if path.suffix not in _YAML:
         return False
     try:
         data = yaml_document.compose(str(path), path.read_text("utf-8")).data
-    except (CalmError, UnicodeError):
+    except CalmError:
         return True  # the builder shows its mistakes
     return isinstance(data, dict) and bool({"line", "legs", "tow", "name"} & set(data))
 

@@ -41,9 +41,9 @@ def _report(moorings: list[Design]) -> bytes:
 
 def _diagram(moorings: list[Design]) -> bytes:
     from calm.deck import deck_of
-    from calm.report.diagram import Paper, diagram_svg
+    from calm.report.diagram import PageSize, diagram_svg
 
-    return diagram_svg(deck_of(moorings), Paper.A4).encode()
+    return diagram_svg(deck_of(moorings), PageSize.A4).encode()
 
 
 def _bill(moorings: list[Design]) -> bytes:
@@ -70,7 +70,7 @@ DOCUMENTS = (
 
 
 def document(kind: str, view: live.View) -> tuple[str, bytes]:
-    """Make a document of a solved line; return its name and content.
+    """Create a document for a solved line, and return its name and content.
 
     Parameters
     ----------

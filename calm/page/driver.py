@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import unicodedata
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from textual import events
-from textual._xterm_parser import XTermParser
 from textual.app import App
 from textual.driver import Driver
 from textual.geometry import Size
+from textual.keys import KEY_NAME_REPLACEMENTS
 from textual.message import Message
 
-_BEGIN = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1006h\x1b[?2004h"
-"""Alternate screen, hidden cursor, all mouse movements, bracketed paste."""
-_END = "\x1b[?2004l\x1b[?1006l\x1b[?1003l\x1b[?1000l\x1b[?25h\x1b[?1049l"
-_ESCAPE = "\x1b"
+_BEGIN = "\x1b[?1049h\x1b[?25l"
+"""Alternate screen, hidden cursor. Keys, pastes and the mouse arrive as messages of the page."""
+_END = "\x1b[?25h\x1b[?1049l"
+_CONTROL_KEYS = {"\r": "enter", "\n": "enter", "\t": "tab", "\x7f": "backspace"}
+"""Keys that an on-screen keyboard sends as text."""
+_MOUSE_EVENTS: Mapping[str, type[events.MouseEvent]] = {
+    "down": events.MouseDown,
+    "up": events.MouseUp,
+    "move": events.MouseMove,
+    "scroll up": events.MouseScrollUp,
+    "scroll down": events.MouseScrollDown,
+}
 
 
 @dataclass
@@ -35,11 +44,6 @@ class PageTerminal:
     rows: int = 24
     driver: PageDriver | None = None
 
-    def type(self, text: str) -> None:
-        """Receive the input of keyboard and mouse."""
-        if self.driver is not None:
-            self.driver.feed(text)
-
     def resize(self, columns: int, rows: int) -> None:
         """Set the size."""
         self.columns, self.rows = columns, rows
@@ -52,12 +56,13 @@ terminal: PageTerminal | None = None
 
 
 class PageDriver(Driver):
-    """The driver of `terminal`."""
+    """Textual driver for `terminal`."""
 
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)
         assert terminal is not None, "no terminal is connected"
-        self._terminal, self._parser = terminal, XTermParser(False)
+        self._terminal, self._application = terminal, app
+        self._mouse_at = 0, 0
         terminal.driver = self
 
     @property
@@ -85,14 +90,45 @@ class PageDriver(Driver):
         size = Size(self._terminal.columns, self._terminal.rows)
         self.send_message(events.Resize(size, size))
 
-    def feed(self, text: str) -> None:
-        """Convert the input of keyboard and mouse to Textual's events."""
-        if text == _ESCAPE:  # not the beginning of a sequence, since the page sends whole ones
-            self.process_message(events.Key("escape", text))
-            return
-        for event in self._parser.feed(text):
-            self.process_message(event)
+    def press(self, key: str) -> None:
+        """Send a key that types no text, in Textual's notation, such as "ctrl+s"."""
+        self.process_message(events.Key(key, None))
+
+    def type(self, text: str) -> None:
+        """Send typed text, character by character."""
+        for character in text:
+            if (name := _key_name(character)) is not None:
+                self.process_message(events.Key(name, character))
+
+    def paste(self, text: str) -> None:
+        """Send pasted text."""
+        self.process_message(events.Paste(text))
+
+    def move_mouse(self, kind: str, x: int, y: int, button: int, held: Mapping[str, bool]) -> None:
+        """Send an event of the mouse.
+
+        Parameters
+        ----------
+        kind : `down`, `up`, `move`, `scroll up` or `scroll down`
+        x, y : column and row, from 0
+        button : pressed button, from 1; 0 for none
+        held : whether `shift`, `alt` and `ctrl` are pressed
+        """
+        change = x - self._mouse_at[0], y - self._mouse_at[1]
+        keys = held["shift"], held["alt"], held["ctrl"]
+        self._mouse_at = x, y
+        self.process_message(_MOUSE_EVENTS[kind](None, x, y, *change, button, *keys, x, y))
 
     def send_message(self, message: Message) -> None:
         """Post a message to the application; a page has only one thread."""
-        self._app.post_message(message)
+        self._application.post_message(message)
+
+
+def _key_name(character: str) -> str | None:
+    """Return Textual's name of the key that types a character; None for other control codes."""
+    if character.isalnum():
+        return character
+    if not character.isprintable():
+        return _CONTROL_KEYS.get(character)
+    name = unicodedata.name(character, character).lower().replace("-", "_").replace(" ", "_")
+    return KEY_NAME_REPLACEMENTS.get(name, name)

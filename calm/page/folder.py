@@ -31,7 +31,7 @@ _SCREEN = ("xterm.js", "xterm.css")
 
 
 def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
-    """Write the page into a folder, which is created if needed; other files in it are kept.
+    """Write the page into a folder, which is created if needed; other files in the folder are kept.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def _runtime_files(runtime: Path) -> dict[str, Path]:
             if name in packages:
                 needed = map(normal_name, packages[name]["depends"])
                 names += [each for each in needed if each not in names]
-        wanted += [packages[name]["file_name"] for name in names if name in packages]
+        wanted += [packages[name]["file_name"] if name in packages else name for name in names]
     missing = [name for name in wanted if name not in there]
     if missing:
         raise UsageError(

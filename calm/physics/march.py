@@ -22,7 +22,7 @@ from calm.physics.line import (
     Record,
     Trace,
 )
-from calm.physics.passing import FAILURE, FX, FY, FZ, LEFT, NODES, USED, How, Z, pass_line
+from calm.physics.passing import FAILURE, FX, FY, FZ, LEFT, NODES, USED, MarchSettings, Z, pass_line
 from calm.physics.profile import Profile
 from calm.physics.track import Track
 
@@ -114,7 +114,9 @@ def march(
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
     stages, level, known = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0), cuts is not None
-    settings = How(angle_step, reach, 0.0, stages, False, level, known, known, False, record)
+    settings = MarchSettings(
+        angle_step, reach, 0.0, stages, False, level, known, known, False, record
+    )
     room = ROOM if cuts is None else len(cuts.lengths)
     while True:
         most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1

@@ -118,7 +118,7 @@ _INSULATED = re.compile(r"plastic|jacket|sheath|coated|insulat", re.IGNORECASE)
 
 
 def materials_in(text: str | None) -> tuple[Material, ...]:
-    """Find the materials named in a text, in order of appearance."""
+    """Find the materials mentioned in a text, in order of appearance."""
     found = _NAMED.finditer(text or "")
     return tuple(MATERIALS[int((match.lastgroup or "_0")[1:])] for match in found)
 

@@ -62,7 +62,7 @@ ROUNDING = 1e-12
 """Relative cable length that may remain from rounding of sums and is ignored."""
 
 
-class How(NamedTuple):
+class MarchSettings(NamedTuple):
     """Settings of a march.
 
     Attributes
@@ -97,7 +97,7 @@ class How(NamedTuple):
 def pass_line(
     course: Course,
     sea: Sea,
-    how: How,
+    how: MarchSettings,
     depth: float,
     out: float,
     cuts: MutableSequence[float],
@@ -171,7 +171,7 @@ def pass_cable(
     course: Course,
     place: int,
     sea: Sea,
-    how: How,
+    how: MarchSettings,
     state: State,
     lands: bool,
     cuts: MutableSequence[float],

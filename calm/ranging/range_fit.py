@@ -27,27 +27,28 @@ CONFIDENCE = 0.95
 MISSED = 0.25
 """Median residual, as a share of the ranges, above which the fit is rejected."""
 SCATTERED, SCATTERED_SHARE = 10.0, 0.005
-"""Scatter [m], and as a share of the ranges, above which it exceeds normal ranging errors."""
+"""Scatter above normal ranging errors: fixed part [m], and share of the ranges."""
 LEVEL = 0.05
 """Minimum depth of the transponder below the ship, as a share of the ranges."""
 MOST_REJECTED = 1.0 / 3.0
 """Share of the ranges that may be rejected without a doubt."""
 FALL_BACK, LEAST_FALL_BACK = 0.1, 50.0
-"""Standard deviation of the distance of an anchor from its plan, as a share of the depth it falls
-back over, and at the least [m]."""
+"""Standard deviation of the distance between an anchor and its planned position: share of the
+depth, and minimum [m].
+"""
 ODDS = 20.0
 """Minimum odds for choosing one of two positions."""
 
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Describe another place that fits within twice the scatter of ranging.
+    """Another position that fits within twice the scatter of the ranges.
 
     Attributes
     ----------
     latitude, longitude : WGS 84 [degrees]
-    distance : from the place taken [m]
-    rms : of its residuals, by the degrees of freedom [m]; nan where there are none
+    distance : distance from the chosen position [m]
+    rms : rms residual for the degrees of freedom [m]; NaN without a degree of freedom
     """
 
     latitude: float
@@ -160,8 +161,8 @@ def locate(
     count = len(survey.line)
     if count < unknowns:
         raise UsageError(
-            f"{survey.path}: {count} range{'s' * (count != 1)}; "
-            f"{unknowns} are needed to find {'a place' if depth is not None else 'place and depth'}"
+            f"{survey.path}: {count} range{'s' * (count != 1)}; {unknowns} are needed to find "
+            f"{'a position' if depth is not None else 'position and depth'}"
             f"{', or 2 with --depth' if count == 2 and depth is None else ''}"
         )
     frame = survey.frame
@@ -174,9 +175,9 @@ def locate(
     )
     if missed > MISSED * reach:
         raise UsageError(
-            f"{survey.path}: the ranges do not intersect: the best fit misses them by "
-            f"{missed:.0f} m, for ranges of {reach:.0f} m; are positions and ranges from one "
-            "survey?"
+            f"{survey.path}: the ranges do not intersect: the best fit leaves residuals of "
+            f"{missed:.0f} m for ranges of {reach:.0f} m; do positions and ranges belong to the "
+            "same survey?"
         )
     scattered = SCATTERED + SCATTERED_SHARE * reach
     other = model.another_place(x, used, 2.0 * scattered)
@@ -198,7 +199,7 @@ def locate(
     second = None if other is None else _second(model, x, other, used)
     doubts = []
     if rms > scattered:
-        doubts.append(f"the ranges scatter by {rms:.0f} m, more than ranging does")
+        doubts.append(f"the ranges scatter by {rms:.0f} m, more than is usual for acoustic ranging")
     if (~used).sum() > MOST_REJECTED * count:
         doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
     warnings = [
@@ -212,14 +213,14 @@ def locate(
         assert other is not None
         its, own = (np.sqrt(np.mean(model.residuals(each)[used] ** 2)) for each in (other, x))
         warnings.append(
-            f"Another place fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
-            f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, here "
-            f"{own:.1f} m."
+            f"Another position fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
+            f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, compared "
+            f"with {own:.1f} m here."
         )
     doubts += [undecided] if undecided else []
     if not freedom:
         warnings.append(
-            "There are no more ranges than unknowns: their fit cannot be tested, and no "
+            "There are only as many ranges as unknowns, so the fit cannot be tested and no "
             "interval can be given."
         )
     return Located(
@@ -274,9 +275,12 @@ def _weighed(
     least = float(used.sum()) * range_model.FLOOR**2
     undecided = ""
     if abs(cost[0] - cost[1]) < log(ODDS):
-        undecided = "two places fit, at {:.0f} and {:.0f} m from the plan"
+        undecided = "two positions fit, {:.0f} and {:.0f} m from the planned position"
     elif square_sums[order[0]] > 4.0 * max(square_sums[order[1]], least):
-        undecided = "two places remain, at {:.0f} and {:.0f} m from the plan: the nearer fits worse"
+        undecided = (
+            "two positions remain, {:.0f} and {:.0f} m from the planned one; the nearer one fits "
+            "worse"
+        )
     return first, second, undecided.format(*(away[at] for at in order))
 
 
@@ -331,16 +335,17 @@ def _intervals(
 
 
 FAR = 2.0
-"""Times the depth of the water from the planned position: farther than an anchor is laid astray."""
+"""Distance from the planned position, in water depths, above which the position is doubtful."""
 NEAR = 0.5
 """Share of the distance below which degrees are assumed to be misread degrees and minutes."""
 DEEPER, DEEPER_SHARE = 30.0, 0.03
-"""Difference of the depth from the planned one [m], or as a share of it if that is larger, beyond
-which it is in doubt."""
+"""Difference from the planned depth above which the depth is doubtful: the larger of a value [m]
+and a share of the planned depth.
+"""
 
 
 def located_mooring(path: Path) -> MooringFile:
-    """Return the mooring file that a place is for.
+    """Read the mooring file to which a position belongs.
 
     InputError: the file has mistakes. UsageError: it is a tow, or has several legs.
     """
@@ -415,11 +420,11 @@ def _beside_the_plan(
         return tuple(sentences), tuple(doubts)
     if abs(there[1]) <= 90.0 and away(there[1], there[0]) <= limit:
         raise UsageError(
-            f"{located.survey.path}: latitude and longitude are exchanged: the anchor "
-            f"would stand {distance / 1000.0:.0f} km from the position in {file.path}"
+            f"{located.survey.path}: latitude and longitude appear to be exchanged: the anchor "
+            f"would lie {distance / 1000.0:.0f} km from the position in {file.path}"
         )
-    doubt = f"the place is {distance / 1000.0:.1f} km from the planned position"
+    doubt = f"the position is {distance / 1000.0:.1f} km from the planned position"
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
-        doubt += ", and near it if the positions are degrees and minutes, as 48 18 for 48.18"
-    sentences.append("that is far from the planned position: is it this mooring's?")
+        doubt += ", but close to it if the positions are in degrees and minutes (48 18 for 48.18)"
+    sentences.append("this is far from the planned position; do the ranges belong to this mooring?")
     return tuple(sentences), (*doubts, doubt)

@@ -247,7 +247,7 @@ def _doubled(timed: bool, factor: float) -> str:
     """Describe the probable error if the ranges fit at twice or half their length."""
     instead = "give the distance from the ship to the transponder"
     meant = {
-        (True, 2.0): "one-way times: two-way times are needed, there and back",
+        (True, 2.0): "one-way times, but two-way times (there and back) are needed",
         (True, 0.5): "twice the two-way times",
         (False, 2.0): f"half the distances: {instead}",
         (False, 0.5): f"distances there and back: {instead}",
@@ -256,12 +256,13 @@ def _doubled(timed: bool, factor: float) -> str:
 
 
 NARROW = 0.15
-"""Width over length of a track that is as good as a straight line."""
+"""Ratio of width to length below which a track counts as a straight line."""
 WIDEST_GAP = 180.0
-"""Directions from the place without a range, from which on all are on one side [degrees]."""
+"""Sector without a range above which all ranges count as taken from one side [degrees]."""
 NEAR, FAR = 0.2, 4.0
-"""Horizontal distances over the depth: all nearer tell little of the place, all farther of the
-depth."""
+"""Horizontal distances, in depths: ranges that are all nearer constrain the position poorly, ranges
+that are all farther the depth.
+"""
 
 
 def geometry_warnings(
@@ -280,29 +281,29 @@ def geometry_warnings(
     below = max(below, 1e-3)
     if distance.max() < NEAR * below:
         yield (
-            "The ranges are all taken from nearly above: the place is poorly known. Take some from "
-            "as far to the side as the water is deep."
+            "All ranges were taken from nearly overhead, so the position is poorly constrained. "
+            "Add ranges at a horizontal distance of about one water depth."
         )
     if is_line(ships):
         yield (
-            "The ranges are all taken along one line: a place as far on its other side fits as "
-            f"well{'' if depth_given else ', and so do nearer ones that are deeper'}. Take some "
-            "off that line."
+            "All ranges were taken along one straight line, so the mirror position fits equally "
+            f"well{'' if depth_given else ', as do nearer but deeper positions'}. Add ranges off "
+            "that line."
         )
     elif (gap := widest_gap(away)) > WIDEST_GAP and distance.min() > 0.0:
         yield (
-            f"The ranges are all taken from one side: none within {gap:.0f} degrees of directions. "
-            "Take some from the other side."
+            f"All ranges were taken from one side: a sector of {gap:.0f} degrees has none. Add "
+            "ranges from the opposite side."
         )
     if not depth_given and distance.min() > FAR * below:
         yield (
-            "The ranges are all taken from afar: the depth is poorly known. Take some from nearer, "
-            "or give the depth."
+            "All ranges were taken from far away, so the depth is poorly constrained. Add closer "
+            "ranges, or give the depth."
         )
 
 
 def is_line(ships: Floats) -> bool:
-    """Return whether places are as good as on one line, or one place."""
+    """Return whether places lie nearly on a line, or at one place."""
     _, spread, _ = np.linalg.svd((ships - ships.mean(axis=0))[:, :2], full_matrices=False)
     return len(spread) < 2 or bool(spread[1] <= NARROW * spread[0])
 
@@ -314,7 +315,7 @@ def widest_gap(away: Floats) -> float:
 
 
 def mirrored(ships: Floats, place: Floats) -> Floats:
-    """Return a place (3,) on the other side of the line that the ships (n, 3) are nearest to."""
+    """Mirror a place (3,) at the line that fits the ships (n, 3) best."""
     middle = ships.mean(axis=0)
     _, _, axes = np.linalg.svd((ships - middle)[:, :2], full_matrices=True)
     other = place.copy()

@@ -39,7 +39,7 @@ _COLUMNS = {"latitude": "latitude", "longitude": "longitude", "range": "length",
 
 @dataclass(frozen=True)
 class Survey:
-    """Ranges that a ship took.
+    """Acoustic ranges taken by a ship.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Survey:
 
     @cached_property
     def frame(self) -> Frame:
-        """Local frame around the mean position of the ship, also across 180 degrees."""
+        """Local frame around the mean position of the ship, valid across the 180° meridian, too."""
         lam = np.radians(self.longitude)
         middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
         return Frame(float(self.latitude.mean()), float(middle))
@@ -124,10 +124,10 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
     for line, *what in values:
         first = once.setdefault((what[0], what[1], what[2]), line)
         if first != line:
-            notices.append(f"line {line} repeats line {first}: left out")
+            notices.append(f"line {line} repeats line {first} and was ignored")
     if silent:
         lines = ", ".join(map(str, silent))
-        notices.append(f"no reply in line{'s' * (len(silent) > 1)} {lines}: left out")
+        notices.append(f"rows without a reply were ignored: line{'s' * (len(silent) > 1)} {lines}")
     latitude, longitude, measured = np.array([*once]).reshape(-1, 3).T
     return Survey(
         path=path,
@@ -318,18 +318,18 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
             for number, cells in rows
         ]
         note = (
-            "has no heading: read as degrees, minutes, degrees, minutes and the seconds one way; "
-            "south and west are negative"
+            "has no column headings and was read as degrees, minutes, degrees, minutes and one-way "
+            "time in seconds; south and west are negative"
         )
     elif columns == 3 and (above := _row_of_depths(rows)):
         header = "range[m],latitude,longitude"
         depth, release, transducer = map(float, rows[above - 1][1])
         lines = [(number, ",".join(cells)) for number, cells in rows[above + 1 :]]
         note = (
-            "has no heading: read as range, latitude and longitude below the depths and the drop; "
-            f"its transducer is {transducer:g} m deep; the depth of the water in it, {depth:g} m, "
-            f"and the release {release:g} m above the seabed count when given: --depth, "
-            "--above-seabed"
+            "has no column headings and was read as range, latitude and longitude below a row "
+            f"with the depths and the drop position. The transducer depth of {transducer:g} m in "
+            f"the file is used; its water depth of {depth:g} m and release height of {release:g} m "
+            "above the seabed are ignored unless given as --depth and --above-seabed"
         )
     else:
         return _joined(delimited.read_table(path, EXAMPLE)), None, []

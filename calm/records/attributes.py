@@ -7,7 +7,7 @@ quotes it for the reader.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,7 @@ _UNTURNED = re.compile(
     r"(?i)(magnetic_?)?(declination|variation|deviation)_?(is_?)?(applied|corrected)"
 )
 _DATUM = re.compile(r"(?i)(\w+_)?(north|datum|reference|coord\w*_?sys\w*)(_\w+)?")
+_NORTH_IN = ("long_name", "standard_name", "units")
 _NO = ("0", "0.0", "no", "false", "n", "none", "not applied")
 _TOWARD = re.compile(r"\bto direction\b|\btowards?\b|\bflow(s|ing)? to\b|\bgoing to\b|\bset\b")
 _FROM = re.compile(r"\bfrom direction\b|\bdirection from\b|\bcom(es|ing) from\b|\bfrom which\b")
@@ -46,10 +47,14 @@ _BOTTOM_TRACK = re.compile(r"(?i)vel_bt|bt_vel\w*|bottom_?track_?vel\w*|[uv]_?bt
 _MOVING = 0.1  # m/s over the ground: median speeds above this exclude a mooring
 
 
-def words_of(variable: xr.DataArray, *attributes: str) -> str:
-    """Join the given attributes of a variable as lower-case words, separated by single blanks."""
-    text = " ".join(str(variable.attrs.get(name, "")) for name in attributes)
+def words_in(text: str) -> str:
+    """Return the lower-case words of a text, separated by single blanks."""
     return re.sub(r"[\W_]+", " ", text.lower()).strip()
+
+
+def words_of(variable: xr.DataArray, *attributes: str) -> str:
+    """Return the words of the given attributes of a variable."""
+    return words_in(" ".join(str(variable.attrs.get(name, "")) for name in attributes))
 
 
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
@@ -112,32 +117,29 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
     The evidence is its name, long name, standard name, unit or datum, or an attribute of the
     variable or dataset such as `magnetic_declination_applied: no`.
     """
-    own = f"{variable.name} " + " ".join(
-        str(variable.attrs.get(name, "")) for name in ("long_name", "standard_name", "units")
-    )
-    if _is_magnetic_text(own):
-        return True
-    for name, value in (*variable.attrs.items(), *dataset.items()):
-        if _UNTURNED.fullmatch(str(name)):
-            if str(value).strip().lower() in _NO:
-                return True
-        elif _DATUM.fullmatch(str(name)) and _is_magnetic_text(str(value)):
-            return True
-    return False
+    own = f"{variable.name} {words_of(variable, *_NORTH_IN)}"
+    return _is_magnetic_text(own) or "magnetic" in _norths(variable, dataset)
 
 
 def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether attributes of the variable or dataset refer directions to true north."""
+    return "true" in _norths(variable, dataset)
+
+
+def _norths(variable: xr.DataArray, dataset: Mapping[Any, Any]) -> Iterator[str]:
+    """Yield the north, `magnetic` or `true`, that each attribute states."""
     for name, value in (*variable.attrs.items(), *dataset.items()):
-        if _UNTURNED.fullmatch(str(name)) and str(value).strip().lower() not in _NO:
-            return True
-        if _DATUM.fullmatch(str(name)) and re.search(r"(?i)\btrue\b", str(value)):
-            return True
-    return False
+        text = str(value)
+        if _UNTURNED.fullmatch(str(name)):
+            yield "magnetic" if text.strip().lower() in _NO else "true"
+        elif _DATUM.fullmatch(str(name)) and _is_magnetic_text(text):
+            yield "magnetic"
+        elif _DATUM.fullmatch(str(name)) and re.search(r"(?i)\btrue\b", text):
+            yield "true"
 
 
 def _is_magnetic_text(text: str) -> bool:
-    words = re.sub(r"[\W_]+", " ", text.lower())
+    words = words_in(text)
     return bool(_MAGNETIC.search(words)) and not _TRUE.search(words)
 
 

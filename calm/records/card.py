@@ -114,10 +114,8 @@ class ReadCard:
         }
 
 
-def joined_cards(cards: Sequence[ReadCard]) -> ReadCard | None:
-    """Merge the cards of several quantities of a file; None without cards."""
-    if not cards:
-        return None
+def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
+    """Merge the cards of several quantities of a file."""
     variables = {role: one for card in cards for role, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)
@@ -129,17 +127,16 @@ def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
     for role in {role: None for card in cards for role in card.variables}:
         each = [card.variables[role] for card in cards if role in card.variables]
         figures = np.array([(one.least, one.median, one.greatest) for one in each])
-        known = figures[np.isfinite(figures).all(axis=1)]
-        if known.size:
-            least, median, greatest = known[:, 0].min(), np.median(known[:, 1]), known[:, 2].max()
-            each[0] = replace(
-                each[0], least=float(least), median=float(median), greatest=float(greatest)
-            )
-        variables[role] = each[0]
-    flags = {name: 0 for card in cards for name in card.flags}
-    for card in cards:
-        for name, count in card.flags.items():
-            flags[name] += count
+        least, medians, greatest = figures[np.isfinite(figures).all(axis=1)].T
+        one = each[0]
+        if least.size:
+            ends = float(least.min()), float(np.median(medians)), float(greatest.max())
+            one = VariableSummary(one.name, one.units, *ends, one.description)
+        variables[role] = one
+    flags = {
+        name: sum(card.flags.get(name, 0) for card in cards)
+        for name in {name: None for card in cards for name in card.flags}
+    }
     times = np.unique(np.concatenate([card.times for card in cards]))
     levels = sum(card.levels for card in cards)
     return replace(cards[0], variables=variables, flags=flags, times=times, levels=levels)

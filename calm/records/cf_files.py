@@ -42,27 +42,21 @@ _HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
 _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
 
 _KINDS = {
-    b"MATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
-    b"GRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
-    b"\x0e\x03\x13\x01": "an HDF 4 file; turn it into NetCDF",
-    b"PK\x03\x04": "a packed file or a spreadsheet; unpack it, or save the sheet as CSV",
-    b"\xd0\xcf\x11\xe0": "a spreadsheet; save it as CSV",
-    b"\x1f\x8b": "a packed file; unpack it first (`gunzip`)",
-    b"\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
-    b"\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
-}
-"""First bytes of unsupported files that may hold currents, and the remedy for each kind."""
-
-
-_SHELLS = {
+    rb"\AMATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
+    rb"\AGRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
+    rb"\A\x0e\x03\x13\x01": "an HDF 4 file; turn it into NetCDF",
+    rb"\APK\x03\x04": "a packed file or a spreadsheet; unpack it, or save the sheet as CSV",
+    rb"\A\xd0\xcf\x11\xe0": "a spreadsheet; save it as CSV",
+    rb"\A\x1f\x8b": "a packed file; unpack it first (`gunzip`)",
+    rb"\A\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
+    rb"\A\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
     rb"(?m)^\s*ODF_HEADER\b": "an ODF file of Fisheries and Oceans Canada; turn it into NetCDF "
     "(`ocean-data-parser` does)",
     rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; turn it into NetCDF "
     "(`ocean-data-parser` does)",
 }
-"""Line near the start of unsupported text files that may hold currents, and the remedy."""
-
-_SHELL = 400  # number of bytes searched
+"""Bytes near the start of unsupported files that may hold currents, and the remedy."""
+_HEAD = 400  # number of bytes searched
 
 _ENGINES = {b"\x89HDF": "h5netcdf", **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "scipy")}
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
@@ -84,10 +78,8 @@ def holds_arrays(path: Path) -> bool:
     if not path.is_file():  # opening a pipe or a device could block
         raise refused(path, "is not a regular file" if path.exists() else no_such_file(path))
     with path.open("rb") as file:
-        head = file.read(_SHELL)
-    begun = [kind for begin, kind in _KINDS.items() if head.startswith(begin)]
-    named = [kind for mark, kind in _SHELLS.items() if re.search(mark, head)]
-    for kind in (*begun, *named):
+        head = file.read(_HEAD)
+    for kind in (kind for mark, kind in _KINDS.items() if re.search(mark, head)):
         raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return bool(engine_of(path) or reader_of(path))
 
@@ -138,19 +130,15 @@ def open_current(path: Path) -> xr.Dataset:
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
-    if path.is_dir():
-        _refuse_large(path)
-        return xr.open_dataset(
-            path, engine="zarr", decode_times=False, cache=False, consolidated=False
-        )
-    engine = engine_of(path)
+    engine = "zarr" if path.is_dir() else engine_of(path)
     if not engine and (read := reader_of(path)):
         return read(path)
-    _refuse_large(path)
-    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
+    _refuse_large(path, engine)
+    own: dict[str, Any] = {"consolidated": False} if engine == "zarr" else {}
+    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False, **own)
 
 
-def _refuse_large(path: Path) -> None:
+def _refuse_large(path: Path, engine: str) -> None:
     """Reject a file that declares more values than may be read at once.
 
     The check precedes all reading. One-dimensional variables are read whole, others by their
@@ -158,34 +146,30 @@ def _refuse_large(path: Path) -> None:
 
     UnreadableError: names the variable.
     """
-    declared: list[tuple[str, Any]] = []
-    if path.is_dir():
+
+    def check(name: str, array: Any) -> None:
+        shape = getattr(array, "shape", None) or ()
+        at_once = shape if len(shape) < 2 else getattr(array, "chunks", None) or ()
+        _refuse_many(name, prod(at_once))
+
+    if engine == "zarr":
         import zarr
 
-        declared += zarr.open_group(path, mode="r").arrays()
-    elif engine_of(path) == "h5netcdf":
+        for name, array in zarr.open_group(path, mode="r").arrays():
+            check(name, array)
+    elif engine == "h5netcdf":
         import h5py
 
         with h5py.File(path, "r") as file:
-            file.visititems(lambda name, one: declared.append((name, one)))
-            _check_sizes(declared)
-        return
-    _check_sizes(declared)
+            file.visititems(check)
 
 
-def _check_sizes(declared: Iterable[tuple[str, Any]]) -> None:
-    for name, array in declared:
-        shape = getattr(array, "shape", None) or ()
-        at_once = shape if len(shape) < 2 else getattr(array, "chunks", None) or ()
-        if prod(at_once) > MOST_VALUES:
-            raise UnreadableError(_too_large(name, prod(at_once)))
-
-
-def _too_large(name: object, count: int) -> str:
-    return (
-        f"`{name}` has {count:,} values to be read at once, more than {MOST_VALUES:,}: give a part "
-        "of it (`ncks -d`)"
-    )
+def _refuse_many(name: object, count: int) -> None:
+    if count > MOST_VALUES:
+        raise UnreadableError(
+            f"`{name}` has {count:,} values to be read at once, more than {MOST_VALUES:,}: give a "
+            "part of it (`ncks -d`)"
+        )
 
 
 def engine_of(path: Path) -> str:
@@ -282,8 +266,7 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
     `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: they refer to packed
     values if they have the packed type.
     """
-    if variable.size > MOST_VALUES:
-        raise UnreadableError(_too_large(variable.name, variable.size))
+    _refuse_many(variable.name, variable.size)
     values = np.array(variable.values, np.float64)
     low, high = valid_range(variable)
     if low > -inf or high < inf:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 READ_AHEAD = 16_000_000
-"""Maximum size of profiles that are read together because the file compresses them so [bytes]."""
+"""Maximum size of profiles that are read together because they share a compressed chunk [bytes]."""
 
 SAMPLED = 64_000_000
 """Sample size for tests of doubtful values, spread evenly over the record [bytes]."""
@@ -168,7 +168,7 @@ class CurrentDataset:
             if outside.any():
                 notes.append(
                     f"{outside.sum()} of {np.isfinite(values).sum()} values of `{variable.name}` "
-                    f"are left out, outside its valid range, {low:g} to {high:g}"
+                    f"were excluded, because they are outside its valid range, {low:g} to {high:g}"
                 )
                 values[outside] = np.nan
             units = str(variable.attrs.get("units", ""))
@@ -189,8 +189,8 @@ class CurrentDataset:
             removed[str(variable.name)] = int(bad.sum())
             if bad.any():
                 notes.append(
-                    f"{bad.sum()} of {bad.size} currents are left out, as `{variable.name}` marks "
-                    "them as bad"
+                    f"{bad.sum()} of {bad.size} currents were excluded, because `{variable.name}` "
+                    "marks them as bad"
                 )
         good = [
             share_of(self._along(one, index, cf_files.known_values))

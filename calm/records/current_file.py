@@ -115,8 +115,7 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
     for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
-        if count := int(left.sum()):
-            notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
+        notices += _excluded(int(left.sum()), what)
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
     for level, east, north, rise in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
@@ -129,6 +128,10 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     if np.any(np.diff(levels) == 0):
         raise UnreadableError("two levels have the same depth")
     return CurrentTable(levels, speeds[0], speeds[1], speeds[2])
+
+
+def _excluded(count: int, what: str) -> list[str]:
+    return [f"{count} level{'s' * (count > 1)} {what} excluded from the current"] * (count > 0)
 
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
@@ -146,9 +149,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     known = np.isfinite(found).all(axis=1)
     if not known.any():
         raise InputError([rows[0].problem("no level has a value")])
-    if left_out := int((~known).sum()):
-        levels = f"{left_out} level{'s' * (left_out > 1)}"
-        notices.append(f"{levels} without a value left out of the current")
+    notices += _excluded(int((~known).sum()), "without a value")
     depth, u, v, w = found[known].T
     notices += turned_notices(header.columns, terms)
     values = CurrentValues(depth, u[np.newaxis], v[np.newaxis], None, terms.water_depth)
@@ -212,7 +213,6 @@ class CsvRecord(Record):
         return [*current_doubts(values)]
 
     def _read(self, path: Path) -> CurrentHeader:
-        """Read all profiles of the file."""
         try:
             with path.open("rb") as file:
                 bare = (COMMENT.sub(rb"\1", line) if b"#" in line else line for line in file)

@@ -30,8 +30,10 @@ FAR = 5.0
 """Distance above which a record's drift, or its distance from the mooring, is reported [km]."""
 
 _EARTH = 6371.0
-_LATITUDES = ("lat", "latitude", "LATITUDE", "nav_lat", "Latitude", "LAT")
-_LONGITUDES = ("lon", "longitude", "LONGITUDE", "nav_lon", "Longitude", "LON")
+_PLACES = {
+    "latitude": ("lat", "latitude", "LATITUDE", "nav_lat", "Latitude", "LAT"),
+    "longitude": ("lon", "longitude", "LONGITUDE", "nav_lon", "Longitude", "LON"),
+}
 
 
 @dataclass(frozen=True)
@@ -51,9 +53,10 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Return whether latitude and longitude are separate axes: x is east, y is north."""
-    latitudes = {dataset[name].dims for name in _named(dataset, "latitude", _LATITUDES)}
-    longitudes = {dataset[name].dims for name in _named(dataset, "longitude", _LONGITUDES)}
+    """Return whether latitude and longitude are separate axes, so that x is east and y is north."""
+    latitudes, longitudes = (
+        {dataset[name].dims for name in _named(dataset, coordinate)} for coordinate in _PLACES
+    )
     alone = all(len(dims) == 1 for dims in latitudes | longitudes)
     return bool(latitudes and longitudes) and alone and latitudes != longitudes
 
@@ -129,15 +132,16 @@ def written(place: Place) -> str:
     )
 
 
-def _named(dataset: xr.Dataset, coordinate: str, usual: tuple[str, ...]) -> list[str]:
-    return cf_files.first_present(dataset, [*dataset.cf.coordinates.get(coordinate, []), *usual])
+def _named(dataset: xr.Dataset, coordinate: str) -> list[str]:
+    names = [*dataset.cf.coordinates.get(coordinate, []), *_PLACES[coordinate]]
+    return cf_files.first_present(dataset, names)
 
 
 def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
     """Return latitude and longitude over the given dimensions; None if either is missing."""
     found = []
-    for coordinate, usual in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
-        named = [dataset[name] for name in _named(dataset, coordinate, usual)]
+    for coordinate in _PLACES:
+        named = [dataset[name] for name in _named(dataset, coordinate)]
         numbers = [one for one in named if one.dtype.kind in "fiu"]
         fitting = [one for one in numbers if one.size == 1 or set(one.dims) <= dims]
         if not fitting:
@@ -218,8 +222,8 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
     """Return notices on a record of changing position, such as a drifter's."""
     found = []
-    for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
-        moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]
+    for coordinate in _PLACES:
+        moving = [name for name in _named(dataset, coordinate) if dataset[name].dims == (time,)]
         if not moving:
             return ()
         found.append(np.asarray(dataset[moving[0]].values, np.float64))

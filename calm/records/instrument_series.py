@@ -124,7 +124,7 @@ class InstrumentSeries(Identity):
             value = np.where(wrong, np.nan, value)
             known = value[np.isfinite(value)]
             if known.size >= _FEWEST and not known.any():
-                remarks.append(f"`{variable}`: all {known.size} values are 0, and are left out")
+                remarks.append(f"`{variable}`: all {known.size} values are 0 and were excluded")
                 value = np.full_like(value, np.nan)
         doubts = series_doubts(value[:, np.newaxis, np.newaxis], self.time)
         remarks += [f"`{variable}`: {doubt}" for doubt in doubts]
@@ -212,8 +212,9 @@ def _of_file(
         for part in instruments_apart(velocity.with_components(dataset)):
             file = _SeriesFile(part, path.name, flags, seabed, nominal)
             mine = [(name, one) for name in names for one in file.series(name)]
-            whole = joined_cards([one.card for _, one in mine if one.card is not None])
-            found += [(name, replace(one, card=whole)) for name, one in mine]
+            if cards := [one.card for _, one in mine if one.card is not None]:
+                whole = joined_cards(cards)
+                found += [(name, replace(one, card=whole)) for name, one in mine]
         if not found:
             raise UnreadableError(f"holds no {' or '.join(names)}")
     series = with_one_card([one for _, one in found])
@@ -370,7 +371,6 @@ class _SeriesFile:
         return float(np.median(known)) if known.size else float("nan")
 
     def _velocity(self, quantity: MeasuredQuantity) -> velocity.Velocity | None:
-        """Return the velocity of the file; None if it has none."""
         try:
             current = velocity.find_velocity(self.dataset, regular=False)
         except UnreadableError:
@@ -392,7 +392,9 @@ class _SeriesFile:
         """
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
-            raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
+            raise UnreadableError(
+                f"`{along}` is a dimension of neither instruments nor profiler bins"
+            )
         return np.asarray(known_values(levels.variable) * levels.factor)
 
 

@@ -95,11 +95,18 @@ def _dataset(
     import xarray as xr
 
     seconds = (time - np.datetime64(0, "us")) / np.timedelta64(1, "s")
-    dataset = xr.Dataset(attrs={"Conventions": "CF-1.8", "source": path.name})
-    dataset["TIME"] = "TIME", seconds, {"standard_name": "time", "units": _SECONDS, "axis": "T"}
+    dataset = xr.Dataset(attrs={"Conventions": "CF-1.11", "source": path.name})
+    dataset["TIME"] = "TIME", seconds, {
+        "standard_name": "time", "long_name": "time", "units": _SECONDS, "axis": "T",
+        "calendar": "standard", "units_metadata": "leap_seconds: none",
+    }  # fmt: skip
     for (what, unit), values in columns.items():
         name, standard = _WHAT[what]
-        dataset[name] = "TIME", values, {"standard_name": standard, "units": unit}
+        dataset[name] = "TIME", values, {
+            "standard_name": standard, "long_name": standard.replace("_", " "), "units": unit,
+        }  # fmt: skip
+        if what == "temperature":
+            dataset[name].attrs["units_metadata"] = "temperature: on_scale"
     down = {"standard_name": "depth", "units": "m", "positive": "down"}
     if "DEPTH" in dataset:
         dataset["DEPTH"].attrs.update(down)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.records.attributes import words_of
+from calm.records.attributes import words_in, words_of
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 
 if TYPE_CHECKING:
@@ -136,8 +136,8 @@ class _Levels:
                 f"`{name}` is {levels.attrs['standard_name']}, a share of the water depth, "
                 "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
             )
-        words = f"{name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
-        words = re.sub(r"[\W_]+", " ", words.lower())
+        texts = words_of(levels, "standard_name", "long_name", "reference_datum")
+        words = words_in(f"{name} {texts}")
         if _ABOVE_SEABED.search(words):
             return self._above_seabed()
         positive = str(levels.attrs.get("positive", "")).lower()
@@ -189,25 +189,22 @@ class _Levels:
         attributes = self.dataset.attrs
         by_hand = any(attributes.get(each) for each in ("range_offset", "h_deploy"))
         offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
-        if (
-            offset
-            and str(name).startswith("range")
-            and (orientation == "down" or instrument is None)
-        ):
-            if orientation == "down":
-                note = f"`{name}` is measured from the surface, as its offset is added already"
-                return LevelDepths(self.variable, factor, 0.0, None, (note,))
+        offset = offset and str(name).startswith("range")
+        if offset and orientation == "down":
+            note = f"`{name}` is measured from the surface, as its offset is added already"
+            return LevelDepths(self.variable, factor, 0.0, None, (note,))
+        zero, what = instrument, "the instrument"
+        if offset and instrument is None:
             if water is None:
                 return self._above_seabed()
-            note = f"`{name}` is measured from the seabed, whose depth is `{water[0].name}`"
-            return LevelDepths(self.variable, factor, 0.0, water, (note,))
-        if instrument is None:
+            zero, what = water, "the seabed"
+        if zero is None:
             but = f"; `{water[0].name}` is that of the water" if water is not None else ""
             raise UnreadableError(
                 f"`{name}` is measured from the instrument, whose depth is not in the file{but}"
             )
-        note = f"`{name}` is measured from the instrument, whose depth is `{instrument[0].name}`"
-        return LevelDepths(self.variable, factor, 0.0, instrument, (note,))
+        note = f"`{name}` is measured from {what}, whose depth is `{zero[0].name}`"
+        return LevelDepths(self.variable, factor, 0.0, zero, (note,))
 
     def _stated_orientation(self, words: str) -> str:
         """Return the orientation of an instrument, ``"up"`` or ``"down"``; empty if unstated."""
@@ -215,7 +212,7 @@ class _Levels:
             if word in words.split():
                 return orientation
         given = [one.attrs.get("orientation", "") for one in (self.variable, self.dataset)]
-        looks = re.sub(r"[\W_]+", " ", " ".join(map(str, given)).lower())
+        looks = words_in(" ".join(map(str, given)))
         up, down = _UPWARDS.search(looks), _DOWNWARDS.search(looks)
         if bool(up) == bool(down):
             return ""

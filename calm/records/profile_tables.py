@@ -365,7 +365,8 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
 def read_water(
     table: QuantityTable, density: QuantityRange = WATER_DENSITY
 ) -> DepthTable | SeaWater | None:
-    """Read densities [kg/m³], or sea water, from a table; None, with mistakes added, if it has any.
+    """Read densities [kg/m³], or sea water, from a table; if it has mistakes, report them and
+    return None.
 
     Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
     plausible range of the fluid.
@@ -418,7 +419,7 @@ def components(speed: float, toward: float) -> tuple[float, float]:
 
 
 def turned_by(angle: float, u: Speed, v: Speed) -> tuple[Speed, Speed]:
-    """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees].
+    """Rotate a flow, u to the east and v to the north, clockwise by an angle [degrees].
 
     Parameters
     ----------

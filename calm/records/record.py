@@ -34,8 +34,8 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 """Depth, u, v and w of profiles, in the layout of `solve_profiles`."""
 
 RULES = (
-    "levels where the current or their depth has no value are left out of their profile",
-    "levels above the surface are left out",
+    "levels without a current or a depth are excluded from their profile",
+    "levels above the surface are excluded",
     "levels below the seabed are used where they have a value: the current at the seabed lies "
     "between",
     "between levels the current is linear in depth, beyond the first and the last it is constant",
@@ -109,8 +109,8 @@ def parse_period(text: str) -> Period:
 def parse_place(text: str) -> Place:
     """Parse a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
-    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is none,
-    or no place on the earth.
+    Both may be in degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is not a
+    place, or not on the earth.
     """
     parts = text.split(",")
     try:

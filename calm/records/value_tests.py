@@ -29,9 +29,11 @@ WEAK = 0.03
 MANY = 50
 """Smallest sample for which a coincidence is ruled out."""
 SECTOR = 40.0
-"""Directions that all lie between north and this angle [degrees] are in radians, or in tens."""
+"""Angle [degrees]: directions that all lie between north and this angle are probably in radians, or
+in tens of degrees.
+"""
 UNCHANGED = 0.1
-"""Share of a record for which no series keeps its value."""
+"""Share of a record beyond which a series with a constant value is doubtful."""
 _FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
 _SLOWEST = np.timedelta64(3, "h")  # longest step at which a tide does not mimic two series
@@ -116,7 +118,7 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
         )
     unplaced = int((known & ~np.isfinite(depth)).sum())
     if 0 < unplaced < known.sum():
-        yield f"{unplaced} of {known.sum()} currents have no depth, and are left out"
+        yield f"{unplaced} of {known.sum()} currents have no depth and are excluded"
     empty = ~there & (levels >= 0.0) & (levels < water_depth - allowed)
     if empty.any() and there.any() and len(known) > 1:
         yield (
@@ -136,7 +138,6 @@ def _levels(depth: Floats, known: NDArray[np.bool_]) -> Floats:
 
 
 def _median(values: Floats) -> float:
-    """Return the median of the finite values, or NaN."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if known.size else np.nan
 
@@ -163,7 +164,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
 
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
-    """Yield that speeds (n,) [m/s] are too small for their declared unit."""
+    """Yield a doubt if speeds (n,) [m/s] are too small for their declared unit."""
     strongest = float(speed.max(initial=0.0))
     if speed.size < _VARIED or not 0.0 < strongest < WEAK:
         return
@@ -179,7 +180,9 @@ def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Itera
 
 
 def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield that the directions of currents (n,) [m/s] lie in a narrow sector that begins north."""
+    """Yield a doubt if the directions of currents (n,) [m/s] lie in a narrow sector beginning at
+    north.
+    """
     moving = (u != 0.0) | (v != 0.0)
     if moving.sum() < MANY:
         return
@@ -300,7 +303,7 @@ FAR_APART = np.timedelta64(12, "h")
 
 
 def step_doubts(times: Times) -> Iterator[str]:
-    """Yield that profiles are so far apart that tides and peaks are lost between them."""
+    """Yield a doubt if profiles are so far apart that tides and peaks are lost between them."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
             f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, means "

@@ -126,22 +126,21 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)
     direction, sense = _direction(dataset, regular, notes)
-    if speed is not None and direction is not None and sense is not None:
-        notes.append(f"`{direction}` is the direction the current {_SENSES[sense]}")
-        turn = 0.0 if sense == "to" else 180.0
-        magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
-        true = attributes.is_true(dataset[direction], dataset.attrs)
-        return Velocity((speed, direction), up, turn, magnetic_north, true, tuple(notes))
-    if speed is not None and direction is not None:
+    if speed is None or direction is None:
         raise UnreadableError(
-            f"`{direction}` is ambiguous: the current may flow to this direction or come from "
-            f"it; its `standard_name` should be {_TOWARD.standard[0]} or "
-            f"{_FROM.standard[0]}"
+            "holds no current: CALM searches for eastward and northward velocity, or speed and "
+            "direction to or from, by CF standard name, then by usual name"
         )
-    raise UnreadableError(
-        "holds no current: CALM searches for eastward and northward velocity, or speed and "
-        "direction to or from, by CF standard name, then by usual name"
-    )
+    if sense is None:
+        raise UnreadableError(
+            f"`{direction}` is ambiguous: the current may flow to this direction or come from it; "
+            f"its `standard_name` should be {_TOWARD.standard[0]} or {_FROM.standard[0]}"
+        )
+    notes.append(f"`{direction}` is the direction the current {_SENSES[sense]}")
+    turn = 0.0 if sense == "to" else 180.0
+    magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
+    true = attributes.is_true(dataset[direction], dataset.attrs)
+    return Velocity((speed, direction), up, turn, magnetic_north, true, tuple(notes))
 
 
 def _direction(
@@ -204,7 +203,9 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the coordinates with bounds and their dimensions: a mean over a layer is a value."""
+    """Return the coordinates with bounds, and their dimensions; a mean over such a layer counts as
+    a value.
+    """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
 
@@ -253,22 +254,18 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
         raise UnreadableError(f"`{name}` {reason}")
     _checked(dataset, name)
     labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
-    places = {
-        sense: next((labels.index(label) for label in wanted if label in labels), None)
-        for sense, wanted in _WAYS.items()
-    }
-    if places["east"] is None or places["north"] is None:
-        raise UnreadableError(
-            f"`{name}` has the directions {', '.join(labels)}, not E and N: rotate it to the "
-            "earth's coordinates first"
-        )
-    parts = {}
-    for sense, place in places.items():
-        if place is not None:
-            part = vector.isel({_DIRECTIONS: place}, drop=True)
-            units = vector.attrs.get("units", "")
+    units, parts = vector.attrs.get("units", ""), {}
+    for sense, wanted in _WAYS.items():
+        label = next((label for label in wanted if label in labels), None)
+        if label is not None:
+            part = vector.isel({_DIRECTIONS: labels.index(label)}, drop=True)
             part.attrs = {"units": units, "standard_name": f"{sense}ward_sea_water_velocity"}
-            parts[f"{name}[{labels[place]}]"] = part
+            parts[f"{name}[{label}]"] = part
+        elif sense != "up":
+            raise UnreadableError(
+                f"`{name}` has the directions {', '.join(labels)}, not E and N: rotate it to the "
+                "earth's coordinates first"
+            )
     return dataset.assign(parts)
 
 

@@ -54,27 +54,27 @@ def _instructions(plan: DropPlan) -> Prose:
     speed = say("speed", plan.ship_speed)
     if QUANTITIES["speed"].display_unit != "kn":
         speed += f" ({plan.ship_speed / KNOT:.1f} kn)"
-    said = [
+    sentences = [
         f"Steam towards {bearing_text(plan.course)} true at {speed} over the ground, and pay out "
         "the line, float first."
     ]
     if plan.start is None:
-        said.append(
+        sentences.append(
             "Set `deck_time` (handling time per piece) in the `document` of the file to compute "
             "where the run starts."
         )
     else:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
         start = _distance(abs(plan.start.distance))
-        said.append(
+        sentences.append(
             f"Deploy the top float {start} {behind} the target; the run takes about "
             f"{duration(plan.start.time)}."
         )
-    said.append(
+    sentences.append(
         f"Release the anchor {_distance(abs(plan.tow_past))} {beyond} the target, with the top "
         f"float {_distance(plan.streamed)} astern."
     )
-    return Prose(tuple(said))
+    return Prose(tuple(sentences))
 
 
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
@@ -94,10 +94,10 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         "point towards the float",
         "Float astern at anchor release": f"{_distance(plan.streamed)}, towards "
         f"{bearing_text(plan.astern)} true",
-        "Release point, from the target": whereabouts(plan, plan.let_go),
+        "Release point, from the target": offset_from_target(plan, plan.let_go),
         "Start of the run, from the target": "unknown"
         if plan.start is None
-        else whereabouts(plan, plan.start.place),
+        else offset_from_target(plan, plan.start.place),
         "Speed at touchdown": say("speed", plan.touchdown_speed),
         "Maximum tension in descent": f"{say('tension', pull.tension)} in {pull.part.label}, "
         f"after {pull.time:.0f} s",
@@ -155,8 +155,8 @@ def _depths_table(plan: DropPlan) -> list[Table]:
     table = table_of(
         "Depths during the drop",
         rows,
-        blocks.words("piece or clamp, the deepest of its kind", label),
-        number("greatest depth", greatest, depth.display_unit),
+        blocks.words("piece or clamp (deepest of each component)", label),
+        number("maximum depth", greatest, depth.display_unit),
         number("after", lambda row: f"{row[0].time:.0f}", "s"),
         quantity("depth", lambda row: row[0].rest, "at rest"),
         quantity("depth", lambda row: row[1][0].rating, "rated to"),
@@ -183,9 +183,9 @@ def _distance(distance: float) -> str:
     return f"{distance * one.scale:.0f} {one.display_unit}"
 
 
-def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
-    """Describe a place by its distances north and east of the target [m], and by its position if
-    that of the target is known.
+def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
+    """Describe a place by its distances north and east of the target [m], and by latitude and
+    longitude if the target has a position.
     """
     east, north = place
     position = plan.position(place)
@@ -269,18 +269,18 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
     outliers = [
         line for line, used in zip(located.survey.line, located.used, strict=True) if not used
     ]
-    said = []
+    sentences = []
     if outliers:
         several = "lines" if len(outliers) > 1 else "line"
         lines = ", ".join(map(str, outliers))
-        said.append(Prose((f"Rejected as outliers: {several} {lines}.",)))
+        sentences.append(Prose((f"Rejected as outliers: {several} {lines}.",)))
     notes = ["Acoustic rays are assumed straight, and the sea surface is the WGS 84 ellipsoid."]
     if located.survey.timed:
         notes.append("Times are two-way travel times, without a transponder delay.")
     shown: tuple[blocks.Block, ...] = (
         blocks.Pairs(_located_figures(located, water_depth)),
         *blocks.warned(located.warnings),
-        *said,
+        *sentences,
         _residuals(located),
         blocks.Note(tuple(notes)),
     )

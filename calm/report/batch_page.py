@@ -271,9 +271,9 @@ def _levels(summary: Summary) -> Iterator[Table]:
         for fit in response.return_levels:
             if isinstance(fit, Fit):
                 levels = {each.period: each for each in fit.levels}
-                said = (_level_text(levels.get(period), quantity) for period in _PERIODS)
+                values = (_level_text(levels.get(period), quantity) for period in _PERIODS)
                 method = batch_summary.METHODS_IN_SHORT[fit.method]
-                rows.append((f"{of}, {method}", *said))
+                rows.append((f"{of}, {method}", *values))
     if rows:
         years = (number(f"{period} years", at) for at, period in enumerate(_PERIODS, 1))
         yield table_of("", rows, words("return level, and 95 % interval", 0), *years)

@@ -28,7 +28,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     levels; `worst`, the worst profiles by each response.
     """
 
-    def told(*, clamped: bool) -> list[dict[str, Any]]:
+    def part_documents(*, clamped: bool) -> list[dict[str, Any]]:
         return [
             {"label": part.label}
             | {
@@ -52,8 +52,8 @@ def summary_document(summary: Summary) -> dict[str, Any]:
             "end": _time(summary.end),
             "years": summary.years,
         },
-        "components": told(clamped=False),
-        "clamps": told(clamped=True),
+        "components": part_documents(clamped=False),
+        "clamps": part_documents(clamped=True),
         **({"profiler_stops": [vars(one) for one in summary.stops]} if summary.stops else {}),
         "rules": [_rule(rule) for rule in summary.rules],
         "limits": [_limit(rule, one) for rule in summary.rules for one in rule.exceedances],
@@ -87,9 +87,9 @@ def _response(response: Response) -> dict[str, Any]:
 
 
 def _fit(fit: Fit | LevelsRefused) -> dict[str, Any]:
-    said = asdict(fit)
-    del said["method"]
-    return {"refused": said["reason"]} if isinstance(fit, LevelsRefused) else said
+    message = asdict(fit)
+    del message["method"]
+    return {"refused": message["reason"]} if isinstance(fit, LevelsRefused) else message
 
 
 def _rule(rule: RuleShare) -> dict[str, Any]:
@@ -180,7 +180,7 @@ def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> 
 TITLES = {
     "knockdown": "knockdown of the top",
     "anchor_tension": "tension at the anchor",
-    "tilt": "greatest tilt",
+    "tilt": "maximum tilt",
     "offset": "offset of the top",
 }
 """Titles of the responses, by name."""
@@ -195,9 +195,9 @@ DEFINITIONS = (
     "the record is evenly spaced. Means, percentiles, maxima and exceedance curves cover the "
     "solved profiles. Failure rates refer to the profiles in which a rule is judged; the upper "
     "bound (“at most”) also counts every profile with a current that was not solved.",
-    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is the "
-    "p quantile. The tension of a component is the larger of those at its two ends; its knockdown "
-    "and depth are at its upper end.",
+    "Percentiles are interpolated linearly between the order statistics; the value of rank 1 + (n "
+    "- 1) p of n is the p quantile. The tension of a component is the larger of those at its two "
+    "ends; its knockdown and depth are at its upper end.",
 )
 """Definitions of the statistics, printed with the tables."""
 
@@ -222,7 +222,7 @@ def grouped(count: int) -> str:
 
 
 def extent(summary: Summary) -> str:
-    """Format the number of profiles, and the first and last time."""
+    """Format the number of profiles, and their first and last time."""
     return (
         f"{grouped(summary.count)} profiles, {when(summary.begin)} to {when(summary.end)}, "
         f"{summary.years:.2f} years solved"
@@ -256,10 +256,10 @@ def refusals(summary: Summary) -> Iterator[str]:
         for fit in response.return_levels:
             if isinstance(fit, LevelsRefused):
                 method = METHODS_IN_SHORT[fit.method]
-                said = f"no return levels by {method}: {fit.reason}"
-                reasons.setdefault(said, []).append(TITLES[response.name])
-    for said, of in reasons.items():
-        yield said if len(of) == len(summary.known_responses) else f"{', '.join(of)}: {said}"
+                message = f"no return levels by {method}: {fit.reason}"
+                reasons.setdefault(message, []).append(TITLES[response.name])
+    for message, of in reasons.items():
+        yield message if len(of) == len(summary.known_responses) else f"{', '.join(of)}: {message}"
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:

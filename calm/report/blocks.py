@@ -273,8 +273,8 @@ class Running:
 class Section:
     """Section of a report about one mooring or tow: its name and its printed parts.
 
-    A section may be built in a separate process. A section with its own `running` texts starts a
-    page and has no other title.
+    A section may be built in a separate process. A section with its own `running` header starts a
+    new page without a title.
     """
 
     name: str

@@ -69,7 +69,7 @@ def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     points = _points(k)
     above = lower_end == "above-90"
     if above and k == 0.0:
-        raise UsageError("at K = 0 no angle reaches 90°; there is no chart above it")
+        raise UsageError("for K = 0 all angles are below 90°, so there is no chart above 90°")
     figure = empty_figure(*_PAGE)
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.1, 0.1, 0.85, 0.8))
@@ -189,9 +189,9 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
 
 
 _LOCI = (
-    "Loci are of the point P: the abscissa y′ of the lower end A, the level z′ of the upper "
-    "end B.\nA and B lie on the curve; H, D, L are their difference in height, their distance "
-    "and the cable between them."
+    "The loci show the point P, at the abscissa y′ of the lower end A and the level z′ of the "
+    "upper end B.\nA and B lie on the curve. H: their difference in height. D: their distance. L: "
+    "length of cable between them."
 )
 _MARGIN = 1.5  # points kept free around a label
 _SHORTEST = 40.0  # points of a locus that are worth a label
@@ -343,7 +343,10 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
     if several:
         notes.append("Each of these cables fits the input.")
     if any(min(each["phi_a"], each["phi_b"]) < 0.0 for each in figures):
-        notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
+        notes.append(
+            "A negative angle means that the cable dips below that end, or, if buoyant, rises "
+            "above it."
+        )
     return ReportPart(f"Uniform current, K = {answer.k:.6g}", (table, Note(tuple(notes))))
 
 

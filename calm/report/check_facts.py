@@ -51,7 +51,7 @@ def key_figures(assessment: Assessment) -> dict[str, Any]:
     return {
         "verdict": assessment.verdict,
         "draft": assessment.draft,
-        "sha256": provenance.input_hash([one.leg.file for one in assessment.stands]),
+        "sha256": provenance.input_hash([one.leg.file for one in assessment.in_environments]),
         "strongest_current": vars(strongest_current(assessment)),
         "anchor": anchor,
         "least_safety_factor": factor and vars(factor),
@@ -63,7 +63,7 @@ def key_figures(assessment: Assessment) -> dict[str, Any]:
 def strongest_current(assessment: Assessment) -> StrongestCurrent:
     """Find the strongest current of all environments."""
     found = []
-    for stand in assessment.stands:
+    for stand in assessment.in_environments:
         water = stand.leg.water
         level = int(np.hypot(water.u, water.v).argmax())
         speed = hypot(water.u[level], water.v[level])
@@ -76,7 +76,9 @@ def strongest_current(assessment: Assessment) -> StrongestCurrent:
 def least_factor(assessment: Assessment) -> LeastFactor | None:
     """Find the minimum safety factor over all situations; None if no piece has a breaking load."""
     found = []
-    for stand, situation in ((one, each) for one in assessment.stands for each in one.situations):
+    for stand, situation in (
+        (one, each) for one in assessment.in_environments for each in one.situations
+    ):
         if situation.result is None:
             continue
         pieces = situation.result.components

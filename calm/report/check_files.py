@@ -80,14 +80,18 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         has any; and `situations`, the solved situations of each mooring in each environment.
     """
 
-    def by_name(told: Callable[[Assessment], Any]) -> dict[str, Any]:
-        return {each.name: told(each) for each in assessments}
+    def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:
+        return {each.name: value_of(each) for each in assessments}
 
-    def listed(told: Callable[[Assessment], Iterable[Any]]) -> list[Any]:
-        return [one for each in assessments for one in told(each)]
+    def listed(value_of: Callable[[Assessment], Iterable[Any]]) -> list[Any]:
+        return [one for each in assessments for one in value_of(each)]
 
-    stands = [stand for each in assessments for stand in each.stands]
-    seen = provenance.BY_WAVES if all(one.leg.file.environment.waves for one in stands) else ()
+    in_environments = [stand for each in assessments for stand in each.in_environments]
+    seen = (
+        provenance.BY_WAVES
+        if all(one.leg.file.environment.waves for one in in_environments)
+        else ()
+    )
     given = by_name(lambda each: each.file.document)
     documents = {name: one.to_dict() for name, one in given.items() if one is not None}
     return {
@@ -107,7 +111,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         "situations": by_name(
             lambda each: [
                 {"environment": stand.environment, **_situation(situation)}
-                for stand in each.stands
+                for stand in each.in_environments
                 for situation in stand.situations
             ]
         ),
@@ -141,13 +145,13 @@ def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
 
 
 def _situation(situation: Situation) -> dict[str, Any]:
-    said: dict[str, Any] = {"situation": situation.name}
+    document: dict[str, Any] = {"situation": situation.name}
     if situation.failure is not None:
-        return said | situation.failure.to_dict()
+        return document | situation.failure.to_dict()
     result = situation.result
     assert result is not None
     return {
-        **said,
+        **document,
         **members(result, "status", "type"),
         "top_depth": result.top.depth,
         "knockdown": result.top.knockdown,

@@ -13,7 +13,7 @@ from calm.checks.finding import (
     State,
     by_rule,
     governing,
-    told_of_rule,
+    reported_findings,
     worst_of,
 )
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
@@ -46,7 +46,7 @@ class MatrixCell:
 
     use: float | None
     state: State
-    told: str
+    text: str
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class SummaryRow:
         """
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
-            (name, cell.told) for name, cell in cells.items()
+            (name, cell.text) for name, cell in cells.items()
             if cell is not None and cell.state is State.FAIL
         )  # fmt: skip
         return next(failed, None)
@@ -90,7 +90,7 @@ def summary_row(assessment: Assessment) -> SummaryRow:
     """Create the summary row of a mooring."""
     groups: dict[str, list[Finding]] = {}
     lacking = set()
-    for stand in assessment.stands:
+    for stand in assessment.in_environments:
         name = stand.leg.file.environment.name or "own"
         groups.setdefault(name, []).extend((*stand.findings, *stand.tighter))
         if stand.lacking:
@@ -105,7 +105,7 @@ def summary_row(assessment: Assessment) -> SummaryRow:
         "" if depth is None else f"{depth:.0f}",
         cells,
         _cell(handling, False) if handling else None,
-        "" if first is None else first.told,
+        "" if first is None else first.text,
         len(assessment.accepted_findings()),
         len(every),
         assessment.verdict,
@@ -119,15 +119,15 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
     if worst is not None and worst.state in (State.FAIL, State.UNKNOWN):
         state = worst.state
     if not used:
-        told = "" if worst is None else RULES[worst.rule].title.lower()
-        return MatrixCell(None, state, told)
+        text = "" if worst is None else RULES[worst.rule].title.lower()
+        return MatrixCell(None, state, text)
     lead = governing(used)
     if state is State.FAIL and lead.state is not State.FAIL and worst is not None:
         failed = [one for one in used if one.state is State.FAIL]
         lead = governing(failed) if failed else worst
     title, use = RULES[lead.rule].title.lower(), percent_text(lead.utilisation)
-    told = f"{title}, {lead.component or 'whole line'}, {use}\u00a0%"
-    return MatrixCell(governing(used).utilisation, state, told)
+    text = f"{title}, {lead.component or 'whole line'}, {use}\u00a0%"
+    return MatrixCell(governing(used).utilisation, state, text)
 
 
 def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
@@ -164,7 +164,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         number("Accepted", lambda row: row.accepted),
         note=f"This page summarises {sum(row.findings for row in rows)} findings. A page on each "
         "mooring follows. Fish bite, metals and minimum tension are excluded from the use, because "
-        "their limits are no capacities.",
+        "their limits are not capacities.",
     )
 
 
@@ -213,21 +213,23 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
     yield verdict_box(signed)
     yield cases_table(signed)
     groups = by_rule(findings)
-    told = {name: told_of_rule(found) for name, found in groups.items()}
+    reported = {name: reported_findings(found) for name, found in groups.items()}
     leads = [one.rule for one in governing_rows(findings)]
     order = [*leads, *(name for name in groups if name not in leads)]
     yield table_of(
         "Checks",
-        [one for name in order for one in told[name]],
+        [one for name in order for one in reported[name]],
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Rule", lambda one: RULES[one.rule].title, 1.0),
         *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
         number("Over\n100 %", lambda one: _over(groups[one.rule])
-               if one is told[one.rule][0] else None),
+               if one is reported[one.rule][0] else None),
         words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
-        aside="per rule, the finding with the largest use, and a more severe one below it; over "
-        "100 %: number of findings in all environments",
+        aside=(
+            "per rule, the finding with the largest use, followed by any more severe finding; "
+            "over 100 %: number of findings in all environments"
+        ),
         ruled=False,
     )  # fmt: skip
     yield sign_off(signed)

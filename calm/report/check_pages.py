@@ -17,11 +17,11 @@ from calm.checks.finding import (
     by_rule,
     governing,
     grouped_by,
-    told_of_rule,
+    reported_findings,
 )
 from calm.checks.inventory import InventoryItem, total_of
+from calm.checks.leg_graph import Break, Loss
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Break, Loss
 from calm.files import MooringFile
 from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
@@ -66,18 +66,18 @@ def checks_page(signed: SignedMooring) -> Iterator[Block]:
 def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     """Tabulate the governing finding of each rule, in order of decreasing utilisation."""
     tags = item_tags(signed)
-    rules = [(told_of_rule(found), found) for found in by_rule(findings).values()]
+    rules = [(reported_findings(found), found) for found in by_rule(findings).values()]
     rules.sort(key=lambda rule: _used_most(rule[0][0]))
     rows = [
-        (one, len({each.component for each in found}) if one is told[0] else 0)
-        for told, found in rules
-        for one in told
+        (one, len({each.component for each in found}) if one is reported[0] else 0)
+        for reported, found in rules
+        for one in reported
     ]
     counts = {state: sum(one.state is state for one in findings) for state in State}
     items = open_counts(signed.assessment)
 
     def of_items(state: State) -> str:
-        return f" (open item{'s' * (items[state] != 1)}: {items[state]})" if items[state] else ""
+        return f" ({items[state]} open item{'s' * (items[state] != 1)})" if items[state] else ""
 
     counted = ", ".join(
         f"{count} {state.value.replace('-', ' ')}{of_items(state)}"
@@ -101,8 +101,10 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         words("Basis of the limit; remedy", basis, 2.2),
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",
-        aside="per rule, the finding with the largest use, and a more severe one below it; number "
-        "of pieces in brackets",
+        aside=(
+            "per rule, the finding with the largest use, followed by any more severe finding; "
+            "number of pieces in brackets"
+        ),
     )  # fmt: skip
 
 
@@ -142,7 +144,7 @@ def handling_page(signed: SignedMooring) -> Iterator[Block]:
     else:
         of_net = "Launch and recovery of a net of legs are not checked."
         of_line = "Launch and recovery have no solution."
-        several = len({one.leg.name for one in assessment.stands}) > 1
+        several = len({one.leg.name for one in assessment.in_environments}) > 1
         yield Prose((of_net if several else of_line,))
     if assessment.backup:
         yield _breaks(assessment)
@@ -247,13 +249,15 @@ def _breaks(assessment: Assessment) -> Table:
         return Cell(percent_text(share), strong=True)
 
     unjudged = sum(not one.judged for one in assessment.backup)
-    note = f"{len(assessment.backup)} breaks, the worst of each section. " if rows else ""
+    note = ""
+    if rows:
+        note = f"{len(assessment.backup)} breaks; a row shows the most critical of its section. "
     if left > 0:
         note += f"{left} sections with a larger margin are omitted. "
     if unjudged:
         note += (
-            f"{unjudged} breaks within the lowest floats, or between them and the release, strand "
-            "the release in any design and are not judged."
+            f"{unjudged} breaks within the lowest floats, or between them and the release, would "
+            "leave the release on the seabed in any design and are not judged."
         )
     return table_of(
         "Breaks and losses",
@@ -326,14 +330,14 @@ def _inventory(signed: SignedMooring) -> Table:
     )
 
 
-def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
+def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     """Yield the limits, environments, exclusions, mooring file, and hash of all inputs."""
     assessment = signed.assessment
     waters = {
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
-        for one in assessment.stands
+        for one in assessment.in_environments
     }
-    waves = all(one.leg.file.environment.waves for one in assessment.stands)
+    waves = all(one.leg.file.environment.waves for one in assessment.in_environments)
     unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
     unseen = f"{plain('; '.join(unjudged))}.", "No utilisation in this report includes them."
     text = provenance.source_text(assessment.file)
@@ -342,10 +346,10 @@ def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     beside = environment, blocks.Heading("Not covered"), Prose(unseen)
     yield Beside((limits,), beside, 0.62)
     yield from (history := [*_history(assessment.file)])
-    listing = "The file could not be read again." if text is None else text.rstrip()
+    listing = "The file can no longer be read." if text is None else text.rstrip()
     above = max(len(limits.rows), len(environment.rows) + _UNJUDGED)
     above += sum(len(table.rows) + 3 for table in history)
-    room = TEXT_HEIGHT[paper] - _AROUND - _ROW * above
+    room = TEXT_HEIGHT[page_size] - _AROUND - _ROW * above
     yield Listing("Mooring file", listing, name, 2 * int(room / _LISTED))
     yield Prose((
         "SHA-256 of the inputs (mooring file and all catalogue values used):",
@@ -408,8 +412,8 @@ def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
     they do not apply.
     """
     assessment = signed.assessment
-    waves = any(one.leg.file.environment.waves for one in assessment.stands)
-    surface = any(reaches_the_surface(one.leg) for one in assessment.stands if one.result)
+    waves = any(one.leg.file.environment.waves for one in assessment.in_environments)
+    surface = any(reaches_the_surface(one.leg) for one in assessment.in_environments if one.result)
     for key in assessment.limits:
         idle = (key.name in _OF_WAVES and not waves) or (key.name in _OF_SURFACE and not surface)
         if key.value is not None and not idle:

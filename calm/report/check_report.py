@@ -32,13 +32,13 @@ class CheckedSection(Section):
 
 def signed_mooring(assessment: Assessment) -> SignedMooring:
     """Collect load cases, open items and input hash of a mooring for its report."""
-    files = [one.leg.file for one in assessment.stands]
+    files = [one.leg.file for one in assessment.in_environments]
     items = open_items(assessment)
     return SignedMooring(assessment, load_cases(assessment), items, provenance.input_hash(files))
 
 
 def mooring_section(
-    assessment: Assessment, against: Comparison | None = None, paper: str = "a4"
+    assessment: Assessment, against: Comparison | None = None, page_size: str = "a4"
 ) -> CheckedSection:
     """Build the pages of one mooring, which takes some tenths of a second.
 
@@ -46,10 +46,10 @@ def mooring_section(
     """
     signed = signed_mooring(assessment)
     details = chain(
-        drawing_pages(signed, paper), line_page(signed), checks_page(signed),
-        _likelihood(assessment), handling_page(signed), basis_page(signed, paper),
+        drawing_pages(signed, page_size), line_page(signed), checks_page(signed),
+        _likelihood(assessment), handling_page(signed), basis_page(signed, page_size),
     )  # fmt: skip
-    parts = [*_pages([page_one(signed, paper), details])]
+    parts = [*_pages([page_one(signed, page_size), details])]
     if against is not None:
         parts += [_page([PageBreak()]), comparison_part(against)]
     return CheckedSection(
@@ -93,7 +93,7 @@ def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
     environments = {name for row in rows for name in row.cells}
     title = f"Design check of {len(rows)} moorings in {len(environments)} environments"
     worst = max((row.conclusion for row in rows), key=[*type(rows[0].conclusion)].index)
-    foot = f"CALM {__version__}  inputs of each mooring: on its own page"
+    foot = f"CALM {__version__}  the inputs of each mooring are on its own page"
     running = Running("", title, worst.words, provenance.date() or "", foot)
     front = _page([blocks.TitleBlock("", title, (), ()), *summary_page(rows)])
     return blocks.Report(title, "", (front,), tuple(sections), provenance.date(), running=running)

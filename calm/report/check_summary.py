@@ -56,7 +56,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
     verdict = Prose((_head(assessment), _verdict(assessment)))
     cases, checks = [*_cases(assessment)], [*_checks(assessment)]
     likely = [*likelihood_tables([(assessment.name, [*assessment.all_findings()])])]
-    items = [_in_short(one) for one in open_items(assessment)]
+    items = [_in_short(one) for one in open_items(assessment, keys=True)]
     beyond = beyond_text([*assessment.all_findings()])
     room = MOST_LINES - _FRAME - sum(map(_height, (*cases, *checks, *likely)))
     fails = assessment.verdict is Conclusion.FAILS
@@ -74,9 +74,9 @@ def _head(assessment: Assessment) -> Line:
     document = "" if given is None or not given.id else given.id
     if given is not None and given.id and given.revision:
         document += f" rev. {given.revision}"
-    results = [stand.result for stand in assessment.stands if stand.result is not None]
+    results = [stand.result for stand in assessment.in_environments if stand.result is not None]
     kind = "surface" if any(one.type == "surface" for one in results) else "sub-surface"
-    if file.legs or len({stand.leg.name for stand in assessment.stands}) > 1:
+    if file.legs or len({stand.leg.name for stand in assessment.in_environments}) > 1:
         kind = "net of legs"
     depth = file.environment.depth
     water = "" if depth is None else f"{say('depth_rating', depth)} of water"
@@ -259,11 +259,11 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     failing = [each for each in assessments if each.verdict is Conclusion.FAILS]
     lacking = sum(each.verdict is Conclusion.INCOMPLETE for each in assessments)
     fail = "FAILS" if len(failing) == 1 else "FAIL"
-    said = f"{len(failing)} {fail} in at least one" if failing else "NOTHING FAILS"
-    said += f", {lacking} INCOMPLETE" * bool(lacking)
+    outcome = f"{len(failing)} {fail} in at least one" if failing else "NOTHING FAILS"
+    outcome += f", {lacking} INCOMPLETE" * bool(lacking)
     state = State.FAIL if failing else State.UNKNOWN if lacking else State.PASS
     places = f"{len(names)} ENVIRONMENT{'S' * (len(names) != 1)}"
-    head = f"DESIGN CHECK OF {len(rows)} MOORINGS IN {places}: {said}"
+    head = f"DESIGN CHECK OF {len(rows)} MOORINGS IN {places}: {outcome}"
     yield Prose(((Span(head, state),),))
     milder = f"; {len(names) - len(kept)} milder environments omitted" * (len(kept) < len(names))
     room = max(20, _WIDTH - 6 * len(kept) - 8)
@@ -281,7 +281,9 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     yield from likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments])
     left = _MOST_ITEMS
     for each in failing or [one for one in assessments if one.verdict is Conclusion.INCOMPLETE]:
-        grave = (one for one in open_items(each) if one.state in (State.FAIL, State.UNKNOWN))
+        grave = (
+            one for one in open_items(each, keys=True) if one.state in (State.FAIL, State.UNKNOWN)
+        )
         items = [_in_short(one) for one in grave]
         if left and items:
             yield blocks.OpenItems(each.name, tuple(items[:left]))

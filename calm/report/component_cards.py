@@ -40,12 +40,12 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
     def name(row: tuple[str, Defined]) -> str:
         _, definition = row
-        said = definition.name or ""
+        text = definition.name or ""
         if definition.prefer is not None:
-            said += f" (use {definition.prefer})"
+            text += f" (use {definition.prefer})"
         if isinstance(definition, Outline):
-            said += f" (without {', '.join(map(_heading, definition.lacks))})"
-        return said
+            text += f" (without {', '.join(map(_heading, definition.lacks))})"
+        return text
 
     def figure(heading: str, key: str) -> Field:
         def text(row: tuple[str, Defined]) -> str | None:
@@ -147,17 +147,17 @@ def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
     ]
     nets = [sheet.net_buoyancy for sheet in sheets.values()]
     areas = [sheet.cd_area for sheet in sheets.values() if sheet.cd_area is not None]
-    for word, extreme in (("least", min), ("most", max)):
+    for word, extreme in (("smallest", min), ("largest", max)):
         area = _text("cd_area", extreme(areas)) if areas else ""
         rows.append((word, "", _text("net_buoyancy", extreme(nets)), area, ""))
     return table_of(
         "",
         rows,
-        words("the same thing", 0, 0.0),
+        words("entries for this product", 0, 0.0),
         words("", 1, 0.0),
         number("net force in water", 2),
         number("Cd × area", 3),
-        words("by", 4),
+        words("listed by", 4),
     )
 
 
@@ -172,7 +172,7 @@ def _heading(name: str) -> str:
 def _say(definition: Defined, name: str) -> str:
     value = getattr(definition, name)
     if name == "searched":
-        return ", ".join(_heading(each) for each in value) + " (in none of the sources seen)"
+        return ", ".join(_heading(each) for each in value) + (" (no published value found)")
     if name == "sources":
         return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())
     if isinstance(value, tuple):

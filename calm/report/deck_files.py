@@ -15,7 +15,7 @@ from calm.records.delimited import table_csv
 from calm.report import deck_lists, deck_logs, provenance
 from calm.report.anchor_sheets import drop_part
 from calm.report.blocks import Figure, PageBreak, Report, ReportPart, warned
-from calm.report.diagram import Paper, diagram_pages
+from calm.report.diagram import PageSize, diagram_pages
 from calm.report.open_items import assessment_verdict
 from calm.report.sheet import net_part
 
@@ -154,15 +154,15 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
     return heads, ([show(one) for show in shown] for one in items)
 
 
-def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report:
+def deck_report(deck: Deck, page_size: PageSize, notes: tuple[str, ...] = ()) -> Report:
     """Build the report: diagram, deployment log, lists, drop plan, and the recovery log on a new
     sheet.
 
     `notes` are added to the warnings on the first sheet.
     """
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
-    if told := warned((*deck.notes, *notes)):
-        parts.append(ReportPart("Warnings", told))
+    if warnings := warned((*deck.notes, *notes)):
+        parts.append(ReportPart("Warnings", warnings))
     if deck.result.several:
         shape = Figure("The net from the side, the current, and from above", net_svg(deck))
         parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
@@ -185,7 +185,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     made_by, *_ = provenance.made_by().split(",")
     return replace(
         report,
-        plates=plates(deck, paper),
+        plates=plates(deck, page_size),
         verdict=assessment_verdict(deck.assessment),
         foot=f"{made_by}, inputs SHA-256 {provenance.input_hash([deck.file])}",
     )
@@ -196,14 +196,16 @@ def net_svg(deck: Deck) -> str:
     return line_drawing(deck.result)
 
 
-def diagram_report(deck: Deck, paper: Paper) -> Report:
+def diagram_report(deck: Deck, page_size: PageSize) -> Report:
     """Build a report of the mooring diagram alone."""
-    return Report(deck.file.name, "mooring diagram", (), (), provenance.date(), plates(deck, paper))
+    return Report(
+        deck.file.name, "mooring diagram", (), (), provenance.date(), plates(deck, page_size)
+    )
 
 
-def plates(deck: Deck, paper: Paper) -> tuple[Figure, ...]:
+def plates(deck: Deck, page_size: PageSize) -> tuple[Figure, ...]:
     """Return the pages of the mooring diagram."""
-    pages = diagram_pages(deck, paper)
+    pages = diagram_pages(deck, page_size)
     return tuple(
         Figure(f"Mooring diagram, {number} of {len(pages)}", svg)
         for number, svg in enumerate(pages, 1)

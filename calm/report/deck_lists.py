@@ -6,7 +6,7 @@ from typing import Any
 
 from calm.checks.finding import OWN, environment_text
 from calm.deck import Deck
-from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, rows_on_paper
+from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, printed_rows
 from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
@@ -32,7 +32,7 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Build the cutting list: lengths, marks, and their tolerances."""
     rows: list[Any] = []
     kinds = {one.label: one for one in deck.parts}
-    clusters = {one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items}
+    clusters = {one.label: row.cluster for row in printed_rows(deck.parts) for one in row.items}
     legs, above = leg_titles(deck.result), ""
     for _, alike in groupby(deck.cuts, lambda one: clusters.get(one.item.label) or id(one)):
         cuts = [*alike]
@@ -154,9 +154,11 @@ def shipping_part(deck: Deck) -> ReportPart:
         at_least("mass in air", "dry_mass", "mass", "missing_masses"),
         at_least("volume", "volume", "volume", "missing_volumes"),
         blocks.blank("packed in", share=0.8),
-        note="Volumes exclude packing: those of spheres, cylinders and cables follow from their "
-        "size, others from their displacement. ≥ marks a lower bound, because values are missing. "
-        "Spares are not included.",
+        note=(
+            "Volumes exclude packing. They follow from the size of spheres, cylinders and cables, "
+            "and from the displacement of other items. ≥ marks a lower bound, because values are "
+            "missing. Spares are not included."
+        ),
         sums=[all_shipped(deck.shipped)],
     )
     return ReportPart("Shipping list", (table,))
@@ -164,18 +166,18 @@ def shipping_part(deck: Deck) -> ReportPart:
 
 def lifts_part(deck: Deck) -> ReportPart:
     """Build the table of lifts, the stages of deployment and recovery."""
-    said, heaviest, unknown = [], deck.lifts.heaviest, deck.lifts.unknown
+    sentences, heaviest, unknown = [], deck.lifts.heaviest, deck.lifts.unknown
     if heaviest is not None:
-        said.append(
+        sentences.append(
             f"Heaviest single lift: {heaviest.label}, {say('lift_mass', heaviest.mass)} in air, "
             f"{say('wet_weight', heaviest.weight)} in water."
         )
     if unknown:
-        told = named(unknown, len(unknown))
-        said.append(f"This is a lower bound: the mass in air of {told} is unknown.")
+        labels = named(unknown, len(unknown))
+        sentences.append(f"This is a lower bound: the mass in air of {labels} is unknown.")
     greatest = max(deck.lifts.deployment, key=lambda one: one.hanging or 0.0, default=None)
     if greatest is not None and (greatest.hanging or 0.0) > 0.0:
-        said.append(
+        sentences.append(
             f"Maximum suspended load: {say('wet_weight', greatest.hanging)} in water, with "
             f"{greatest.label} over the side."
         )
@@ -185,7 +187,7 @@ def lifts_part(deck: Deck) -> ReportPart:
         "alone. A negative value floats. Drag and swell are not included. Shackles, links and "
         "swivels are lifted with the adjacent pieces; the files list them in separate rows."
     )
-    return ReportPart("Lifts", (blocks.Prose(tuple(said)), _stages(deck), Note((note,))))
+    return ReportPart("Lifts", (blocks.Prose(tuple(sentences)), _stages(deck), Note((note,))))
 
 
 def _stages(deck: Deck) -> blocks.Table:

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from calm.case.result_tables import run_of
 from calm.deck import Deck, RecoveredItem
-from calm.deck.deck_items import DeckItem, DeckRow, Order, hardware_text, rows_on_paper
+from calm.deck.deck_items import DeckItem, DeckRow, Order, hardware_text, printed_rows
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
-from calm.report.anchor_sheets import whereabouts
+from calm.report.anchor_sheets import offset_from_target
 from calm.report.blocks import (
     Block,
     Cell,
@@ -37,7 +37,7 @@ def deployment_part(deck: Deck) -> ReportPart:
     position.
     """
     last = deck.order is Order.ANCHOR_LAST
-    said = (
+    sentences = (
         ("Anchor-last deployment: the top" if last else "Anchor-first deployment: the lower end")
         + f"{' of each leg' if deck.result.several else ''} goes over the side first. "
         + (_LEGS if deck.result.several else "")
@@ -55,7 +55,7 @@ def deployment_part(deck: Deck) -> ReportPart:
     )
     shown: tuple[Block, ...] = (
         _station(deck, _deployed(deck)[0]),
-        Prose((said,)),
+        Prose((sentences,)),
         *_releases(deck, _TESTED, boxes=True),
         soundings,
         _positions(deck),
@@ -67,30 +67,32 @@ def deployment_part(deck: Deck) -> ReportPart:
 def recovery_part(deck: Deck) -> ReportPart:
     """Build the recovery log: release events, and the order of surfacing."""
     rise = deck.rise
-    said = []
+    sentences = []
     if deck.result.several:
-        said.append(
+        sentences.append(
             "The ascent of a net is not computed; the pieces of each leg are listed from top to "
             "bottom."
         )
     elif rise is None:
-        said.append("The ascent has no solution; pieces are listed from top to bottom.")
+        sentences.append("The ascent has no solution; pieces are listed from top to bottom.")
     elif rise.time_to_surface is None:
-        said.append("After release the line does not rise; pieces are listed from top to bottom.")
+        sentences.append(
+            "After release the line does not rise; pieces are listed from top to bottom."
+        )
     elif rise.time_to_surface == 0.0:
-        said.append(
+        sentences.append(
             "The float is at the surface; pieces that rise from below are listed with their times."
         )
     else:
         first = rise.time_to_surface / 60.0
-        said.append(
+        sentences.append(
             f"After release the line rises at {say('speed', rise.rise_speed)}; the first float "
             f"surfaces after {first:.0f} min."
         )
         if rise.tangles:
-            said.append("The line may double back during the ascent and change the order.")
+            sentences.append("The line may double back during the ascent and change the order.")
         if rise.in_still_water:
-            said.append("The ascent is computed in still water.")
+            sentences.append("The ascent is computed in still water.")
     named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
     known = tuple((name, text) for name, text in named if text)
     events = table_of(
@@ -105,7 +107,7 @@ def recovery_part(deck: Deck) -> ReportPart:
     shown: tuple[Block, ...] = (
         _station(deck, ""),
         *([blocks.Pairs(known)] if known else []),
-        Prose(tuple(said)),
+        Prose(tuple(sentences)),
         *_releases(deck, _FIRED, boxes=False),
         events,
         *_surfacing(deck),
@@ -231,7 +233,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
         words("☐", lambda _: _BOX, 0.0),
     )
     return [
-        table_of(title, rows_on_paper(items), *fields, by_hand=True)
+        table_of(title, printed_rows(items), *fields, by_hand=True)
         for title, items in _titled("Order over the side", deck, deck.deployment)
     ]
 
@@ -250,8 +252,8 @@ def _positions(deck: Deck) -> Table:
     target = "" if file.position is None else position_text(file.position)
     start = let_go = ""
     if isinstance(plan, DropPlan):
-        let_go = whereabouts(plan, plan.let_go)
-        start = "" if plan.start is None else whereabouts(plan, plan.start.place)
+        let_go = offset_from_target(plan, plan.let_go)
+        start = "" if plan.start is None else offset_from_target(plan, plan.start.place)
     rows = (
         ("Target", "", target, QUANTITIES["depth"].say(file.environment.depth)),
         ("Fall-back target", "", "", ""),
@@ -295,7 +297,7 @@ def _surfacing(deck: Deck) -> list[Table]:
         "Shackles, links and swivels surface with the pieces they connect."
     )
     tables = [
-        table_of(title, rows_on_paper(items), *fields, by_hand=True)
+        table_of(title, printed_rows(items), *fields, by_hand=True)
         for title, items in _titled("Order of surfacing", deck, listed)
     ]
     return [*tables[:-1], *(replace(last, note=note) for last in tables[-1:])]
@@ -305,12 +307,14 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
     """Format the times at which the first and the last item surface, or the depth of items that
     stay below.
     """
-    said = []
+    sentences = []
     for one in (items[0], items[-1]):
         if one.time is not None:
             minutes = one.time / 60.0
-            said.append(f"{minutes:.{1 if minutes < 10.0 else 0}f} min")
+            sentences.append(f"{minutes:.{1 if minutes < 10.0 else 0}f} min")
         elif one.hangs_at is not None:
-            said.append(f"at {say('depth', one.hangs_at)}")
-    text = "\nto ".join(dict.fromkeys(said)).replace(" min\nto", " to").replace("to at ", "to ")
+            sentences.append(f"at {say('depth', one.hangs_at)}")
+    text = (
+        "\nto ".join(dict.fromkeys(sentences)).replace(" min\nto", " to").replace("to at ", "to ")
+    )
     return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

@@ -19,11 +19,11 @@ from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.open_items import assessment_verdict
 from calm.report.provenance import title_pairs
-from calm.report.sheet import ends_told, leg_title
+from calm.report.sheet import end_descriptions, leg_title
 
 _HEADINGS = (
     (("no.",), ""),
-    (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
+    (("cut length", "or position"), "length"), (("stretched",), "length"), (("depth",), "depth"),
     (("planned",), "planned_depth"),
     (("above", "seabed"), "height"), (("tension",), "tension"),
     (("net", "buoyancy"), "wet_weight"),
@@ -38,7 +38,7 @@ _EVEN = 0.7  # of the first column: how far down the last one reaches at least, 
 _NEAR_THE_END = 0.3  # of a column: where a break is looked for
 
 
-class Paper(StrEnum):
+class PageSize(StrEnum):
     """Page size of the sheets."""
 
     A4 = "a4"
@@ -53,7 +53,7 @@ class Paper(StrEnum):
     @property
     def columns(self) -> int:
         """Number of diagram columns side by side."""
-        return 2 if self is Paper.A3 else 1
+        return 2 if self is PageSize.A3 else 1
 
     @property
     def column_width(self) -> float:
@@ -95,7 +95,7 @@ class _Diagram:
     A column contains one or several legs, each with a vertical offset.
     """
 
-    def __init__(self, deck: Deck, paper: Paper) -> None:
+    def __init__(self, deck: Deck, page_size: PageSize) -> None:
         lines = deck.result.legs
         listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
         legs = [
@@ -103,13 +103,17 @@ class _Diagram:
             for line, items in zip(lines, listed, strict=True)
         ]
         parts = [part for leg in legs for part in leg]
-        self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
-        self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
+        self.title, self.page_size, self.fields = (
+            one_line(deck.file.name),
+            page_size,
+            _fields(deck, page_size),
+        )
+        self.bottom = page_size.size[1] - _MARGIN - sum(map(_height, self.fields))
         headings = [(*words, QUANTITIES[name].display_unit if name else "")
                     for words, name in _HEADINGS
                     if name != "planned_depth" or has_plans(deck)]  # fmt: skip
         rows = (row for part in parts for row in part.rows)
-        self.column = column = schematic.column_of(rows, headings, paper.column_width)
+        self.column = column = schematic.column_of(rows, headings, page_size.column_width)
         drawn = (one for part in parts for one in (part.cable, part.sign.symbol) if one)
         self.legend = tuple(dict.fromkeys(drawn))
         sets = (  # long cables are drawn shorter where that saves a page
@@ -120,7 +124,7 @@ class _Diagram:
             for growth in (1.0, 0.5, 0.0)
         )
         self.columns = min(map(self._even, sets), key=len)
-        self.count = -(-len(self.columns) // paper.columns)
+        self.count = -(-len(self.columns) // page_size.columns)
 
     def _even(self, legs: Sequence[tuple[LegResult, Sequence[PlacedPart]]]) -> _Stacks:
         """Fill the columns of all legs evenly: parts move to the last column until it is as long as
@@ -142,7 +146,7 @@ class _Diagram:
             if even and len(columns) > len(even):
                 return even
             first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
-            if len(columns) % self.paper.columns or last + need <= self.bottom:
+            if len(columns) % self.page_size.columns or last + need <= self.bottom:
                 even = columns
                 if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
                     return even
@@ -163,15 +167,15 @@ class _Diagram:
 
     def fill(self, page: Pen, number: int) -> None:
         """Draw a page: title, columns and title block, with the legend on the last page."""
-        width = self.paper.size[0] - 2 * _MARGIN
+        width = self.page_size.size[0] - 2 * _MARGIN
         page.write(_MARGIN, _MARGIN + 0.4 * _TITLE, self.title, width, size=_TITLE, bold=True)
-        first = number * self.paper.columns
-        there = self.columns[first : first + self.paper.columns]
+        first = number * self.page_size.columns
+        there = self.columns[first : first + self.page_size.columns]
         for at, column in enumerate(there):
             for down, one in column:
-                self._draw_column(page.group(0.0, down), one, self.paper.left(at))
+                self._draw_column(page.group(0.0, down), one, self.page_size.left(at))
         if number + 1 == self.count:
-            self._draw_legend(page, len(there) - (len(there) == self.paper.columns))
+            self._draw_legend(page, len(there) - (len(there) == self.page_size.columns))
         self._draw_title_block(page, f"{number + 1} of {self.count}")
 
     def _draw_column(self, page: Pen, one: _PageColumn, left: float) -> None:
@@ -204,11 +208,11 @@ class _Diagram:
 
     def _draw_legend(self, page: Pen, column: int) -> None:
         """Draw a legend of the symbols used, at the foot of a column."""
-        left = self.paper.left(column)
+        left = self.page_size.left(column)
         top = self.bottom + (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
         page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
         pen = page.draw("g", stroke=INK, stroke_width=0.9, fill=INK)
-        step = self.paper.column_width / _LEGEND_COLUMNS
+        step = self.page_size.column_width / _LEGEND_COLUMNS
         for place, symbol in enumerate(self.legend):
             x = left + 14.0 + step * (place % _LEGEND_COLUMNS)
             y = top + _LEGEND_ROW * (place // _LEGEND_COLUMNS) + _LEGEND_ROW / 2 - 3.0
@@ -223,7 +227,7 @@ class _Diagram:
         """Draw the framed fields of the title block, blank if unknown; `sheet` is a text such as "2
         of 5".
         """
-        step, y = (self.paper.size[0] - 2 * _MARGIN) / _COLUMNS[self.paper], self.bottom
+        step, y = (self.page_size.size[0] - 2 * _MARGIN) / _COLUMNS[self.page_size], self.bottom
         for row in self.fields:
             height = _height(row)
             for number, (name, lines) in enumerate(row):
@@ -238,23 +242,23 @@ class _Diagram:
             y += height
 
 
-def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
+def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     """Draw the pages of the diagram as SVG pictures in final size; no text is smaller than 8 pt.
 
     Pages end above a junction if one is near the page end, else between two pieces, else between
     two clamps. Where a line continues, both ends carry the same letter. Long texts wrap and are
     never cut. The same deck gives the same SVG.
     """
-    diagram = _Diagram(deck, paper)
-    pages = [picture(*paper.size, diagram.title) for _ in range(diagram.count)]
+    diagram = _Diagram(deck, page_size)
+    pages = [picture(*page_size.size, diagram.title) for _ in range(diagram.count)]
     for number, page in enumerate(pages):
         diagram.fill(page, number)
     return [svg_text(page) for page in pages]
 
 
-def diagram_svg(deck: Deck, paper: Paper) -> str:
+def diagram_svg(deck: Deck, page_size: PageSize) -> str:
     """Draw all pages of the diagram in one picture, below each other."""
-    diagram, (width, height) = _Diagram(deck, paper), paper.size
+    diagram, (width, height) = _Diagram(deck, page_size), page_size.size
     drawn = picture(width, height * diagram.count, diagram.title)
     for number in range(diagram.count):
         diagram.fill(drawn.group(0.0, number * height), number)
@@ -274,7 +278,7 @@ def _columns(
     lowest : lower limit of a column [pt]
     marks : letters of the interruptions of a line
     """
-    afloat, (above, bottom) = line.type == "surface", ends_told(line)
+    afloat, (above, bottom) = line.type == "surface", end_descriptions(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
     for group in _broken(parts, lowest - _TOP - _CONTINUED - max(sea, _CONTINUED)):
         mark = "" if group[-1] is parts[-1] else next(marks)
@@ -313,9 +317,9 @@ def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room
 _FIELDS = (
     "mooring", "document", "revision", "date", "project", "ship", "cruise", "position",
     "water depth", "environment", "author", "checked", "approved", "anchor in air, in water",
-    "least backup", "design check", "sheet",
+    "min. back-up", "design check", "sheet",
 )  # fmt: skip
-_COLUMNS = {Paper.A4: 5, Paper.LETTER: 5, Paper.A3: 9}
+_COLUMNS = {PageSize.A4: 5, PageSize.LETTER: 5, PageSize.A3: 9}
 _PAD = 4.0
 
 
@@ -323,12 +327,12 @@ _Fields = tuple[tuple[str, tuple[str, ...]], ...]
 """One row of the title block: names and lines of text."""
 
 
-def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
+def _fields(deck: Deck, page_size: PageSize) -> list[_Fields]:
     """Return the rows of a mooring's title block, without the page number."""
     environment = DEFAULT_ENVIRONMENT if deck.environment == OWN else deck.environment
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
-    columns = _COLUMNS[paper]
-    room = (paper.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
+    columns = _COLUMNS[page_size]
+    room = (page_size.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
     fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]
     return [tuple(fields[start : start + columns]) for start in range(0, len(fields), columns)]
 
@@ -348,7 +352,7 @@ def _known(deck: Deck) -> dict[str, str]:
     breaks = [one.margin for one in deck.assessment.backup if one.judged]
     return {
         "anchor in air, in water": "; ".join(dict.fromkeys(texts)),
-        "least backup": say("tension", min(breaks)) if breaks else "none",
+        "min. back-up": say("tension", min(breaks)) if breaks else "none",
         "design check": assessment_verdict(deck.assessment).text,
     }
 

@@ -25,7 +25,7 @@ wrapped text, the ratio of all lines together to a single line.
 _SEA_ROW = 16.0
 
 
-def drawing_pages(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
+def drawing_pages(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     """Yield the mooring drawing from the top to the anchor, one row per part, on one or more
     sheets.
     """
@@ -36,7 +36,7 @@ def drawing_pages(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
         title = "Mooring drawing"
         if result.leg.of_several:
             title = f"Mooring drawing, leg {leg_title(result)}"
-        for sheet, table in enumerate(_sheets(signed, leg, numbers, title, _SHEET[paper])):
+        for sheet, table in enumerate(_sheets(signed, leg, numbers, title, _SHEET[page_size])):
             if sheet:
                 yield PageBreak()
             yield table
@@ -127,9 +127,9 @@ def _buoyancy(force: float) -> str:
 
 
 _DRAWING_NOTE = (
-    "Depths are at the upper end; planned: as the mooring file gives them; still: in still water. "
-    "Lengths are as cut; clamps have their position on the piece. The largest tension is "
-    "over all moored cases. Net buoyancy is positive upwards."
+    "Depths are at the upper end: planned in the mooring file, computed in still water, and "
+    "computed in the load cases. Lengths are as cut; clamps have their position on the piece. The "
+    "largest tension is over all moored cases. Net buoyancy is positive upwards."
 )
 
 
@@ -160,11 +160,11 @@ def _row(
 def _lines(row: TextRow, part: ShownPart, width: float) -> int:
     """Return the number of lines that the text of a row needs in a given width."""
     if part.junction:
-        told = _REGULAR * text_width(row.label, 8.0)
+        needed = _REGULAR * text_width(row.label, 8.0)
     else:
-        told = _BOLD * text_width(row.label, 9.0, bold=True)
-        told += _REGULAR * text_width(f"  {row.name}", 8.0)
-    return 1 if told <= width else ceil(_WRAPPED * told / width)
+        needed = _BOLD * text_width(row.label, 9.0, bold=True)
+        needed += _REGULAR * text_width(f"  {row.name}", 8.0)
+    return 1 if needed <= width else ceil(_WRAPPED * needed / width)
 
 
 def _broken(

@@ -40,7 +40,7 @@ _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """Describe the rise of a mooring after release, and its mass; each description has a title."""
+    """Describe the ascent of a mooring after release, and its mass, each under a title."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -124,7 +124,7 @@ def explanation_part(explanation: Explanation) -> ReportPart:
     80 columns.
     """
     wholes = [
-        f"{name} {_COLUMNS[name].text(explanation.figures)} m"
+        f"{name} ({_COLUMNS[name].text(explanation.figures)} m)"
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]
@@ -244,8 +244,8 @@ def _answer(sizing: Sizing) -> str:
 
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     target, both = sizing.target, (before, after)
-    told_of = {field: told for field, _, told in _ROWS}
-    name = told_of.get(target.quantity, f"{target.quantity} of the top")
+    titles = {field: title for field, _, title in _ROWS}
+    name = titles.get(target.quantity, f"{target.quantity} of the top")
     if target.label is not None:
         name = f"{target.quantity} of {target.label}"
     measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
@@ -253,8 +253,8 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in aimed]]
     afloat = after.result is not None and after.result.type == "surface"
     net = after.result is not None and after.result.several
-    for field, quantity, told in _ROWS:
-        head = told.replace("the top", _place_told(after)) if net else told
+    for field, quantity, title in _ROWS:
+        head = title.replace("the top", _place_name(after)) if net else title
         if head == name or (field == "used_buoyancy" and not afloat):
             continue
         shown = QUANTITIES[quantity]
@@ -264,7 +264,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     return table_of("", rows, *fields)
 
 
-def _place_told(trial: Trial) -> str:
+def _place_name(trial: Trial) -> str:
     """Return the label of the part in a net whose depth and excursion are shown."""
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)
@@ -287,7 +287,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
         fields = words("", 0, 0.0), words("what", 1), words(before, 2), words(after, 3)
         yield table_of("Differences", rows, *fields)
     else:
-        yield Prose(("The designs are equal.",))
+        yield Prose(("The designs are identical.",))
     yield from blocks.warned(comparison.notes, State.FAIL)
     whole = [one for one in comparison.figures if not one.of_a_part and one.states is None]
     yield _figures("Results", comparison.names, whole, all_rows=True)

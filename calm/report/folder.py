@@ -19,6 +19,8 @@ from calm.report.html import page
 from calm.report.provenance import moment
 from calm.whole_file import put
 
+_FILE_SUFFIXES = (".csv", ".html", ".json", ".nc", ".pdf", ".png", ".svg", ".xlsx", ".yaml")
+
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
 """Names of the files that a design check writes into the folder."""
 
@@ -27,17 +29,22 @@ def check_folder(folder: Path) -> None:
     """Raise an exception if a folder cannot be written, before any computation.
 
     Raises UsageError if the path, or the nearest existing parent, is not a folder or is not
-    writable.
+    writable, or if a new folder would have the suffix of a file.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
-            folder.lstat()  # refuses a name that no folder may have
+            folder.lstat()  # rejects a name that no folder can have
+        if folder.suffix in _FILE_SUFFIXES and not folder.exists():
+            raise UsageError(
+                f"cannot write {folder}: the output is a folder; use a name without {folder.suffix}"
+            )
+
         nearest = folder.absolute()
         while not os.path.lexists(nearest):
             nearest = nearest.parent
         if not nearest.is_dir():
             raise UsageError(
-                f"cannot write {folder}: {nearest} is not a folder; a folder is needed"
+                f"cannot write {folder}: the output is a folder, but {nearest} is a file"
             )
         if not os.access(nearest, os.W_OK | os.X_OK):
             raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
@@ -79,7 +86,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
                 path.unlink()
         if made:
             with contextlib.suppress(OSError):
-                folder.rmdir()  # which the system does only where nothing was written
+                folder.rmdir()  # succeeds only if the folder is empty
 
 
 def write_pages(folder: Path, name: str, report: Report) -> None:
@@ -126,7 +133,7 @@ def write_file(path: Path, content: bytes) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
 
 
-def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
+def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
     """Typeset a report as PDF; its texts are passed to the template as data, never as markup.
 
     Equal reports give equal bytes: fonts come from the package, and the only date is that of
@@ -134,7 +141,7 @@ def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = No
 
     Parameters
     ----------
-    paper : a4, a3 (landscape) or letter
+    page_size : a4, a3 (landscape) or letter
     leaves : sections already converted by `pdf_leaf`
     """
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
@@ -144,7 +151,7 @@ def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = No
         {
             "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
-            "paper": "us-letter" if paper == "letter" else paper,
+            "paper": "us-letter" if page_size == "letter" else page_size,
         },
         "pdf",
         None if when is None else int(when.timestamp()),

@@ -103,11 +103,13 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("Use %", falling(lambda one: _use(one.launch))),
         number(f"Rise {unit}", lambda group: _force(
             max((one.rise_tension or 0.0 for one in group), default=None))),
-        note="Capacity is the smaller of the working load and the breaking load over its safety "
-        "factor, with the factors of the launch there. – no load is judged, ? no published load, "
-        "≈ estimated, ○ accepted. The code of the case follows the tension. Equal pieces share a "
-        "row, with the tension, capacity and use of the most used one, and the minimum, tilt and "
-        "rise of all.",
+        note=(
+            "Capacity is the smaller of the working load and the breaking load over its safety "
+            "factor; the launch columns use the factors for the launch. – not judged, ? no "
+            "published load, ≈ estimated, ○ accepted. The code of the load case follows the "
+            "tension. Equal pieces share a row: tension, capacity and use are those of the piece "
+            "with the largest use; minimum, tilt and rise cover all of them."
+        ),
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
     )  # fmt: skip

@@ -155,7 +155,7 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
     """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}
-    for stand in assessment.stands:
+    for stand in assessment.in_environments:
         environment = stand.leg.file.environment.name or OWN
         number = numbers.setdefault(environment, len(numbers) + 1)
         for one in stand.situations:

@@ -64,8 +64,8 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
         labels = named(label for one in of_component for label in one.pieces)
         plain = id if re.fullmatch(r"[A-Za-z][\w.-]*", id) else json.dumps(id, ensure_ascii=False)
         own = f"defined in {' and '.join(places[id])}" if id in places else ""
-        told = "; ".join(filter(None, (labels if labels != id else "", own)))
-        lines.append(f"  {plain}:{f'  # {told}' if told else ''}")
+        comment = "; ".join(filter(None, (labels if labels != id else "", own)))
+        lines.append(f"  {plain}:{f'  # {comment}' if comment else ''}")
         for same in grouped_by(of_component, lambda one: one.quantity).values():
             lines += _key(same)
     return _HEAD + "\n".join(lines) + "\n"
@@ -77,16 +77,16 @@ def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
     """
     defined = {id in places for id in ids}
     below = " and ".join(places.get("", ()))
-    told = ["Copy the keys of a component that the file defines into that definition."] * (
+    advice = ["Copy the keys of a component that the file defines into that definition."] * (
         True in defined
     )
     if False in defined:
-        told.append(
+        advice.append(
             f"Copy the other entries to below `components:`, {below}."
             if below
             else "Add this section to the mooring file. It completes components of the catalogue."
         )
-    return told
+    return advice
 
 
 def _key(same: Sequence[MissingFigure]) -> list[str]:

@@ -72,7 +72,7 @@ def motion_report(
         *([held_out_table(study.held_out.values())] if study.held_out else []),
     ]
     how = Note((PLAIN if study.plain else UNKNOWN,))
-    said = (Prose(tuple(notes) or ("All input was used.",)),)
+    notes_block = (Prose(tuple(notes) or ("All input was used.",)),)
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     return report_of(
         f"{name}: motion of the mooring",
@@ -82,7 +82,7 @@ def motion_report(
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
         ReportPart("Depths", tuple(depths)),
-        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *said)),
+        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *notes_block)),
         name=name,
     )
 
@@ -103,7 +103,7 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
         f"{TITLES[key]} {value:.2f} times that assumed (95 %: {low:.2f} to {high:.2f})"
         for key, (value, low, high) in study.factors.items()
     )
-    said = [
+    sentences = [
         f"The depths of {len(series)} instruments between {str(time[0])[:16]} and "
         f"{str(time[-1])[:16]} ({len(time)} times) were estimated from the static equilibrium of "
         f"the line, the pressures of {', '.join(used.label)}, and {by} (CALM {__version__}).",
@@ -114,12 +114,13 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
         f"deviation of the depths is {np.median(wide):.1f} m in the median and "
         f"{np.quantile(wide, 0.95):.1f} m in the 95th percentile.",
     ]
-    said += [
+    sentences += [
         f"When withheld, {one.label} was predicted with an rms error of {one.rms:.1f} m "
         f"(linear interpolation: {one.linear_rms:.1f} m)."
         for one in study.held_out.values()
     ]
-    return (*said, *(f"{one.sentence()}." for one in study.faults(of_line=False) if one.corrected))
+    corrected = (one for one in study.faults(of_line=False) if one.corrected)
+    return (*sentences, *(f"{one.sentence()}." for one in corrected))
 
 
 TITLES = {
@@ -187,19 +188,19 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
     """Return the JSON of sensor faults: clock errors in [s], gains as factors, all other values in
     [m].
     """
-    said = []
+    documents = []
     for one in diagnosis:
         unit = 3600.0 if one.kind == "clock" else 1.0
         figures = {key: unit * getattr(one, key) for key in ("value", "low", "high")}
         times = {key: getattr(one, key) for key in ("since", "until")}
-        said.append(
+        documents.append(
             members(one, "label", "kind")
             | (dict.fromkeys(figures) if one.other else figures)
             | members(one, "odds", "corrected")
             | ({"with": one.other} if one.other else {})
             | {key: str(time)[:19] for key, time in times.items() if not np.isnat(time)}
         )
-    return said
+    return documents
 
 
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
@@ -229,7 +230,7 @@ def sensors_table(study: MotionEstimate) -> Table:
         words("sensor", 1),
         *blocks.of_first(number("times", "count")),
         *(alone if study.plain else ()),
-        number("estimated: rms", lambda row: _said(study.sensors[row[1]].rms), "m"),
+        number("estimated: rms", lambda row: _value_text(study.sensors[row[1]].rms), "m"),
     )
 
 
@@ -244,15 +245,15 @@ def held_out_table(held_out: Iterable[HeldOut]) -> Table:
         _figure("rms", "rms"),
         _figure("interpolated: rms", "linear_rms"),
         _figure("PCHIP: rms", "pchip_rms"),
-        number("within 95 % band", lambda one: _said(100.0 * one.coverage, 0), "%"),
+        number("within 95 % band", lambda one: _value_text(100.0 * one.coverage, 0), "%"),
     )
 
 
 def _figure(heading: str, name: str, unit: str = "m", decimals: int = 2) -> blocks.Field:
-    return number(heading, lambda one: _said(getattr(one, name), decimals), unit)
+    return number(heading, lambda one: _value_text(getattr(one, name), decimals), unit)
 
 
-def _said(value: float, decimals: int = 2) -> str:
+def _value_text(value: float, decimals: int = 2) -> str:
     return f"{value:.{decimals}f}" if isfinite(value) else "-"
 
 
@@ -302,8 +303,8 @@ def held_out_document(held_out: Iterable[HeldOut]) -> list[dict[str, Any]]:
 
 
 def _agreement(one: Agreement) -> dict[str, Any]:
-    said = asdict(one)
-    return {"n": said.pop("count"), **said}
+    fields = asdict(one)
+    return {"n": fields.pop("count"), **fields}
 
 
 _WIDTH, _SIZE = 510.0, 7.5  # points: an A4 page between its margins; the letters

@@ -34,11 +34,19 @@ _EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
 
-def plain(text: str) -> str:
-    """Format a message for print: keys become words, and values do not break from their units."""
-    text = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
+def plain(text: str, *, keys: bool = False) -> str:
+    """Format a message for print: keys in quotes as words, and no line break before a unit.
+
+    With `keys`, for a terminal, the keys are as in the file, in backticks.
+    """
+    if not keys:
+        text = re.sub(r"`([^`]*)`", _quoted, text)
     text = re.sub(r"(?<![\w-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
+
+
+def _quoted(key: re.Match[str]) -> str:
+    return f"“{key[1].rstrip(':').replace('_', ' ')}”"
 
 
 def without_asides(text: str) -> str:
@@ -93,8 +101,9 @@ def where_text(finding: Finding) -> str:
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
-    Findings have a common cause if they differ only in component and values; estimates, if they
-    concern one component; acceptances, if they have the same reason; and rules without data.
+    Failures, unknowns and warnings have a common cause if they differ only in component and values;
+    estimates, if they concern the same component; acceptances, if they also have the same reason;
+    findings that are not judged, if they belong to the same rule.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
@@ -158,31 +167,32 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
     """
     found = [*findings]
     conclusion = conclusion_of(found)
-    told = counts_text(groups_of(found, use))
-    return Span(f"{conclusion.words}{': ' * bool(told)}{told}", STATES[conclusion])
+    counts = counts_text(groups_of(found, use))
+    return Span(f"{conclusion.words}{': ' * bool(counts)}{counts}", STATES[conclusion])
 
 
 def assessment_verdict(assessment: Assessment) -> Span:
     """Format the verdict on a mooring in one line, with its sign."""
     use = {one.label: one.use for one in assessment.inventory}
-    said = verdict_of(assessment.every_finding(), use)
-    sign = "" if said.state is None else f"{said.state.sign} "
-    return Span(f"{sign}{said.text}", said.state)
+    verdict = verdict_of(assessment.every_finding(), use)
+    sign = "" if verdict.state is None else f"{verdict.state.sign} "
+    return Span(f"{sign}{verdict.text}", verdict.state)
 
 
-def open_items(assessment: Assessment) -> list[OpenItem]:
-    """Create the numbered open items of page one."""
+def open_items(assessment: Assessment, *, keys: bool = False) -> list[OpenItem]:
+    """Create the numbered open items of page one; `keys` is as in `plain`."""
     groups = open_groups(assessment)
-    return [_item(group, number) for number, group in enumerate(groups, 1)]
+    return [_item(group, number, keys=keys) for number, group in enumerate(groups, 1)]
 
 
-def _item(group: Sequence[Finding], number: int) -> OpenItem:
+def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
     worst = governing(group)
     if worst.utilisation is None:  # the greatest value of its quantity
         quantity = RULES[worst.rule].quantity
         alike = [one for one in group if RULES[one.rule].quantity == quantity]
         worst = max(alike, key=lambda one: (one.state.severity, abs(one.value or 0.0)))
-    return OpenItem(worst.state, number, f"{_head(group, worst)}.", plain(_told(group, worst)))
+    text = plain(_item_text(group, worst), keys=keys)
+    return OpenItem(worst.state, number, f"{_head(group, worst)}.", text)
 
 
 def _head(group: Sequence[Finding], worst: Finding) -> str:
@@ -194,7 +204,9 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
         passes = "passes" if len(labels) == 1 else "pass"
-        return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
+        return (
+            f"{_capital(short(named_components(_once(group)), 90))}: {passes} on an estimated value"
+        )
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
@@ -203,7 +215,7 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     return f"{_capital(', '.join(rules).lower())}{of}{use}"
 
 
-def _told(group: Sequence[Finding], worst: Finding) -> str:
+def _item_text(group: Sequence[Finding], worst: Finding) -> str:
     """Describe an open item: value, limit, and the remedy or the reason for acceptance."""
     found, limit = figure_text(worst), figure_text(worst, "limit")
     several = len({one.component for one in group}) > 1
@@ -269,7 +281,7 @@ def verdict_sentence(assessment: Assessment) -> str:
         ))
         for state in OPEN
     }  # fmt: skip
-    said = [
+    parts = [
         f"{_many(counts[State.FAIL], 'failure')} ({rules[State.FAIL]})"
         if counts[State.FAIL] else "no check fails",
         f"{_many(counts[State.UNKNOWN], 'unknown')} ({rules[State.UNKNOWN]})"
@@ -289,7 +301,7 @@ def verdict_sentence(assessment: Assessment) -> str:
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
     beyond = f" Over 100\u00a0% without failure: {', '.join(dict.fromkeys(over))}." if over else ""
-    return f"{_capital(', '.join(filter(None, said)))}.{beyond}"
+    return f"{_capital(', '.join(filter(None, parts)))}.{beyond}"
 
 
 def _many(count: int, word: str) -> str:

@@ -103,8 +103,8 @@ class SignedMooring:
     @property
     def verdict(self) -> str:
         """Verdict in the header of every page."""
-        said = self.assessment.verdict
-        return f"DRAFT, {said.words}" if draft(self.assessment) else verdict_words(said)
+        conclusion = self.assessment.verdict
+        return f"DRAFT, {conclusion.words}" if draft(self.assessment) else verdict_words(conclusion)
 
     def running(self) -> Running:
         """Running header and footer of every page."""
@@ -124,7 +124,11 @@ def title_block(signed: SignedMooring) -> TitleBlock:
     def field(name: str) -> str:
         return (getattr(given, name) if given else None) or ""
 
-    kind = "net" if file.legs or len({one.leg.name for one in signed.assessment.stands}) > 1 else ""
+    kind = (
+        "net"
+        if file.legs or len({one.leg.name for one in signed.assessment.in_environments}) > 1
+        else ""
+    )
     results = [one for case in signed.standing for one in case.results]
     surface = any(one.type == "surface" for one in results)
     place = "" if position is None else provenance.position_text(position)
@@ -265,11 +269,11 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
     """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
-    told = [
+    findings = [
         one for one in found
         if one.rule != "release-load" or (one.component, one.value, one.limit) not in figures
     ]  # fmt: skip
-    return sorted(told, key=lambda one: -(one.utilisation or 0.0))
+    return sorted(findings, key=lambda one: -(one.utilisation or 0.0))
 
 
 def governing_table(signed: SignedMooring) -> Table:
@@ -280,7 +284,7 @@ def governing_table(signed: SignedMooring) -> Table:
     )
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
-    note = "✓ passes  ≈ by an estimate  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
+    note = "✓ passes  ≈ passes on an estimated value  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
     if rest:
         most = percent_text(rest[0].utilisation)
@@ -323,16 +327,18 @@ def sign_off(signed: SignedMooring) -> SignOff:
         history.append(own)
     roles = (("Drawn", field("author")), ("Checked", field("checked")),
              ("Approved", field("approved")))  # fmt: skip
-    note = "Signatures. The last page lists what no check covers: waves, snap loads, fatigue."
+    note = (
+        "Signatures. The last page lists effects that no check covers: waves, snap loads, fatigue."
+    )
     return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, note)
 
 
-def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
+def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     """Return the blocks of page one; the figure fills the height that the tables leave free."""
     cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
-    height = TEXT_HEIGHT[paper] - _FIXED - _ROW * rows
+    height = TEXT_HEIGHT[page_size] - _FIXED - _ROW * rows
     height -= _TITLE_LINE * len(signed.assessment.file.description or "") // _TITLE_LETTERS
     items = OpenItems(
         "Open items", tuple(signed.items) or (), _no_items(signed), "more: checks in full"
@@ -358,14 +364,14 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
     svg, scale = elevation(
         signed.assessment.name, drawn, _labels(signed, first), (_FIGURE_WIDTH - 6.0, height)
     )
-    told = [f"Solid: case {first.code}"]
-    told += ["dotted: strumming"] * any(one.code.endswith("s") for one in others)
-    told += ["dashed: still water"] * any(one.code == "0" for one in others)
-    told += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
+    texts = [f"Solid: case {first.code}"]
+    texts += ["dotted: strumming"] * any(one.code.endswith("s") for one in others)
+    texts += ["dashed: still water"] * any(one.code == "0" for one in others)
+    texts += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
     water = first.results[0].water
     towards = f" Current towards {bearing_text(bearing_of(water.u[0], water.v[0]))} at the surface."
     aside = f"left to scale, 1 : {_round(scale * 72.0 / 0.0254)}; right not to scale"
-    note = f"{', '.join(told)}.{towards} Depths in m."
+    note = f"{', '.join(texts)}.{towards} Depths in m."
     return Figure("The mooring", svg, aside=aside, note=note)
 
 

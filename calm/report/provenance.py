@@ -234,7 +234,7 @@ def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]
     text = source_text(files[0])
-    said = "The file could not be read again." if text is None else text.rstrip()
+    content = "The file can no longer be read." if text is None else text.rstrip()
     origin = (f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by()}")
-    listed = (Listing("Mooring file", said), *(current_listing(*each) for each in waters))
+    listed = (Listing("Mooring file", content), *(current_listing(*each) for each in waters))
     return ReportPart("Inputs", (environments_table(waters), *listed, Prose(origin)))

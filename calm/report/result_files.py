@@ -143,8 +143,8 @@ def to_json(documents: list[dict[str, Any]]) -> str:
     Results, which have a key `calm`, also get their units. Numbers that are not finite become null.
     The text is plain ASCII, so that no terminal or pipe can corrupt it.
     """
-    told = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
-    content = told[0] if len(told) == 1 else told
+    with_units = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
+    content = with_units[0] if len(with_units) == 1 else with_units
     return json.dumps(_finite(content), indent=2, allow_nan=False) + "\n"
 
 

@@ -34,14 +34,14 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
     limits: tuple[ReportPart, ...] = ()
     if result.several:
         net = net_part(result, verbose=False)
-        title, said = net.title, net.blocks
+        title, summary = net.title, net.blocks
         table: tuple[Block, ...] = ()
         schematics = tuple(
             Figure(f"Schematic of leg {leg_title(leg)}", schematic_svg(leg.file, leg), tall=True)
             for leg in result.legs
         )
     else:
-        title, said = title_of(result.leg), summary_of(result.leg)
+        title, summary = title_of(result.leg), summary_of(result.leg)
         table = (table_of_line(result, "Table of the line", places=True),)
         schematics = (Figure("Schematic", schematic_svg(file, result), tall=True),)
     if not (result.several or result.towed):  # these have no margins in their tables
@@ -53,7 +53,7 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
         result.name,
         title.removeprefix(f"{result.name}: "),
         *document_part(file),
-        ReportPart("Result", (*described, *said, blocks.Note((accuracy_text(result.legs),)))),
+        ReportPart("Result", (*described, *summary, blocks.Note((accuracy_text(result.legs),)))),
         *([ReportPart("The line", table)] if table else []),
         ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
         ReportPart("", schematics),
@@ -74,32 +74,34 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
     Fits 80 columns.
     """
     each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
-    said = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
+    failures = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
     drawn = drawn_text(uncertain.result.file.uncertainty)
     shown: tuple[Block, ...] = (
         _ends(uncertain),
         _pieces(uncertain),
         *([_contributions(uncertain)] if uncertain.contributions else []),
-        *blocks.warned([f"{said}; the figures are of the others."] if uncertain.failed else []),
+        *blocks.warned(
+            [(f"{failures}; the values refer to the other samples.")] if uncertain.failed else []
+        ),
         blocks.quiet(f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."),
     )
-    return ReportPart("Uncertainty of these figures", shown)
+    return ReportPart("Uncertainty of these values", shown)
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
     """Describe the uncertain inputs and their spread: ``current ±10 %, cable drag −15 to
     +30 %``.
     """
-    said = []
+    texts = []
     for name in type(uncertainty).model_fields:
         spread: Spread = getattr(uncertainty, name)
         unit, scale = ("°", 1.0) if name == "direction" else (" %", 100.0)
         if spread.between is not None:
             low, high = (scale * end for end in spread.between)
-            said.append(f"{_words(name)} {low:+.3g} to {high:+.3g}{unit}".replace("-", "−"))
+            texts.append(f"{_words(name)} {low:+.3g} to {high:+.3g}{unit}".replace("-", "−"))
         elif spread.deviation:
-            said.append(f"{_words(name)} ±{scale * spread.deviation:.3g}{unit}")
-    return ", ".join(said) or "nothing"
+            texts.append(f"{_words(name)} ±{scale * spread.deviation:.3g}{unit}")
+    return ", ".join(texts) or "nothing"
 
 
 def _words(name: str) -> str:
@@ -161,7 +163,7 @@ def _contributions(uncertain: Uncertain) -> Table:
     return table_of(
         "",
         uncertain.contributions,
-        words(f"the spread of the {cause} comes from", lambda one: _words(one.cause)),
+        words(f"sources of the spread of the {cause}", lambda one: _words(one.cause)),
         share("alone", "first"),
         share("in all", "total"),
         note=note if unexplained > 0.05 else "",

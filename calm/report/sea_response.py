@@ -21,17 +21,17 @@ _NOTE = (
     "!: the piece goes slack."
 )
 _SEAS = (
-    "Measured: range of the standard deviation by tensions measured at sea. Half, twice: standard "
-    "deviation with half and with twice the cut-off frequency."
+    "Measured: range of the standard deviation that tensions measured at sea imply. Half, twice: "
+    "standard deviation with half and with twice the cut-off frequency."
 )
 _CUT_OFFS = (
     "Tension at the top if the waves are cut off at another frequency, with the same drag. Most "
     "changed: the piece whose standard deviation changes most."
 )
 _LIFE = (
-    "Life: years until the damage is 1 in these seas; low and high, with standard deviations of "
-    "tension 15 % greater and smaller; half, twice: with half and with twice the cut-off "
-    "frequency. Curves are quoted from secondary sources: compare them with the standard."
+    "Life: years until the damage sum reaches 1 in these seas. Low, high: with standard deviations "
+    "of tension 15 % larger and smaller. Half, twice: with half and twice the cut-off frequency. "
+    "Curves are quoted from secondary sources: compare them with the standard."
 )
 
 
@@ -39,10 +39,10 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
     """Build the report: tables, and drawings of the tension as spectrum, along the line, and
     against Hs.
     """
-    said = "Tension in the highest sea: its spectrum at the top; along the line"
+    title = "Tension in the highest sea: its spectrum at the top; along the line"
     if several := len(analysis.states) > 1:
-        said += ". Tension at the top over Hs"
-    pictures = ReportPart("Tension", (blocks.Figure(said, _drawn(analysis, several)),))
+        title += ". Tension at the top over Hs"
+    pictures = ReportPart("Tension", (blocks.Figure(title, _drawn(analysis, several)),))
     return report_of(analysis.name, "in waves", sea_response_part(analysis), pictures)
 
 
@@ -52,10 +52,10 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     """
     states, highest = analysis.states, _highest(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
-    told, several = Prose(tuple(_told(analysis, highest))), len(states) > 1
+    statements, several = Prose(tuple(_statements(analysis, highest))), len(states) > 1
     shown: list[blocks.Block] = [
         _pieces(highest, f"In the highest sea, {title}" if several else ""),
-        told,
+        statements,
         _cut_offs(highest),
     ]
     if several:
@@ -69,8 +69,8 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     shown += blocks.warned((*analysis.warnings, *doubts[:1]))
     if analysis.status == SLACK:
         slack = ", ".join(dict.fromkeys(label for each in states for label in each.slack))
-        said = f"Slack: {slack}. Linear tensions are not valid there."
-        shown += blocks.warned([said], State.FAIL)
+        warning = f"Slack: {slack}. Linear tensions are not valid there."
+        shown += blocks.warned([warning], State.FAIL)
     return ReportPart(f"{analysis.name}: {title}", tuple(shown))
 
 
@@ -80,13 +80,13 @@ def _highest(analysis: WaveAnalysis) -> MooringInSea:
 
 def _lives(known: Sequence[PieceFatigue]) -> Table:
     def years(heading: str, name: str) -> blocks.Field:
-        def said(one: PieceFatigue) -> str:
+        def years(one: PieceFatigue) -> str:
             count = getattr(one, name)
             if count is None or count > 1000.0:
                 return "-" if count is None else "> 1000"
             return f"{float(f'{count:.2g}'):g}"
 
-        return number(f"{heading}\nyears", said)
+        return number(f"{heading}\nyears", years)
 
     return table_of(
         "Fatigue over all seas",
@@ -202,27 +202,27 @@ def _seas(states: Sequence[MooringInSea]) -> Table:
     )
 
 
-def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
-    said: list[blocks.Line] = []
+def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
+    statements: list[blocks.Line] = []
     top = state.components[0].tension_std
     if state.follower_std is not None and abs(state.follower_std - top) > 1e-3 * top:
-        said.append(
+        statements.append(
             "If the float followed every wave, the standard deviation of tension below it would "
             f"be {say('tension', state.follower_std)}."
         )
     if state.pitch_std is not None:
-        said.append(f"The float pitches by {state.pitch_std:.1f}° (standard deviation).")
+        statements.append(f"The float pitches by {state.pitch_std:.1f}° (standard deviation).")
     elif analysis.pitch_unknown is not None:
-        said.append(f"The pitch of the float is not computed: {analysis.pitch_unknown}.")
+        statements.append(f"The pitch of the float is not computed: {analysis.pitch_unknown}.")
     if state.band is not None:
-        said.append(_measured(state, state.band))
+        statements.append(_measured(state, state.band))
     one = analysis.accuracy
     good = (
         f"Standard deviations change by {one.mesh:.1%} with twice the elements, by "
         f"{one.frequencies:.1%} with twice the frequencies, by {one.linearisation:.0%} with a "
         "fifth less drag."
     ).replace("%", " %")
-    return [*said, (blocks.Span(good, quiet=True),)]
+    return [*statements, (blocks.Span(good, quiet=True),)]
 
 
 def _measured(state: MooringInSea, band: MeasuredBand) -> str:
@@ -231,14 +231,16 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
     assert low is not None and high is not None
     height = state.sea.significant_height
     outside = (
-        "" if COMPARED[0] <= height <= COMPARED[1] else " This sea is outside the heights compared."
+        ""
+        if COMPARED[0] <= height <= COMPARED[1]
+        else (" The height of this sea is outside that range.")
     )
     return (
         f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
         "deviation of the tension below five buoys of the Southern Ocean Flux Station was "
-        f"{band.low:.2f} to {band.high:.2f} times the computed one. That range is "
-        f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} here at the top, "
-        f"with a maximum of {say('tension', low.tension_max)} to "
+        f"{band.low:.2f} to {band.high:.2f} times the computed one. For this mooring that means "
+        f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} at the top, with "
+        f"a maximum of {say('tension', low.tension_max)} to "
         f"{say('tension', high.tension_max)}.{outside} No other mooring was compared."
     )
 

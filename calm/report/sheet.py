@@ -35,7 +35,7 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-_NOTE = "are at the upper end of a part, tension is its maximum."
+_NOTE = "are at the upper end of a part; tension is its maximum."
 _MARKS = {State.WARN: "~ close to a limit.", State.FAIL: "! limit exceeded."}
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
@@ -131,15 +131,15 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     top = result.top
     off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
-        told = [", ".join(filter(None, ("at the surface", off)))]
-        told.append(f"{100 * top.used_buoyancy:.1f} % of its buoyancy in use, reserve buoyancy "
+        text = [", ".join(filter(None, ("at the surface", off)))]
+        text.append(f"{100 * top.used_buoyancy:.1f} % of its buoyancy in use, reserve buoyancy "
                     f"{say('reserve', top.reserve)}")  # fmt: skip
     else:
         deep, down = say("depth", top.depth), say("knockdown", top.knockdown)
-        told = [", ".join(filter(None, (f"{deep} deep", f"knockdown {down}", off)))]
+        text = [", ".join(filter(None, (f"{deep} deep", f"knockdown {down}", off)))]
     if top.draft is not None:
-        told.append(f"draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}")
-    yield "Top", "\n".join((*told, *_strumming(result)))
+        text.append(f"draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}")
+    yield "Top", "\n".join((*text, *_strumming(result)))
     if result.profilers:
         yield "Profilers", "\n".join(map(_travel, result.profilers))
     yield "Line", _line_text(result)
@@ -150,18 +150,18 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 def _line_text(result: LegResult) -> str:
     """Describe the length of the line, its maximum tension and minimum safety factor."""
     rows = result.components
-    told = f"{say('depth', sum(row.length for row in rows))} under load"
+    text = f"{say('depth', sum(row.length for row in rows))} under load"
     if result.leg.anchored:
-        told += f", scope {sum(row.cut_length for row in rows) / result.leg.water.depth:.3f}"
+        text += f", scope {sum(row.cut_length for row in rows) / result.leg.water.depth:.3f}"
     if result.anchor_load.grounded_length > 0.0:
-        told += f", {say('grounded_length', result.anchor_load.grounded_length)} on the seabed"
+        text += f", {say('grounded_length', result.anchor_load.grounded_length)} on the seabed"
     most = max(rows, key=lambda row: row.tension)
-    told += f"; largest tension {say('tension', most.tension)} in {most.label}"
+    text += f"; largest tension {say('tension', most.tension)} in {most.label}"
     known = [row for row in rows if not math.isnan(row.safety_factor)]
     if known:
         least = min(known, key=lambda row: row.safety_factor)
-        told += f"; least safety factor {least.safety_factor:.1f} in {least.label}"
-    return told
+        text += f"; least safety factor {least.safety_factor:.1f} in {least.label}"
+    return text
 
 
 def _anchor_text(result: LegResult) -> str:
@@ -192,8 +192,8 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
         "Tow point",
         f"load {at_ship} ({vertical}, {say('horizontal', point.horizontal)} astern)",
     )
-    told = f"{_level(result, body.depth)}, layback {say('layback', body.layback)}"
-    yield "Body", "\n".join((f"{told}; tension {at_body}", *_strumming(result)))
+    text = f"{_level(result, body.depth)}, layback {say('layback', body.layback)}"
+    yield "Body", "\n".join((f"{text}; tension {at_body}", *_strumming(result)))
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
@@ -241,11 +241,11 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     Each leg of a net has a heading. With `places`, a clamp shows its position on its piece instead
     of a length.
     """
-    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height, offset", {}
+    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
     if result.towed:
-        output, of_an_end = Output.TOW_TABLE, "Depth, layback"
+        output, of_an_end = Output.TOW_TABLE, "Depth and layback"
     elif result.several:
-        output, of_an_end = Output.NET_TABLE, "Depth, east, north"
+        output, of_an_end = Output.NET_TABLE, "Depth, east and north"
         heads = {leg.leg.keys.first: leg_title(leg) for leg in result.legs}
     plans = (*result.components.planned_depth, *result.clamps.planned_depth)
     planned = not all(map(math.isnan, plans))
@@ -347,10 +347,8 @@ def leg_titles(result: Result) -> dict[str, str]:
     return {leg.name: f"leg {leg_title(leg)}" for leg in result.legs if result.several}
 
 
-def ends_told(line: LegResult) -> tuple[str | None, str | None]:
-    """Describe the upper and the lower connection of a leg; None for a free top and for an
-    anchor.
-    """
+def end_descriptions(line: LegResult) -> tuple[str | None, str | None]:
+    """Describe the end connections of a leg; None for a free top, and for an anchor."""
     top, bottom = line.leg.top, line.leg.bottom
     return (
         None if top.free else f"from {end_text(top)}",

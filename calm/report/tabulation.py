@@ -29,7 +29,9 @@ FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """Values in a row: depth and layback of the body, tension and angle at the ship."""
 
 _HEADINGS = {"body_tension": "tension\nat body"}
-_NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
+_NOTE = (
+    "Depth and layback refer to the body, tension and angle from the horizontal to the tow point."
+)
 _DIGITS = 4
 _WARNED = "! marks warnings, which --json reports."
 _KNOTS = replace(QUANTITIES["speed"], display="knot")

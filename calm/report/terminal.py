@@ -114,10 +114,10 @@ class _Printer:
         if cell.bar is not None:
             text = bar_text(cell.bar, cell.state)
         style = _STYLES[cell.state] if cell.state else "bold" if cell.strong else ""
-        said = self._text(f"  {text}" if cell.indented else text, style)
+        shown_text = self._text(f"  {text}" if cell.indented else text, style)
         if cell.detail:
-            said.append_text(self._text(f"\n{cell.detail}", _QUIET))
-        return said
+            shown_text.append_text(self._text(f"\n{cell.detail}", _QUIET))
+        return shown_text
 
     def _pairs(self, block: Pairs) -> RenderableType:
         rows = table.Table.grid(padding=(0, 2, 0, 0))
@@ -133,8 +133,8 @@ class _Printer:
         rows.add_column(overflow="fold")
         for item in block.items:
             style = _STYLES[item.state]
-            said = self._text(item.head, style).append_text(self._text(f" {item.text}"))
-            rows.add_row(self._text(item.state.sign, style), said)
+            shown_text = self._text(item.head, style).append_text(self._text(f" {item.text}"))
+            rows.add_row(self._text(item.state.sign, style), shown_text)
         yield rows
         if block.note:
             yield self._text(block.note, _QUIET)
@@ -144,11 +144,11 @@ class _Printer:
             if state is None:
                 return self._text(line)
             return self._text(f"! {line}" if state is State.WARN else line, _WARNED)
-        said = Text()
+        shown_text = Text()
         for span in line:
             style = _STYLES[span.state] if span.state else _QUIET if span.quiet else ""
-            said.append_text(self._text(span.text, style))
-        return said
+            shown_text.append_text(self._text(span.text, style))
+        return shown_text
 
     def _text(self, text: str, style: str = "") -> Text:
         """Create a text without markup or terminal control sequences."""
@@ -243,9 +243,9 @@ class LongTable:
         for number, width in enumerate(widths):
             cell = cells[number] if number < len(cells) else Text()
             right = self._table.columns[number].justify == "right"
-            said = cell.plain.rstrip() if right else cell.plain
-            room = " " * (width - cell_len(said))
-            text = room + said if right else said + room
+            shown_text = cell.plain.rstrip() if right else cell.plain
+            room = " " * (width - cell_len(shown_text))
+            text = room + shown_text if right else shown_text + room
             own = console.get_style(cell.style) if cell.style else None
             yield Segment(text, base + own if own else base)
             if number < last:

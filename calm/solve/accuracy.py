@@ -70,8 +70,8 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
     ----------
     before, coarse : record of the shape on coarse segments, and its extent
     after, fine : record of the shape on halved segments, and its extent
-    near : see `calm.physics.passing.How`. For a profile of a batch, only the ends of pieces and the
-        clamps are extrapolated
+    near : see `calm.physics.passing.MarchSettings`. For a profile of a batch, only the ends of
+        pieces and the clamps are extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0
@@ -164,12 +164,12 @@ def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int
 
 def fill_between(record: Record, first: int, last: int) -> None:
     """Correct the nodes between two extrapolated nodes by interpolation over the length of line."""
-    length = way = 0.0
+    length = distance = 0.0
     for m in range(first + 1, last + 1):
         length += record[8][m]
     for m in range(first + 1, last):
-        way += record[8][m]
-        share = way / length if length > 0.0 else 0.0
+        distance += record[8][m]
+        share = distance / length if length > 0.0 else 0.0
         for column in range(6):
             above = record[BETTER + column][first] - record[column][first]
             below = record[BETTER + column][last] - record[column][last]

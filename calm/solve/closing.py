@@ -11,7 +11,16 @@ from typing import NamedTuple
 from calm.physics.compiled import set_row
 from calm.physics.hull import Riding, riding_of
 from calm.physics.line import GOES_ON
-from calm.physics.passing import FAILURE, GROUNDED, HANGING, LANDED, NODES, How, Z, pass_line
+from calm.physics.passing import (
+    FAILURE,
+    GROUNDED,
+    HANGING,
+    LANDED,
+    NODES,
+    MarchSettings,
+    Z,
+    pass_line,
+)
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import Load
 from calm.solve.least_change import bracketed_root, root_near
@@ -122,7 +131,7 @@ def miss_at(about: About, x: float) -> float:
     """
     problem, unknown, work = about.problem, about.unknown, about.problem.work
     depth, out = place(problem, unknown, x)
-    how = How(
+    how = MarchSettings(
         about.step,
         reach_of(problem.limits, about.step),
         problem.limits.near,
@@ -145,7 +154,7 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces at the surface that belong to a value of the unknown.
+    """Set the loads of the pieces at the surface for a value of the unknown.
 
     Returns
     -------

@@ -244,8 +244,8 @@ def _longer_than_deep(line: Line, water: Water) -> str:
     depth, length = water.depth, float(line.length.sum())
     if length <= depth:
         return ""
-    said = f" The line is {length:.1f} m long: its float would reach the surface."
-    return said + (doubted_depth(depth) if length > 2.0 * depth else "")
+    message = f" The line is {length:.1f} m long: its float would reach the surface."
+    return message + (doubted_depth(depth) if length > 2.0 * depth else "")
 
 
 def watch_circle_radius(length: float, height: float) -> float:

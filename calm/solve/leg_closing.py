@@ -20,14 +20,14 @@ from calm.solve.leg_numbers import (
     ANCHORED,
     COARSE_COUNT,
     COARSE_GROUNDED,
-    COARSE_HUNG,
     COARSE_STAGE,
+    COARSE_SUSPENDED,
     COUNT,
     GROUNDED,
     HANGING_DOWN,
-    HUNG,
     STAGE,
     STANDING,
+    SUSPENDED,
     Marching,
     NetProblem,
 )
@@ -231,7 +231,7 @@ def drifts(net: NetProblem) -> bool:
             return False
         if leg.seabed == -inf:
             continue
-        record, foot = net.lines.work.records[i][FINE], int(state[HUNG]) - 1
+        record, foot = net.lines.work.records[i][FINE], int(state[SUSPENDED]) - 1
         east, north, least = record[3][foot], record[4][foot], NEGLIGIBLE_PULL * leg.weight
         if state[STAGE] < 0.0 or east * east + north * north > least * least:
             return False
@@ -292,7 +292,7 @@ def close_both(
     copy_values(x, net.coarse)
     for i in range(len(net.legs)):
         state = net.state[i]
-        state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
+        state[COARSE_COUNT], state[COARSE_SUSPENDED] = state[COUNT], state[SUSPENDED]
         state[COARSE_STAGE], state[COARSE_GROUNDED] = state[STAGE], state[GROUNDED]
     fine = Marching(sea, step, HALVED, True, True, FINE, 0.0)
     ending = close_net(net, x, fine, enough, True)
@@ -323,8 +323,8 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
         moved = max(moved, sqrt(east * east + north * north), abs(net.better[k + 2] - x[k + 2]))
     for i in range(len(net.legs)):
         state, record = net.state[i], records[i][FINE]
-        nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
-        coarse_hanging = int(state[COARSE_HUNG]) - 1
+        nodes, hanging = int(state[COUNT]), int(state[SUSPENDED]) - 1
+        coarse_hanging = int(state[COARSE_SUSPENDED]) - 1
         coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
         fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
         errors = extrapolate(records[i][COARSE], coarse, record, fine, near)

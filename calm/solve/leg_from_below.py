@@ -25,7 +25,18 @@ from calm.physics.line import (
     off_bed,
     write_element,
 )
-from calm.physics.passing import FAILURE, FX, FY, FZ, NODES, USED, How, Z, cut_evenly, pass_line
+from calm.physics.passing import (
+    FAILURE,
+    FX,
+    FY,
+    FZ,
+    NODES,
+    USED,
+    MarchSettings,
+    Z,
+    cut_evenly,
+    pass_line,
+)
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod_axis import rod_axis
 from calm.physics.seabed import lay_line
@@ -35,12 +46,12 @@ from calm.solve.leg_numbers import (
     EAST,
     GROUNDED,
     HANGS,
-    HUNG,
     LIES,
     MARCHES,
     NORTH,
     SLACK,
     STAGE,
+    SUSPENDED,
     TO_EAST,
     TO_NORTH,
     TO_UP,
@@ -152,7 +163,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     kept = Stage(replaced.kind, replaced.first, replaced.size, replaced.length)
     set_row(stages, first - 1, Stage(ROD, 0, 1, 0.0))
     course = Course(stages[first - 1 : leg.stages], loads, cables, knots, vibration, 0)
-    failure = pass_hung(net, i, course, how, work, -height)
+    failure = march_suspended(net, i, course, how, work, -height)
     set_row(stages, first - 1, kept)
     if whole >= 0.0:
         set_row(cables, stages[stage].first, of_length(cables[stages[stage].first], whole))
@@ -161,7 +172,13 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     record, left_by, passed = work.records[how.record], work.left, net.passed[i]
     nodes = int(left_by[NODES])
     state[EAST], state[NORTH] = record[0][nodes - 1], record[1][nodes - 1]
-    state[STAGE], state[HUNG], state[COUNT], state[GROUNDED], state[LIES] = -1, nodes, nodes, 0, 0
+    state[STAGE], state[SUSPENDED], state[COUNT], state[GROUNDED], state[LIES] = (
+        -1,
+        nodes,
+        nodes,
+        0,
+        0,
+    )
     passed[2] = left_by[Z]
     passed[3], passed[4], passed[5] = left_by[FX], left_by[FY], left_by[FZ]
     if lies:
@@ -186,7 +203,7 @@ def lay(
     foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
     return lay_line(
         course, bed_of(net, i), foot, int(state[STAGE]), state[HANGS],
-        net.lines.work.records[i][record], recording, int(state[HUNG]),
+        net.lines.work.records[i][record], recording, int(state[SUSPENDED]),
     )  # fmt: skip
 
 
@@ -195,7 +212,7 @@ def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> N
     the suspended part, the part on the seabed.
     """
     state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
-    nodes, height = int(state[HUNG]), net.lines.work.records[i][how.record][2][0]
+    nodes, height = int(state[SUSPENDED]), net.lines.work.records[i][how.record][2][0]
     set_row(net.lines.course.loads[i], 0, pull_of(-out[5], -out[3], -out[4]))
     turn_round(record, nodes)
     if state[STAGE] < 0.0:
@@ -209,7 +226,7 @@ def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> N
 
 
 @within
-def pass_hung(
+def march_suspended(
     net: NetProblem, i: int, course: Course, how: Marching, work: SearchArrays, depth: float
 ) -> int:
     """March the suspended part of an anchored leg, and return the outcome.
@@ -244,7 +261,7 @@ def pass_hung(
                 cuts[fill] = longer * of_step[m] + each
                 fill += 1
             read += counts[k]
-    asked = How(
+    settings = MarchSettings(
         how.step,
         reach,
         near,
@@ -257,7 +274,7 @@ def pass_hung(
         True,
     )
     record, left = work.records[how.record], work.left
-    pass_line(course, how.sea, asked, depth, 0.0, cuts, counts, record, left)
+    pass_line(course, how.sea, settings, depth, 0.0, cuts, counts, record, left)
     net.state[i][MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
         return int(left[FAILURE])
@@ -319,9 +336,9 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
     north = to_north - from_north + state[NORTH]
     share, e, n = 0.0, east, north
     if reach > 0.0:
-        way, rise = sqrt(east * east + north * north), bed.east * east + bed.north * north
-        if way > 0.0:
-            reach *= way / sqrt(way * way + rise * rise)
+        distance, rise = sqrt(east * east + north * north), bed.east * east + bed.north * north
+        if distance > 0.0:
+            reach *= distance / sqrt(distance * distance + rise * rise)
         per_force = net.length / net.scale[at]
         trace = loose * net.scale[at] / reach
         e += per_force * (state[TO_EAST] - trace * east)
@@ -341,13 +358,13 @@ def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> 
     """Draw the part of a slack leg on the seabed as a straight line to its anchor, shortened to
     this distance.
     """
-    state, hung, count = net.state[i], int(net.state[i][HUNG]), int(net.state[i][COUNT])
-    foot, reach = hung - 1, max(net.state[i][LIES], 1e-300)
+    state, suspended, count = net.state[i], int(net.state[i][SUSPENDED]), int(net.state[i][COUNT])
+    foot, reach = suspended - 1, max(net.state[i][LIES], 1e-300)
     to_east, to_north, _ = place_of(net, i, x, 1)
     from_east, from_north, _ = place_of(net, i, x, 0)
     east, north = to_east - from_east + state[EAST], to_north - from_north + state[NORTH]
     down = net.legs[i].seabed - record[2][foot]
-    for n in range(hung, count):
+    for n in range(suspended, count):
         dx, dy = record[0][n] - record[0][foot], record[1][n] - record[1][foot]
         dz = record[2][n] - record[2][foot]
         share = sqrt(dx * dx + dy * dy + dz * dz) / reach

@@ -147,13 +147,13 @@ class LaidLeg:
             self.kind, first, self.unknowns, start.node, end.node, lower.seabed, rise,
             rise * weight / lying if lying > 0.0 else 0.0, *self.bed[:2],
             max(float(length.sum()) * 0.01, min(0.01 * span, 50.0) * 0.1, rough),
-            self.stands, self.highest, int(limits.rides), *self.shedding, self.weight,
+            self.surface_range, self.highest, int(limits.rides), *self.shedding, self.weight,
             *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
 
     @property
-    def stands(self) -> float:
+    def surface_range(self) -> float:
         """Range of the leg's unknown for a float at the surface, from immersed to out of the water
         [m]. The range equals the leg's length, so that a Newton step does not skip it.
         """
@@ -184,13 +184,15 @@ class LaidLeg:
         """Return the largest weight of line on the seabed [N] for a given height of the upper end
         above the seabed [m]; inf if no part of the leg may touch the seabed.
         """
-        course, hung, weight = self.problem.course, max(height, 0.0), 0.0
+        course, suspended, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
             return inf
         for number, stage in enumerate(course.stages):
             own = weight_of(course, stage, self.bed.excess) if number >= course.landing else 0.0
-            share = min(hung / stage.length, 1.0) if stage.length > 0.0 else float(hung > 0.0)
-            weight, hung = weight + (1.0 - share) * own, max(hung - stage.length, 0.0)
+            share = (
+                min(suspended / stage.length, 1.0) if stage.length > 0.0 else float(suspended > 0.0)
+            )
+            weight, suspended = weight + (1.0 - share) * own, max(suspended - stage.length, 0.0)
         return weight
 
     @property
@@ -208,8 +210,8 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     courses = [each.course for each in problems]
     length = max(float(each.leg.line.length.sum()) for each in laid)
     force = max(1.0, *(each.weight for each in laid))
-    stands = any(isfinite(each.leg.lower.seabed) for each in laid)
-    span = problems[0].limits.depth if stands else length
+    anchored = any(isfinite(each.leg.lower.seabed) for each in laid)
+    span = problems[0].limits.depth if anchored else length
     scale, rows = np.full(size, length), np.full(size, length)
     rows[firsts[-1] :] = force
     for first, each in zip(firsts, laid, strict=False):
@@ -303,24 +305,24 @@ def leg_found(
     sought = 0 if share < 1.0 and problem.surfacing else BELOW
     root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
     closed = Closed(
-        FOUND, 0.0, -1, root, int(state[leg_numbers.COUNT]), int(state[leg_numbers.HUNG]) - 1,
+        FOUND, 0.0, -1, root, int(state[leg_numbers.COUNT]), int(state[leg_numbers.SUSPENDED]) - 1,
         landed, float(state[leg_numbers.GROUNDED]), 2 * int(sum(work.counts)),
     )  # fmt: skip
-    told = Errors(deep, taut, 0.0, taut, taut)
+    errors_found = Errors(deep, taut, 0.0, taut, taut)
     grounded = closed.grounded
     if landed and state[leg_numbers.COARSE_STAGE] >= 0.0:
         grounded += (grounded - float(state[leg_numbers.COARSE_GROUNDED])) / 3.0
-    before = not_audited(closed, told, share, grounded)
+    before = not_audited(closed, errors_found, share, grounded)
     found = solution_of(problem, laid.line, water, settings, before, frequency)
     referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)
     shape = RefereeShape(
         work.records[FINE], closed.nodes, closed.hanging, referee.first, referee.last
     )
     loads: Any = np.zeros((3, closed.nodes))
-    asked = (
+    arguments = (
         referee.moored, shape, loads if compiled else loads.tolist(), landed, problem.limits
     )  # fmt: skip
-    closure, moment = outcome(residuals, compiled, *asked)
+    closure, moment = outcome(residuals, compiled, *arguments)
     line, marched = laid.leg.line if first else found.line, found.marched
     assert marched is not None
     place, better = (np.array([*each[:2], 0.0]) for each in ends)
@@ -354,8 +356,8 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
     near += 1e-6 * depth
     height, lower = leg.position[:, 2], laid.leg.lower
     foot = (*lower.place[:2], lower.seabed) if lower.place and isfinite(lower.seabed) else None
-    hung = leg.position[: leg.hanging + 1] - np.array(foot or (0.0, 0.0, -depth))
-    above: Any = off_bed(laid.bed, *hung.T)
+    suspended = leg.position[: leg.hanging + 1] - np.array(foot or (0.0, 0.0, -depth))
+    above: Any = off_bed(laid.bed, *suspended.T)
     worst, pieces = int(np.argmin(above)), len(leg.line.length)
 
     def piece(node: int) -> int:
@@ -368,7 +370,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
         height = np.where(np.arange(len(height)) > leg.piece_nodes[leg.afloat[0], 1], height, 0.0)
         if leg.buoyancy_used < 0.0:
             raise Status.ABOVE_SURFACE.because(
-                "More than the float at the upper end of {piece} would surface.",
+                f"Other parts than the float at the upper end of {piece} would surface, too.",
                 piece(0),
             )
     highest = int(np.argmax(height))

@@ -10,7 +10,7 @@ from math import degrees, inf, sqrt
 
 from calm.physics.compiled import set_row
 from calm.physics.line import GOES_ON
-from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
+from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, MarchSettings, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
 from calm.solve.closing import place
 from calm.solve.leg_from_below import march_up, pull_of, write_anchor_miss
@@ -19,7 +19,6 @@ from calm.solve.leg_numbers import (
     COUNT,
     FREQUENCY,
     GROUNDED,
-    HUNG,
     LACKING,
     MARCHES,
     OUT,
@@ -27,6 +26,7 @@ from calm.solve.leg_numbers import (
     SHARE,
     STAGE,
     STANDING,
+    SUSPENDED,
     YIELD,
     LegRow,
     Marching,
@@ -67,7 +67,7 @@ def load_leg(
         return -z, 0.0
     sought, value = BELOW, x[leg.first]
     if leg.kind == STANDING and value < 0.0 and leg.surfacing > 0:
-        sought, value = 0, 1.0 + value / leg.stands
+        sought, value = 0, 1.0 + value / leg.surface_range
         state[SHARE] = value
     return place(problem, Unknown(0.0, sought, leg.rides > 0, False, 0), value)
 
@@ -122,12 +122,14 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     lands = leg.kind == STANDING and leg.seabed > -inf
     near, bed = problem.limits.near, bed_of(net, i)
     halves = how.cuts == HALVED
-    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, how.exact, halves, True)
-    pass_line(course, how.sea, asked, depth, out, cuts, counts, record, left)
+    settings = MarchSettings(
+        how.step, reach, near, leg.stages, lands, bed, how.given, how.exact, halves, True
+    )
+    pass_line(course, how.sea, settings, depth, out, cuts, counts, record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
         return int(left[FAILURE])
-    state[STAGE], state[HUNG] = left[LANDED], left[HANGING]
+    state[STAGE], state[SUSPENDED] = left[LANDED], left[HANGING]
     state[COUNT], state[GROUNDED] = left[NODES], left[LIES]
     passed, n = net.passed[i], int(left[NODES]) - 1
     passed[0], passed[1] = record[0][n] - record[0][0], record[1][n] - record[1][0]

@@ -16,7 +16,7 @@ STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Kinds of march of a leg: from a free upper end, from a free lower end, from an upper end that is
 held or at a node, and from the seabed up to such an end.
 """
-STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
+STAGE, GROUNDED, SHARE, MARCHES, COUNT, SUSPENDED = range(6)
 """Indices into the state of a leg after its last march: stage of its touchdown, or -1; length on
 the seabed [m]; used fraction of a float's buoyancy; numbers of marches, of nodes, and of nodes off
 the seabed.
@@ -31,9 +31,9 @@ FREQUENCY, LACKING, YIELD = range(14, 17)
 """Indices into the state of a strumming leg: frequency of its cables [Hz]; shedding frequency minus
 cable frequency [Hz]; slope of this difference [-].
 """
-COARSE_COUNT, COARSE_HUNG, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
-"""Indices of the same four state values (`COUNT`, `HUNG`, `STAGE`, `GROUNDED`) for the shape on
-coarse segments.
+COARSE_COUNT, COARSE_SUSPENDED, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
+"""Indices of the state values `COUNT`, `SUSPENDED`, `STAGE` and `GROUNDED` for the shape on coarse
+segments.
 """
 OF_LEG = 21
 OUT = 7
@@ -56,7 +56,7 @@ class LegRow(NamedTuple):
     lifts : vertical pull above which its end is at the top of the anchor [N], see `end_height`
     deeper_east, deeper_north : as in `Water`, below the leg
     longest : longest segment at an angle step of 1° [m]
-    stands : range of its unknown that stands for a float at the surface [m], see `LaidLeg`
+    surface_range : range of its unknown for a float at the surface [m], see `LaidLeg`
     highest : largest allowed height [m]
     rides : as in `Limits`
     sheds : Strouhal number over diameter at its end [1/m], if vortices set the strumming frequency
@@ -77,7 +77,7 @@ class LegRow(NamedTuple):
     deeper_east: float
     deeper_north: float
     longest: float
-    stands: float
+    surface_range: float
     highest: float
     rides: int
     sheds: float

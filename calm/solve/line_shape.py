@@ -216,10 +216,10 @@ def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float)
         split = n > 0 and coarse[SEGMENT][n] == ENDS
         same += (2 if split else 1) if n > 0 else 0
         for column in range(6):
-            way = coarse[column][n] - before[column][n]
-            before[column][n] = way
-            coarse[column][n] += closing * way
-            fine[column][same] += halved * way
+            change = coarse[column][n] - before[column][n]
+            before[column][n] = change
+            coarse[column][n] += closing * change
+            fine[column][same] += halved * change
             if split:
-                fine[column][same - 1] += 0.5 * halved * (way + before[column][n - 1])
+                fine[column][same - 1] += 0.5 * halved * (change + before[column][n - 1])
     return same + 1

@@ -88,7 +88,7 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the water by water of equal depth and density, with another current."""
+        """Replace the current; the new water has equal depth and density."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
@@ -109,7 +109,7 @@ class NetSearch:
             # the share of buoyancy in use follows from the pull
             elif x[first] < 0.0 and not down and each.problem.surfacing:
                 share = pull[2] / each.problem.surfacing[0].surface_lift
-                x[first] = min(max(share, 0.01), 1.0) * each.stands - each.stands
+                x[first] = min(max(share, 0.01), 1.0) * each.surface_range - each.surface_range
             first += each.unknowns
         return x
 
@@ -309,19 +309,19 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
     x = None if near is None else net.closed(near.unknowns, step, leg_closing.NEAR, loose)
     if x is not None:
         return x
-    still, way, stride = water.still(), 0.0, 1.0
+    still, fraction, stride = water.still(), 0.0, 1.0
     net.put_in(still)
     x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, leg_closing.NEAR, loose)
     why = "its legs do not meet even in still water"
-    while x is not None and way < 1.0 and stride >= 0.01:
-        following = min(way + stride, 1.0)
+    while x is not None and fraction < 1.0 and stride >= 0.01:
+        following = min(fraction + stride, 1.0)
         moving = replace(water, u=following * water.u, v=following * water.v, w=following * water.w)
         net.put_in(moving if following < 1.0 else water)
         closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
-        x, way = (x, way) if closer is None else (closer, following)
-        why = f"above {way:.0%} of the current its legs do not meet"
-    if x is None or way < 1.0:
+        x, fraction = (x, fraction) if closer is None else (closer, following)
+        why = f"its legs do not meet above {fraction:.0%} of the current"
+    if x is None or fraction < 1.0:
         net.put_in(water)
         x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)
     if x is None:

@@ -72,13 +72,16 @@ class _Lumps:
                 drag.append(0.0)
                 insensitive.append(0.0)
                 bed.append(leg.lower.seabed)
-            for at, net, normal, any_way in _points(leg.line, water):
-                way = np.clip(at / whole, 0.0, 1.0) * count
-                near = min(int(way), count - 1)
-                for lump, share in ((row[near], 1.0 - way + near), (row[near + 1], way - near)):
+            for at, net, normal, any_direction in _points(leg.line, water):
+                position = np.clip(at / whole, 0.0, 1.0) * count
+                near = min(int(position), count - 1)
+                for lump, share in (
+                    (row[near], 1.0 - position + near),
+                    (row[near + 1], position - near),
+                ):
                     lift[lump] += share * net
                     drag[lump] += share * normal
-                    insensitive[lump] += share * any_way
+                    insensitive[lump] += share * any_direction
             springs += list(pairwise(row))
             lengths += [whole / count] * count
             self.rows.append(row)
@@ -157,10 +160,10 @@ class _Lumps:
     def pulls(self) -> Floats:
         """Return (m, 3) force of every spring on its first lump [N]."""
         a, b = self.springs.T
-        way = self.place[b] - self.place[a]
-        size = np.maximum(np.linalg.norm(way, axis=1), 1e-12)
+        vector = self.place[b] - self.place[a]
+        size = np.maximum(np.linalg.norm(vector, axis=1), 1e-12)
         tension = self.stiffness * np.maximum(size - self.lengths, 0.0)
-        pull: Floats = (tension / size)[:, None] * way
+        pull: Floats = (tension / size)[:, None] * vector
         return pull
 
     def _flow(self) -> Floats:
@@ -168,15 +171,15 @@ class _Lumps:
         current = self.water.current_at(-self.place[:, 2])
         axis = np.zeros_like(self.place)
         a, b = self.springs.T
-        way = self.place[b] - self.place[a]
-        np.add.at(axis, a, way)
-        np.add.at(axis, b, way)
+        vector = self.place[b] - self.place[a]
+        np.add.at(axis, a, vector)
+        np.add.at(axis, b, vector)
         axis /= np.maximum(np.linalg.norm(axis, axis=1), 1e-12)[:, None]
         across = current - (current * axis).sum(axis=1)[:, None] * axis
         speed, normal = (np.linalg.norm(each, axis=1) for each in (current, across))
         drag: Floats = (self.drag * normal)[:, None] * across
-        any_way: Floats = (self.insensitive * speed)[:, None] * current
-        return drag + any_way
+        any_direction: Floats = (self.insensitive * speed)[:, None] * current
+        return drag + any_direction
 
 
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:

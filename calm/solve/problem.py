@@ -46,7 +46,7 @@ ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
 """Tolerances in a batch: allowed miss, as a fraction of the water depth; used fraction of buoyancy;
 distance of a load from its water sample, as a fraction of the water depth.
 
-In the order allowed miss, buoyancy share, distance.
+
 """
 
 FOUND_SIZE = 32
@@ -101,7 +101,7 @@ class Limits(NamedTuple):
     allowed : the largest miss of a solution [m]
     share_allowed : tolerance of the share of a float's buoyancy in use [-]
     bed : the seabed
-    near : as in `How`; if not 0, the line is solved in a batch, without an audit
+    near : as in `MarchSettings`; if not 0, the line is solved in a batch, without an audit
     length, standing : length of the line, unstretched, and upright in still water [m]
     lift : net buoyancy of the whole line [N]
     rides : whether the draft of the first float can be computed

@@ -142,7 +142,7 @@ def is_slack(found: FoundShape) -> bool:
     return found.closed.ending == SLACK_AT_REST or found.closed.ending == SLACK_ON_DIGITS
 
 
-def beside(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
+def with_other(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
     """Attach another equilibrium to a shape."""
     return FoundShape(
         found.closed, found.errors, found.share, found.grounded, found.closure, found.moment, other
@@ -184,7 +184,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     if problem.limits.near > 0.0:  # in a batch, only its share is reported, found roughly
         afloat = located.other.unknown.sought != BELOW
         share = OtherEquilibrium(0.0, 0.0, located.other.x, nan, nan)
-        return beside(found, share) if afloat else found
+        return with_other(found, share) if afloat else found
     keep(problem, OTHER, FINE, found)
     second = shape_near(search, referee, located.other, lands)
     other = other_of(problem, second) if second.closed.ending == FOUND else NO_OTHER
@@ -196,7 +196,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         other.depth - first.depth <= apart
         and abs(other.used_buoyancy - first.used_buoyancy) < LEAST_SHARE_DIFFERENCE
     )
-    return found if second.closed.ending != FOUND or same else beside(found, other)
+    return found if second.closed.ending != FOUND or same else with_other(found, other)
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
@@ -247,12 +247,12 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
         barely = closed.grounded <= SHORT_LANDED_LENGTH * limits.anchor_height
         higher = lying.depth - hanging.errors.depth - landed.errors.depth
         if barely or clear_of_it.depth < higher:
-            return beside(hanging, lying)
+            return with_other(hanging, lying)
     keep(problem, FINE, KEPT, landed)
     load_again(problem, landed)
     if hanging.closed.ending != FOUND:
         return landed
-    return beside(landed, clear_of_it)
+    return with_other(landed, clear_of_it)
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:

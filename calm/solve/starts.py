@@ -39,16 +39,16 @@ def fill_starts(search: Search) -> int:
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts
-    for way in range(2):
-        lands = way == 1
+    for kind in range(2):
+        lands = kind == 1
         unknown = whole_line(problem, lands)
         upright = max(-limits.standing - unknown.goal, 0.0)
         for k in range(STARTS):
             speed = FASTEST * max(k, 1e-3) / (STARTS - 1)
             evenly = Search(search.miss, in_even_current(problem, speed, 0.0, 0.0))
             fall = coarse_miss(evenly, unknown, upright)
-            starts[3 * way + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
-            starts[3 * way][k] = starts[3 * way + 1][k] = nan
+            starts[3 * kind + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
+            starts[3 * kind][k] = starts[3 * kind + 1][k] = nan
             starts[LEAN_ROW][k] = lean_of(
                 problem.course, evenly.problem.sea, upright, limits.depth, upright > 0.0
             )
@@ -59,8 +59,8 @@ def fill_starts(search: Search) -> int:
             if located.ending != FOUND or root.unknown.sought > 0:
                 continue
             found += 1
-            starts[3 * way][k] = root.x if root.unknown.sought == BELOW else root.x - 1.0
-            starts[3 * way + 1][k] = root.slope
+            starts[3 * kind][k] = root.x if root.unknown.sought == BELOW else root.x - 1.0
+            starts[3 * kind + 1][k] = root.slope
     return found
 
 
@@ -114,9 +114,9 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
     if not fell > 0.0:
         return root.x > 0.0
     for k in range(LOOKED_AT):
-        way = fell * k / LOOKED_AT
-        falls = expected(problem, row, upright, upright + way)[0] - upright
-        if not falls * fell > (way + SURE * (fell - way)) * there:
+        drop = fell * k / LOOKED_AT
+        falls = expected(problem, row, upright, upright + drop)[0] - upright
+        if not falls * fell > (drop + SURE * (fell - drop)) * there:
             return False
     return there > 0.0
 

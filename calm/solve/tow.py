@@ -333,8 +333,8 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
         if lacking:
             why = "in neither state does its frequency match the vortex shedding at the ship"
         return Status.NO_EQUILIBRIUM.because(
-            f"The line closes neither with {what} in water nor with {what} in air: {why}. It "
-            "would be half out of the water, which CALM does not solve.",
+            f"No equilibrium has {what} fully in water or fully in air: {why}. It would be partly "
+            "out of the water, a state that CALM does not solve.",
             int(shape.piece[body]),
             RIDE_CLEAR,
         )

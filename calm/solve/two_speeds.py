@@ -25,7 +25,7 @@ LOAD_FROM = 60
 COMPILE_FROM = 1200
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
 UNANNOUNCED = 250
-"""Number of lines solved in excess of those announced, above which many more are expected."""
+"""Number of unannounced lines above which many more are expected."""
 TYPICAL_PARTS = 8
 """Number of pieces and clamps of an ordinary line. Computing time is in proportion to this number.
 """
@@ -49,7 +49,7 @@ class _Pace:
 
     def __init__(self, solver: CompiledPart) -> None:
         self.solver = solver
-        self.announced = self.solved = self.work = self.asked_at = 0.0
+        self.announced = self.solved = self.work = self.checked_at = 0.0
         self.compiled = False
         self.child: Popen[bytes] | None = None
 
@@ -61,8 +61,8 @@ class _Pace:
             self.compiled = self.child.poll() == 0
             return
         work = max(self.announced, self.work)
-        if work >= max(LOAD_FROM, 2.0 * self.asked_at):
-            self.asked_at = work
+        if work >= max(LOAD_FROM, 2.0 * self.checked_at):
+            self.checked_at = work
             self.compiled = is_cached(self.solver.value)
         if self.compiled or parent_process() is not None:
             return

@@ -4,14 +4,13 @@ import os
 import time
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, ClassVar
 
-from rich.console import RenderableType
 from textual import events, work
-from textual._compositor import CompositorUpdate
 from textual.app import App, SystemCommand
 from textual.command import CommandPalette
+from textual.driver import Driver
 from textual.filter import LineFilter, NoColor
 from textual.message_pump import MessagePump
 from textual.screen import Screen
@@ -21,14 +20,13 @@ from textual.widgets import OptionList
 from calm.errors import CalmError
 from calm.files import Catalogue, editing
 from calm.tui import builder, dialogs, key_table, palette, saving, workspace
-from calm.tui.painted import Pace, Painted
+from calm.tui.painted import Output
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 
 _AUTOSAVE_DELAY = 0.3  # seconds
 _DISK_INTERVAL = 2.0  # seconds between two checks of the file
-_MAX_HOLD = 3.0  # seconds that a frame waits for an unresponsive terminal
 _MAX_WAITS = 50  # a widget that keeps sending itself messages is not waited for
 _COLOURLESS = NoColor()
 
@@ -83,11 +81,9 @@ class BuildApp(App[int]):
         self.saving = saving.Saving(self, self.workspace, self.show_replaced_draft, self.leave)
         self.builder = builder.BuilderScreen(self.workspace)
         self.not_kept = ""
-        self._painted, self._pace = Painted(), Pace()
         self._offered = kept
         self._is_catalogue_read = False
         self._autosaving: Timer | None = None
-        self._late: Timer | None = None
         self._is_left = False
         self._lost: str | None = None
         self._waiting: deque[events.Event] = deque()
@@ -188,30 +184,26 @@ class BuildApp(App[int]):
         own = legible(theme.dark, "ansi" in theme.name)
         return [*super().get_line_filters(), own]
 
-    def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
-        """Send the changed cells, once the terminal has displayed the previous frame."""
-        if not isinstance(renderable, CompositorUpdate):
-            super()._display(screen, renderable)
-        elif self._pace.holds(time.monotonic()):
-            if self._late is None:
-                self._late = self.set_timer(_MAX_HOLD, self.on_cursor_position)
-        else:
-            super()._display(screen, self._painted.update(renderable))
-            driver = self._driver
-            if driver is not None and self._running and not (self.is_headless or self.is_web):
-                driver.write(self._pace.question(time.monotonic()))
+    def get_driver_class(self) -> type[Driver]:
+        """Return the driver of this terminal, which sends only changed cells."""
+        return self.output.driver_class(super().get_driver_class())
+
+    @cached_property
+    def output(self) -> Output:
+        """What the driver writes to the terminal."""
+        return Output()
 
     def on_cursor_position(self) -> None:
-        """Send the next changes, since the terminal has displayed the previous frame."""
-        if self._late is not None:
-            self._late.stop()
-            self._late = None
-        if self._pace.answered() and self.is_running:
-            self.screen.refresh()
+        """Send the next frame; a reported position means that the last frame is displayed."""
+        self.output.answered()
+
+    def on_resize(self) -> None:
+        """Send the whole screen, since the terminal may have moved its text."""
+        self.output.clear()
 
     def action_repaint(self) -> None:
         """Redraw the whole screen."""
-        self._painted.forget()
+        self.output.forget()
         self.screen.refresh()
 
     # the screens
@@ -288,7 +280,7 @@ class BuildApp(App[int]):
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
         if self._lost not in (None, before):
-            message = f"There is no environment {self._lost} now; the default environment is used"
+            message = f"Environment {self._lost} no longer exists; the default environment is used"
             self.tell(message)
 
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
@@ -371,7 +363,7 @@ class BuildApp(App[int]):
 
     def _exit_answered(self) -> None:
         """End after the terminal has answered, or the shell would read the answer as keys."""
-        if self._pace.is_out and self._ends_at > time.monotonic():
+        if self.output.is_out and self._ends_at > time.monotonic():
             self.set_timer(0.02, self._exit_answered)
         else:
             self.exit(0)

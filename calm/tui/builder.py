@@ -196,9 +196,8 @@ class BuilderScreen(ComparingScreen):
         values = session.components.get(id)
         if not isinstance(values, dict) or values.get("kind") not in KINDS:
             what = "is an assembly: change it in the text (t)" if id in session.components else (
-                "is not defined in this file: keys of the row in the text (t) apply "
-                "to this row only, "
-                "o defines a component in this file"
+                "is not defined in this file: edit the keys of this row in the text (t), or define "
+                "a component in this file (o)"
             )  # fmt: skip
             self.tell(f"{id} {what}")
             return

@@ -41,7 +41,7 @@ class EditableTable(Vertical):
 
     def tell_reading(self, reading: Reading) -> None:
         """Show how the text typed so far is interpreted."""
-        self.tell(reading.told(self.editor.value), wrong=not reading.is_good)
+        self.tell(reading.feedback(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
         """Move the cursor after a text was accepted; the text is None if the value is unchanged."""

@@ -43,7 +43,7 @@ class Reading:
             return f"{self.complaint}: {self.offer}?"
         return self.complaint
 
-    def told(self, typed: str) -> str:
+    def feedback(self, typed: str) -> str:
         """Text for the user: the error in an invalid text, or the meaning of a valid text if not
         obvious.
         """

@@ -167,7 +167,7 @@ class Field(Horizontal):
 
     def note(self, reading: Reading) -> str:
         """Return the error or completion of the typed text, else the description of the field."""
-        return reading.told(self.input.value) or self._note
+        return reading.feedback(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")

@@ -143,7 +143,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
-        view, findings=findings, tighter=tighter, rows=rows, cases=assessment.stands,
+        view, findings=findings, tighter=tighter, rows=rows, cases=assessment.in_environments,
         elsewhere=tuple(problems), complete=True,
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Records the displayed cells, so that only changed cells are sent to the terminal.
+"""Driver of the terminal that sends only changed cells, at the pace of the terminal.
 
 Textual sends a whole region again if one of its cells may have changed, and the whole screen after
 a change of size: 38 kB for a screen of 140 columns and 45 rows.
@@ -6,21 +6,38 @@ a change of size: 38 kB for a screen of 140 columns and 45 rows.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import asyncio
+import re
+import time
+from collections.abc import Callable, Iterator
 from functools import lru_cache
-from itertools import chain
+from threading import RLock
+from typing import ClassVar
 
 from rich.cells import cell_len
-from rich.color import ColorSystem
-from rich.console import Console
-from rich.segment import Segment
-from rich.style import Style
-from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
+from textual.driver import Driver
 
-Cell = tuple[str, Style | None]
-"""A character and its style; the second cell of a wide character is empty."""
+Cell = tuple[str, str]
+"""A character and its style, the codes of SGR (ECMA-48); the second cell of a wide character is
+empty.
+"""
 
-_UNKNOWN: Cell = ("\0", None)
+_TOKEN = re.compile(
+    r"\x1b\[(?P<row>\d+);(?P<column>\d+)H"
+    r"|\x1b\[(?P<style>[\d;]*)m"
+    r"|\x1b\[\?2026(?P<frame>[hl])"
+    r"|(?P<text>[^\x00-\x1f\x7f]+)"
+    r"|(?P<other>\x1b\[[\x20-\x3f]*[\x40-\x7e]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[^\[\]]|.)",
+    re.DOTALL,
+)
+"""Position, style, mark of a frame, text, and any other sequence or control character."""
+_INCOMPLETE = re.compile(r"\x1b(\[[\x20-\x3f]*|\][^\x07\x1b]*\x1b?)?$")
+"""Beginning of a sequence at the end of a text; on Windows, Textual writes 8192 characters a time.
+"""
+_NEW_SCREENS = re.compile(r"\x1b\[(\?1049[hl]|[23]J)")
+
+_UNKNOWN: Cell = ("\0", "")
+_BLANK: Cell = (" ", "")
 _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
 _PATIENCE = 3.0  # seconds after which an answer is given up
@@ -29,35 +46,86 @@ _GAP = 8
 
 
 class Painted:
-    """Cells that the terminal displays."""
+    """Cells that the terminal displays, and those that it shall display."""
 
     def __init__(self) -> None:
-        self._rows: list[list[Cell]] = []
+        self._shown: list[list[Cell]] = []
+        self._wanted: list[list[Cell]] = []
+        self._touched: set[int] = set()
+        self._at: tuple[int, int] | None = None
+        self._cursor: tuple[int, int] | None = None
+        self._style = self._rest = ""
+        self._marks_frames = False
+
+    def clear(self) -> None:
+        """Forget all cells."""
+        self._shown, self._wanted, self._at = [], [], None
+        self._touched.clear()
 
     def forget(self) -> None:
-        """Forget all cells after another program has written to the terminal."""
-        self._rows = []
+        """Forget the displayed cells after another program has written to the terminal."""
+        self._shown = [[_UNKNOWN] * len(row) for row in self._shown]
+        self._touched.update(range(len(self._wanted)))
 
-    def update(self, update: CompositorUpdate) -> CompositorUpdate:
-        """Wrap a compositor update so that only changed cells are written."""
-        return _Changes(self, update)
+    def take(self, text: str) -> str:
+        """Take over the cells of a text for the terminal; return what must be sent at once."""
+        text = self._rest + text
+        cut = _INCOMPLETE.search(text)
+        self._rest = text[cut.start() :] if cut else ""
+        at_once = []
+        for token in _TOKEN.finditer(text, 0, cut.start() if cut else len(text)):
+            kind = token.lastgroup
+            if kind == "column":
+                self._at = int(token["row"]) - 1, int(token["column"]) - 1
+            elif kind == "style":
+                self._take_style(token["style"])
+            elif kind == "text" and self._at is not None:
+                self._put(*self._at, token["text"])
+            elif kind == "frame":
+                self._marks_frames = True
+            elif token[0] == "\n":
+                self._at = None  # Textual moves the cursor next
+            else:
+                at_once.append(token[0])
+                if kind == "text" or _NEW_SCREENS.match(token[0]):
+                    self.clear()
+        return "".join(at_once)
 
-    def put(self, y: int, x: int, cells: list[Cell], pen: _Pen) -> str:
-        """Return the output that displays cells in row y from column x."""
-        self._rows += ([] for _ in range(y + 1 - len(self._rows)))
-        row = self._rows[y]
-        row += [_UNKNOWN] * (x + len(cells) - len(row))
-        sent = [
-            f"\x1b[{y + 1};{x + begin + 1}H{pen.written(cells[begin:end])}"
-            for begin, end in _changed(row[x : x + len(cells)], cells)
-        ]
+    def _take_style(self, codes: str) -> None:
+        if codes in ("", "0"):
+            self._style = ""
+        else:
+            self._style = f"{self._style};{codes}" if self._style else codes
+
+    def _put(self, y: int, x: int, text: str) -> None:
+        cells = _cells(text, self._style)
+        rows = self._wanted
+        rows += ([] for _ in range(y + 1 - len(rows)))
+        row = rows[y]
+        row += [_BLANK] * (x + len(cells) - len(row))
         row[x : x + len(cells)] = cells
-        return "".join(sent)
+        self._touched.add(y)
+        self._at = y, x + len(cells)
 
-    def fit(self, width: int, height: int) -> None:
-        """Forget all cells if the size of the terminal has changed."""
-        if len(self._rows) != height or any(len(row) != width for row in self._rows):
-            self._rows = [[_UNKNOWN] * width for _ in range(height)]
+    def changes(self) -> str:
+        """Return the output that displays the wanted cells, which then count as displayed."""
+        pen, sent, shown = _Pen(), [], self._shown
+        shown += ([] for _ in range(len(self._wanted) - len(shown)))
+        for y in sorted(self._touched):
+            wanted, row = self._wanted[y], shown[y]
+            row += [_UNKNOWN] * (len(wanted) - len(row))
+            sent += [
+                f"\x1b[{y + 1};{begin + 1}H{pen.written(wanted[begin:end])}"
+                for begin, end in _changed(row, wanted)
+            ]
+            shown[y] = wanted.copy()
+        self._touched.clear()
+        sent.append(pen.put_down())
+        if self._at is not None and (any(sent) or self._at != self._cursor):
+            self._cursor = self._at
+            sent.append(f"\x1b[{self._at[0] + 1};{self._at[1] + 1}H")
+        text = "".join(sent)
+        return f"\x1b[?2026h{text}\x1b[?2026l" if text and self._marks_frames else text
 
 
 class Pace:
@@ -69,14 +137,12 @@ class Pace:
     """
 
     def __init__(self) -> None:
-        self._has_asked = self._answers = self._has_waiting = False
+        self._has_asked = self._answers = False
         self._since: float | None = None
 
     def holds(self, now: float) -> bool:
         """Return whether a frame must wait; the next frame sent then contains all changes."""
-        is_out = self._since is not None and now - self._since < _PATIENCE
-        self._has_waiting = self._answers and is_out
-        return self._has_waiting
+        return self._answers and self._since is not None and now - self._since < _PATIENCE
 
     def question(self, now: float) -> str:
         """Return the status request to send after a frame, or ""."""
@@ -85,10 +151,9 @@ class Pace:
         self._has_asked, self._since = True, now
         return _WHERE
 
-    def answered(self) -> bool:
-        """Register the answer to a status request; return whether a frame is waiting."""
+    def answered(self) -> None:
+        """Register the answer to a status request."""
         self._answers, self._since = True, None
-        return self._has_waiting
 
     @property
     def is_out(self) -> bool:
@@ -98,57 +163,115 @@ class Pace:
         return self._answers and self._since is not None
 
 
-class _Changes(CompositorUpdate):
-    """Update that writes only changed cells."""
+class Output:
+    """What an application writes to its terminal: frames of changed cells."""
 
-    def __init__(self, painted: Painted, update: CompositorUpdate) -> None:
-        self._painted, self._update = painted, update
+    def __init__(self) -> None:
+        self._painted, self._pace = Painted(), Pace()
+        self._send: Callable[[str], None] | None = None
+        self._late: asyncio.TimerHandle | None = None
+        self._lock = RLock()  # the thread that reads the keyboard also switches modes
 
-    def render_segments(self, console: Console) -> str:
-        """Return the output for the changed cells, and record them as displayed."""
-        painted, update, pen = self._painted, self._update, _Pen(console)
-        if not isinstance(update, LayoutUpdate | ChopsUpdate):
-            painted.forget()
-            return update.render_segments(console)
-        if isinstance(update, LayoutUpdate):
-            painted.fit(update.region.width, update.region.height)
-        sent = "".join(painted.put(y, x, cells, pen) for y, x, cells in _parts(update))
-        return sent + pen.put_down()
+    def driver_class(self, terminal: type[Driver]) -> type[Driver]:
+        """Return the driver of a terminal that writes through this output."""
+        return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
+
+    def take(self, text: str, send: Callable[[str], None]) -> None:
+        """Take over the cells of a text; send everything else."""
+        with self._lock:
+            self._send = send
+            if at_once := self._painted.take(text):
+                send(at_once)
+
+    def send_frame(self) -> None:
+        """Send the changed cells, once the terminal has displayed the previous frame."""
+        with self._lock:
+            if self._send is None:
+                return
+            if self._pace.holds(time.monotonic()):
+                if self._late is None:
+                    loop = asyncio.get_running_loop()
+                    self._late = loop.call_later(_PATIENCE, self.answered)
+            elif changes := self._painted.changes():
+                self._send(changes + self._pace.question(time.monotonic()))
+
+    def answered(self) -> None:
+        """Send the next changes, since the terminal has displayed the previous frame."""
+        with self._lock:
+            if self._late is not None:
+                self._late.cancel()
+                self._late = None
+            self._pace.answered()
+            self.send_frame()
+
+    def clear(self) -> None:
+        """Forget all cells at the end, or after the size of the terminal has changed."""
+        with self._lock:
+            self._painted.clear()
+            if self._late is not None:
+                self._late.cancel()
+                self._late = None
+
+    def forget(self) -> None:
+        """Forget the displayed cells, so that the next frame has all of them."""
+        with self._lock:
+            self._painted.forget()
+
+    @property
+    def is_out(self) -> bool:
+        """Whether an answer of the terminal is pending."""
+        return self._pace.is_out
 
 
-def _parts(update: LayoutUpdate | ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
-    """Yield (row, column, cells) for an update of the whole screen or of spans."""
-    if isinstance(update, LayoutUpdate):
-        for y, line in enumerate(update.strips, update.region.y):
-            yield y, update.region.x, [*_cells(chain.from_iterable(line))]
-        return
-    for y, begin, end in update.spans:
-        for x, strip in update.chops[y].items():
-            if strip is not None and x < end and x + strip.cell_length > begin:
-                first = max(begin - x, 0)
-                yield y, x + first, [*_cells(strip)][first : end - x]
+class _PaintingDriver(Driver):
+    """The part of a driver that writes through an output; `Output.driver_class` adds the rest."""
+
+    output: ClassVar[Output]
+
+    def write(self, data: str) -> None:
+        self.output.take(data, super().write)  # type: ignore[safe-super]
+
+    def flush(self) -> None:
+        self.output.send_frame()
+        super().flush()
+
+    def stop_application_mode(self) -> None:
+        self.output.clear()
+        super().stop_application_mode()  # type: ignore[safe-super]
 
 
-def _cells(segments: Iterable[Segment]) -> Iterator[Cell]:
-    for text, style, _ in segments:
-        ground = _ground(style)
-        if text.isascii():
-            yield from ((sign, ground if sign == " " else style) for sign in text)
-            continue
-        for sign in text:
-            width = cell_len(sign)
-            if width:
-                yield sign, ground if sign == " " else style
-            if width == 2:
-                yield "", style
+def _cells(text: str, style: str) -> list[Cell]:
+    ground = _ground(style)
+    if text.isascii():
+        return [(sign, ground if sign == " " else style) for sign in text]
+    cells = []
+    for sign in text:
+        width = cell_len(sign)
+        if width:
+            cells.append((sign, ground if sign == " " else style))
+        if width == 2:
+            cells.append(("", style))
+    return cells
 
 
-@lru_cache(1024)
-def _ground(style: Style | None) -> Style | None:
-    """Return the visible part of a style on blank cells."""
-    if style is None or style.underline or style.overline or style.strike or style.reverse:
-        return style
-    return Style(bgcolor=style.bgcolor)
+_SEEN_ON_BLANKS = {"4", "7", "9", "21", "53"}
+"""Codes of underlining, reverse, striking out and overlining."""
+
+
+@lru_cache(4096)
+def _ground(style: str) -> str:
+    """Return the visible part of a style on blank cells: the background, unless it is decorated."""
+    kept, codes = [], iter(style.split(";"))
+    for code in codes:
+        if code in ("38", "48"):
+            kind = next(codes, "")
+            colour = [kind, *(next(codes, "") for _ in range(3 if kind == "2" else 1))]
+            kept += [code, *colour] if code == "48" else []
+        elif code in _SEEN_ON_BLANKS:
+            return style
+        elif re.fullmatch(r"4\d|10\d", code):
+            kept.append(code)
+    return ";".join(kept)
 
 
 def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
@@ -181,22 +304,20 @@ def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tupl
 class _Pen:
     """Writer of cells that sends a style only if the visible style changes."""
 
-    def __init__(self, console: Console) -> None:
-        self._system = console._color_system
+    def __init__(self) -> None:
         self._held = ""
-        self._ground: Style | None = None
+        self._ground = ""
 
     def written(self, cells: list[Cell]) -> str:
         """Return the output for adjacent cells."""
         parts = []
         for sign, style in cells:
-            if sign == " " and self._held and style is not None and style == self._ground:
+            if sign == " " and self._held and style == self._ground:
                 parts.append(sign)
                 continue
-            wanted = _style_codes(style, self._system)
-            if wanted != self._held:
-                parts.append(f"\x1b[0;{wanted}m" if wanted else _PLAIN)
-                self._held = wanted
+            if style != self._held:
+                parts.append(f"\x1b[0;{style}m" if style else _PLAIN)
+                self._held = style
             self._ground = _ground(style)
             parts.append(sign)
         return "".join(parts)
@@ -205,11 +326,3 @@ class _Pen:
         """Return the output that resets the style."""
         held, self._held = self._held, ""
         return _PLAIN if held else ""
-
-
-@lru_cache(4096)
-def _style_codes(style: Style | None, system: ColorSystem | None) -> str:
-    """Return the numbers of the terminal escape sequence for a style."""
-    if style is None or system is None:
-        return ""
-    return style._make_ansi_codes(system)

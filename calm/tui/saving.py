@@ -278,5 +278,5 @@ def _is_writable(text: str) -> Reading:
 
 
 def moment(seconds: float) -> str:
-    """Format a time [s since 1970] as local date and time in minutes."""
+    """Format a time [s since 1970] as local date and time, to the minute."""
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))

@@ -32,8 +32,18 @@ class Scrolled(ScrollView, inherit_bindings=False):
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def watch_virtual_size(self, size: Size) -> None:
-        """Update the scroll bar, and scroll back if the content has become shorter."""
-        self._scroll_update(size)
+        """Update the scroll bars, and scroll back if the content has become shorter."""
+        window = self.container_size
+        down = self.styles.overflow_y != "hidden" and size.height > window.height > 0
+        if down or self.show_vertical_scrollbar:
+            bar = self.vertical_scrollbar
+            self.show_vertical_scrollbar = bar.display = down
+            bar.window_virtual_size, bar.window_size = size.height, window.height
+        across = self.styles.overflow_x != "hidden" and size.width > window.width > 0
+        if across or self.show_horizontal_scrollbar:
+            bar = self.horizontal_scrollbar
+            self.show_horizontal_scrollbar = bar.display = across
+            bar.window_virtual_size, bar.window_size = size.width, window.width
         if self.scroll_offset.y > self.max_scroll_y:
             self.scroll_to(y=self.max_scroll_y, animate=False)
 

@@ -26,7 +26,7 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """Pane with values of anchor and top, passes, failures and reasons.
+    """Pane with the verdict: values at the anchor and the top, and the findings with their reasons.
 
     Parameters
     ----------

@@ -62,12 +62,12 @@ class Case:
 
     Attributes
     ----------
-    name : what the figure is, unique within its source
-    expected : the figure, to the digits known
+    name : name of the value, unique within its source
+    expected : the value, with all known digits
     unit : that of `expected`, as text for a reader; empty for a pure number
-    tolerance : greatest difference allowed [unit], > 0
-    why : the reason for the tolerance, a sentence
-    got : computes CALM's figure [unit]; whatever it raises counts as a figure missed
+    tolerance : largest allowed difference [unit], > 0
+    why : reason for the tolerance, in a sentence
+    got : computes CALM's value [unit]; an exception counts as a missing value
     kind : where `expected` comes from
     """
 

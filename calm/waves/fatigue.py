@@ -222,7 +222,7 @@ def fatigue_of(
     elif lost and not size:
         unknown = "its diameter, which corrosion reduces, is unknown"
     elif not left > 0.0:
-        unknown = "corrosion leaves nothing of its diameter"
+        unknown = "corrosion would consume its whole diameter"
     source = None if curve is None else curve.source
     if unknown is not None or curve is None:
         return PieceFatigue(index, label, None, None, None, None, name, source, unknown)

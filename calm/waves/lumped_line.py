@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Complexes = NDArray[np.complex128]
 
 SHORTEST = 0.05
-"""Length below which an element is no spring and its mass is added to the node [m]."""
+"""Length below which an element is not treated as a spring; its mass is added to the node [m]."""
 
 RIGID = 1e9
 """Stiffness EA of elements that are treated as inextensible [N]."""

@@ -111,7 +111,7 @@ class Visit:
                 const begun = performance.now();
                 let last = 0;
                 const writes = terminal.onWriteParsed(() => { last = performance.now(); });
-                keys.forEach((text) => send({ kind: "type", text }));
+                keys.forEach(([kind, text]) => send({ kind, text }));
                 const done = () => last && performance.now() - last > 1500;
                 while (!done()) await new Promise((then) => setTimeout(then, 20));
                 writes.dispose();
@@ -140,8 +140,10 @@ def test_a_line_is_opened_edited_saved_and_printed(visit, tmp_path):
     page.select_option("#examples", "s1000.yaml")
     visit.shows(r"s1000\.yaml")
     visit.shows(r"131\.4")  # the depth of the float, as `calm run` has it
-    print("cursor key, ms:", [visit.answer_ms(["\x1b[B"]), visit.answer_ms(["\x1b[A"])])
-    print("length of the cable edited, ms:", visit.answer_ms(["\x1b[B", "l", "990 m", "\r"]))
+    down, up = [["key", "down"]], [["key", "up"]]
+    print("cursor key, ms:", [visit.answer_ms(down), visit.answer_ms(up)])
+    edit = [*down, ["type", "l"], ["type", "990 m"], ["key", "enter"]]
+    print("length of the cable edited, ms:", visit.answer_ms(edit))
     visit.shows(r"990")
     page.click("#actions >> text=Undo")
     visit.shows(r"1000")
@@ -213,13 +215,13 @@ def test_it_works_without_a_network_and_goes_on_where_it_was(browser, address):
     first.page.wait_for_timeout(2000)
     first.page.keyboard.press("1")
     first.shows("not saved")
-    first.page.wait_for_timeout(8000)  # files are written to the browser every 3 s
+    first.page.wait_for_timeout(3000)  # the work is kept
     first.page.close()
     context.set_offline(True)
     Files.asked.clear()
     again = Visit(context, address)
     again.shows("mooring.yaml")
-    again.shows("not saved")  # the work of the first visit is offered
+    again.shows("Unsaved work")  # of the first visit
     again.picture("page-offline")
     looked_for = {each.partition("?")[0] for each in Files.asked}
     assert looked_for <= {"/offline.js"}  # whether there is a new version

@@ -131,11 +131,13 @@ def test_no_labels_overlap(opened, name):
 
 def test_no_labels_overlap_with_ten_environments(opened):
     assessment = judged(LINES / "tidal-adcp.yaml", "ebb", "neaps")
-    stands = [
-        replace(assessment.stands[number % 3], environment=f"an environment, number {number}")
+    in_environments = [
+        replace(
+            assessment.in_environments[number % 3], environment=f"an environment, number {number}"
+        )
         for number in range(10)
     ]
-    section = mooring_section(replace(assessment, stands=tuple(stands)))
+    section = mooring_section(replace(assessment, in_environments=tuple(in_environments)))
     with opened(calm.report.html.page(check_report([section]))) as page:
         assert page.evaluate(OVERLAPS) == []
         assert page.evaluate(OUTSIDE) == []

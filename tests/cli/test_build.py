@@ -16,7 +16,7 @@ def test_a_redirected_error_output_is_named(calm, monkeypatch):
         monkeypatch.setattr(f"sys.{name}.isatty", lambda: True, raising=False)
     done = calm("build", "m.yaml")
     assert done.code == 2
-    assert "draws its screen on the standard error output, which is redirected" in done.err
+    assert "draws its screen on standard error, which is redirected" in done.err
 
 
 @pytest.fixture

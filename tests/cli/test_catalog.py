@@ -58,7 +58,7 @@ def test_card_shows_figures_and_source(calm):
     assert "1250 mm" in done.out
     assert "120 kN" in done.out
     assert "speed 0.51 m/s, force 10.1 N" in done.out
-    assert "greatest tilt" in done.out
+    assert "maximum tilt" in done.out
     assert done.out.count("source ") == 2
 
 
@@ -84,12 +84,12 @@ def test_what_follows_from_the_figures_is_shown(calm):
 
 def test_one_thing_by_several_sources_is_shown_with_the_one_to_use(calm):
     shown = calm("catalog", "show", "sbe37-clamp").out
-    table = shown[shown.index("the same thing") :]
+    table = shown[shown.index("entries for this product") :]
     rows = {line.split()[0]: " ".join(line.split()) for line in table.splitlines()[1:]}
     assert rows["sbe37"].startswith("sbe37 use this -27.46 N 0.05078 m²")
     assert rows["sbe37-clamp"].startswith("sbe37-clamp -22.69 N 0.1643 m²")
-    assert rows["least"] == "least -29.42 N 0.039 m²"
-    assert rows["most"] == "most -22.69 N 0.1643 m²"
+    assert rows["smallest"] == "smallest -29.42 N 0.039 m²"
+    assert rows["largest"] == "largest -22.69 N 0.1643 m²"
     assert "(use sbe37)" in " ".join(calm("catalog", "list", "sbe37-clamp").out.split())
     (found,) = json.loads(calm("catalog", "show", "sbe37-clamp", "--json").out)
     assert found["prefer"] == "sbe37"
@@ -155,14 +155,14 @@ def test_search_takes_a_bare_fraction_for_inches_and_drops_a_word_that_nothing_h
     ]
     assert ids[0] == "shackle-19" and "shackle-anchor-19" in ids[:3]
     done = calm("catalog", "list", "rbr", "quartet")
-    assert "none has `quartet`" in done.err and "rbr-duet-uwa" in done.out
+    assert "none matches `quartet`" in done.err and "rbr-duet-uwa" in done.out
 
 
 @pytest.mark.parametrize(
     ("words", "first", "says"),
     [
-        (["upward", "adcp"], "adcp-workhorse", "these have most of them"),
-        (["single", "point", "current", "meter"], "current-meter-cdms", "none has `point`"),
+        (["upward", "adcp"], "adcp-workhorse", "these match most of them"),
+        (["single", "point", "current", "meter"], "current-meter-cdms", "none matches `point`"),
         (["wyre"], "wire-jacketed-8-5", "searched for `wire`"),
     ],
 )
@@ -188,7 +188,7 @@ def test_shipped_catalogue_has_no_finding_and_lists_what_it_lacks(calm):
     done = calm("catalog", "check")
     assert done.code == 0
     lines = dict(line.split(": ", 1) for line in done.out.splitlines())
-    assert lines["vacm"] == "lacks mass, working load, breaking load, depth rating, greatest tilt"
+    assert lines["vacm"] == "lacks mass, working load, breaking load, depth rating, maximum tilt"
     assert lines["rcm11"].endswith("not published: mass, working load, breaking load")
     assert "shackle-13" not in lines
     assert "findings: 0" in done.err
@@ -201,7 +201,7 @@ def test_what_is_missing_as_json(calm, mine):
         {
             "id": "good",
             "finding": False,
-            "message": "lacks mass, working load, breaking load, depth rating, greatest tilt",
+            "message": "lacks mass, working load, breaking load, depth rating, maximum tilt",
             "missing": ["mass", "working_load", "breaking_load", "depth_rating", "max_tilt"],
             "searched": [],
         }
@@ -269,7 +269,10 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
     again = calm("catalog", "add", "our-glass", *GLASS)
     assert (again.code, again.out) == (2, "")
     assert "is defined already, in" in again.err
-    assert "in place of the catalogue's" in calm("catalog", "add", "glass-17in", *GLASS).err
+    assert (
+        "where it overrides the entry of the catalogue"
+        in calm("catalog", "add", "glass-17in", *GLASS).err
+    )
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,6 @@ def test_what_a_person_reads(calm, write_mooring):
     assert places == sorted(places)
     told = " ".join(done.out.split())
     assert "? weight: mass missing." not in told and "depth rating missing." in told
-    assert "`" not in done.out
     assert max(map(len, lines)) <= 80 and len(lines) <= 40
 
 
@@ -134,6 +133,20 @@ def test_one_that_does_not_stand_does_not_stop_the_rest(calm, write_mooring, hea
     assert failed["state"] == "fail" and failed["remedy"]
     assert json.loads(done.out)["launch"]["Heavy"] is None
     assert findings(done, mooring="Test", rule="anchor-weight")
+
+
+@pytest.mark.parametrize("more", [2, 4], ids=["an environment each", "a mooring each"])
+def test_processes_exchange_the_reason_why_one_does_not_stand(
+    calm, write_mooring, heavy, storm, folder, more
+):
+    """Few moorings are divided among the processes by environment, many by mooring."""
+    (folder / "gale.yaml").write_text(STORM.replace("storm", "gale"), encoding="utf-8")
+    others = [write_mooring(f"{number}.yaml", name=f"M{number}") for number in range(more)]
+    places = ("--environment", storm, "--environment", "gale.yaml") if more == 2 else ()
+    words = ("check", heavy, *others, *places, "--json", "-")
+    alone, together = (calm(*words, "--workers", count) for count in (1, 2))
+    assert together.code == alone.code == 3
+    assert together.out == alone.out
 
 
 def test_a_sound_design_ends_with_0(calm, folder):
@@ -242,7 +255,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
     alone = calm("check", write_mooring(), "--json", "-")
     among = calm("check", "a.yaml", "m.yaml", "z.yaml", "--json", "-")
     assert (among.code, among.out) == (alone.code, alone.out)
-    assert among.err == "not checked, because they are tows: a.yaml, z.yaml\n"
+    assert among.err == "tows are not checked: a.yaml, z.yaml\n"
     # a mistake in a mooring is not hidden by a tow beside it
     (folder / "bad.yaml").write_text("line: 5\n")
     assert calm("check", "a.yaml", "bad.yaml").code == 2
@@ -252,12 +265,12 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
     ("words", "says"),
     [
         (("m.yaml", "m.yaml"), "given twice: m.yaml"),
-        (("m.yaml", "--workers", "0"), "--workers: 0 is not 1 or more"),
+        (("m.yaml", "--workers", "0"), "--workers: 0 is below 1"),
         (("m.yaml", "--environment", "strom"), "no environment is called `strom`"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "named storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
-        (("m.yaml", "--report", "m.yaml"), "is not a folder; a folder is needed"),
+        (("m.yaml", "--report", "m.yaml"), "the output is a folder, but"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
         (("missing.yaml",), "missing.yaml"),
         ((), "FILE"),
@@ -275,7 +288,7 @@ def test_a_report_is_a_folder_of_five_files_the_same_every_time(calm, write_moor
     words = ("check", write_mooring(), "--environment", storm)
     first = calm(*words, "--report", "first", "--allow-unknown")
     assert first.code == 0
-    assert "the report is in first" in first.err
+    assert "Report written to first" in first.err
     again = calm(*words, "--report", "deep/er", "--workers", "2", "--json", "-")
     names = ["checks.csv", "inventory.csv", "report.html", "report.json", "report.pdf"]
     for where in ("first", "deep/er"):
@@ -292,7 +305,7 @@ def test_full_writes_the_pages_of_each_mooring_too(calm, write_mooring, folder):
     (folder / "north.yaml").write_text(text.replace("name: Test", "name: North"), encoding="utf-8")
     files = ("north.yaml", write_mooring("south.yaml"))
     done = calm("check", *files, "--report", "r", "--full", "--page", "letter")
-    assert "the report is in r" in done.err
+    assert "Report written to r" in done.err
     for name, pages in (("report", 3), ("North", 3), ("Test", 3)):
         with pypdfium2.PdfDocument(folder / "r" / f"{name}.pdf") as pdf:
             assert len(pdf) == pages
@@ -326,14 +339,14 @@ def test_a_report_that_cannot_be_written_loses_nothing_else(
 def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, monkeypatch):
     from calm.checks import design_check
 
-    stands_of = design_check.stands_of
+    environments_checked = design_check.environments_checked
 
     def failing(mooring, name, day):
         if name == "Two":
             raise ValueError("a bug")
-        return stands_of(mooring, name, day)
+        return environments_checked(mooring, name, day)
 
-    monkeypatch.setattr(design_check, "stands_of", failing)
+    monkeypatch.setattr(design_check, "environments_checked", failing)
     files = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
     done = calm("check", *files, "--json", "-")
     assert done.code == 3
@@ -357,7 +370,7 @@ def test_a_report_does_not_take_the_place_of_what_is_read(calm, write_mooring, f
     before = (folder / "report.json").read_bytes()
     done = calm("check", "report.json", "--report", ".")
     assert (done.code, done.out) == (2, "")
-    assert "report.json is read here; the report would overwrite it" in done.err
+    assert "report.json is an input file; the report would overwrite it" in done.err
     assert (folder / "report.json").read_bytes() == before
     done = calm("check", write_mooring(), "--report", "r", "--json", "r/report.json")
     assert done.code == 2

@@ -126,7 +126,7 @@ def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
     [
         (("-o", "x.yaml"), "-o needs --missing"),
         (("--missing", "--json", "-"), "--missing replaces the findings"),
-        (("--missing", "-o", "m.yaml"), "m.yaml would overwrite the file that is read"),
+        (("--missing", "-o", "m.yaml"), "m.yaml is the input file; choose another output"),
     ],
 )
 def test_what_cannot_be_is_refused_before_anything_is_solved(calm, unknowns, words, says):

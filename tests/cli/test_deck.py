@@ -340,11 +340,11 @@ def test_usage(calm, folder, write_mooring):
     for words, complaint in (
         (("m.yaml",), "needs -o path"),
         (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
-        (("m.yaml", "-o", "file"), "is not a folder"),
+        (("m.yaml", "-o", "file"), "is a file"),
         (("tow.yaml", "-o", "out"), "calm deck is for moorings; these are tows: tow.yaml"),
         (("m.yaml", "-o", "out", "--ship-speed", "2"), "--ship-speed: `2` needs a unit: `2 m/s`?"),
         (("m.yaml", "-o", "out", "--ship-speed", "0 m/s"), "too slow to stream the line"),
-        (("m.yaml", "-o", "out", "--streamed", "2 km"), "give less than its length"),
+        (("m.yaml", "-o", "out", "--streamed", "2 km"), "must be shorter than the line"),
     ):
         done = calm("deck", *words)
         assert (done.code, done.out) == (2, "")
@@ -373,7 +373,7 @@ def test_the_verdict_is_that_of_calm_check(calm, folder):
     done = calm("deck", "m.yaml", "-o", "sheets")
     counts = head.split("DRAFT")[1].strip()
     told = f"passes by acceptance: {counts}"
-    assert f"m.yaml: ~ {told}: calm check m.yaml" in done.err
+    assert f"m.yaml: design check ~ {told}; see calm check m.yaml" in done.err
     verdict = json.loads((folder / "sheets" / "plan.json").read_text())["verdict"]
     assert verdict["verdict"] == checked["verdict"] == "passes-by-acceptance"
     assert (verdict["fails"], verdict["accepted"]) == (0, 1)

@@ -102,7 +102,7 @@ def test_named_environments_are_compared(calm, write_mooring, folder):
 def test_nothing_differs(calm, write_mooring):
     done = calm("diff", write_mooring("a.yaml"), write_mooring("b.yaml"))
     assert done.code == 0
-    assert "The designs are equal." in done.out
+    assert "The designs are identical." in done.out
 
 
 def test_the_design_and_what_was_deployed(calm, write_mooring, folder):

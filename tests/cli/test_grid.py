@@ -174,7 +174,7 @@ def test_units_are_converted_and_other_quantities_refused(calm, depths):
 
 def test_what_is_doubtful_is_said_with_a_count(calm, depths):
     run = both(calm, depths, lambda label, t: one_file("TEMP", 0.0 * t, *WATER, label))
-    assert run.code == 2 and "all 60 values are 0, and are left out" in run.err
+    assert run.code == 2 and "all 60 values are 0 and were excluded" in run.err
     fresh = ("sea_water_practical_salinity", "1")
     run = both(calm, depths, lambda label, t: one_file("PSAL", 0.0345 + 1e-4 * t, *fresh, label))
     assert "60 of 60 values are below 0.05, their median 0.03" in run.err and "kg/kg?" in run.err

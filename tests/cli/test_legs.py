@@ -161,8 +161,8 @@ def test_other_commands_say_which_one_solves_nets(
     }
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
-    assert f"{net}: this is a net of legs" in told
-    assert "for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
+    assert f"{net}: this file is a net of legs" in told
+    assert "only `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
 
 
 def test_a_net_goes_to_moordyn_and_back(
@@ -192,8 +192,10 @@ def test_check_judges_every_leg(
     assert "launch, recovery and waves are not" in said.err
     assert "net of legs, 500 m of water" in said.out and said.out.splitlines()[1][:5] == "FAILS"
     report = json.loads((tmp_path / "report" / "report.json").read_text())
-    (stands,) = report["situations"].values()
-    assert {each["environment"] for each in stands if each["anchor_vertical"]} == {"own: stem"}
+    (in_environments,) = report["situations"].values()
+    assert {each["environment"] for each in in_environments if each["anchor_vertical"]} == {
+        "own: stem"
+    }
     (items,) = report["inventory"].values()
     assert [each["label"] for each in items if each["kind"] == "anchor"] == ["anchor-wheels-4"]
     page = (tmp_path / "report" / "report.html").read_text()
@@ -871,13 +873,13 @@ legs:
 """
     )
     # a wire of 130 m sags by some 20 m between ends 120 m apart, over the top of the knoll
-    for height, stands in ((60.0, False), (10.0, True)):
+    for height, in_environments in ((60.0, False), (10.0, True)):
         gridded(
             tmp_path,
             lambda e, n, h=height: 200.0 - h * np.exp(-((e - 60.0) ** 2 + n * n) / 900.0),
         )
         net = load(tmp_path / "grid.yaml", text=text)
-        if stands:
+        if in_environments:
             assert net.solve().status == "converged"
         else:
             with pytest.raises(NoEquilibrium, match="below the sloping seabed"):

@@ -95,8 +95,8 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert done.code == 1
     assert "deployed" not in (folder / "m.yaml").read_text()
     assert "m.yaml was not changed: the depth, 1997 m, is far from the planned 1500 m; " in done.err
-    assert "; the place is 11.1 km from the planned position. Use --accept" in done.err
-    assert "that is far from the planned position" in done.err
+    assert "; the position is 11.1 km from the planned position. Use --accept" in done.err
+    assert "this is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
     assert "latitude and longitude are exchanged" in done.err
@@ -202,10 +202,10 @@ def test_three_ranges_on_one_course_have_two_places(calm, ranges, write_mooring,
     assert document["latitude"] == pytest.approx(48.2919, abs=1e-3)
     assert document["longitude"] == pytest.approx(-5.1879, abs=1e-3)
     assert document["second"]["distance"] == pytest.approx(2520.0, rel=0.05)
-    assert re.search(r"two places remain, at \d+ and 25\d\d m from the plan: the nearer", done.err)
+    assert re.search(r"two positions remain, \d+ and 25\d\d m from the planned one", done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
     done = calm("locate", name, "--update", "m.yaml", "--json", "-")  # of unknown depth
-    assert done.code == 1 and "two places remain" in done.err
+    assert done.code == 1 and "two positions remain" in done.err
     assert json.loads(done.out)["second"]["distance"] > 1900.0
     assert "deployed" not in (folder / "m.yaml").read_text()
     assert calm("locate", name, *given, "--update", "m.yaml", "--accept").code == 0
@@ -233,7 +233,7 @@ def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_m
     (folder / "m.yaml").write_text(position + text)
     done = calm("locate", ranges(), "--update", "m.yaml")
     assert done.code == 1
-    assert "near it if the positions are degrees and minutes" in done.err
+    assert "close to it if the positions are in degrees and minutes" in done.err
 
 
 def test_horizontal_distances_are_refused(calm, ranges):
@@ -252,7 +252,7 @@ def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write
     write_mooring("m.yaml")
     done = calm("locate", ranges("\n".join(made) + "\n"), "--update", "m.yaml")
     assert done.code == 1
-    scattered = r"was not changed: the ranges scatter by \d+ m, more than ranging does"
+    scattered = r"was not changed: the ranges scatter by \d+ m, more than is usual"
     assert re.search(scattered, done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
 
@@ -341,8 +341,8 @@ def test_what_was_not_answered_and_what_repeats_is_left_out(calm, ranges):
     text = "\n".join(["# night of the 3rd", *lines[:6], lines[1], "48.3,-5.2,nan", "48.3,-5.2,"])
     done = calm("locate", ranges(text), "--json", "-")
     assert done.code == 0
-    assert "line 8 repeats line 3: left out" in done.err
-    assert "no reply in lines 9, 10: left out" in done.err
+    assert "line 8 repeats line 3 and was ignored" in done.err
+    assert "rows without a reply were ignored: lines 9, 10" in done.err
     assert json.loads(done.out)["lines"] == [3, 4, 5, 6, 7]
 
 

@@ -80,6 +80,12 @@ def given(folder, truth):
     return pressures
 
 
+WITHOUT_STANDARD_NAME = {
+    *("x_top", "y_top", "clamp_x", "clamp_y", "knockdown", "clamp_knockdown", "tilt", "clamp_tilt"),
+    *("tension_top", "tension_bottom", "clamp_tension", "anchor_vertical", "anchor_horizontal"),
+    *("used_buoyancy", "other_used_buoyancy", "residual", "current_factor", "current_doubt"),
+}
+"""Quantities of a motion file that the standard name table of CF lacks (version 93)."""
 COMMAND = ("motion", "m.yaml", "--currents", "c.csv", "--workers", 1)
 
 
@@ -102,6 +108,14 @@ def test_depths_sensors_and_a_hidden_one(calm, given, truth, folder):
         assert np.sqrt((off**2).mean()) < 0.5
         spread = result["clamp_depth_sd"].values
         assert (np.abs(off) < 4.0 * spread).all() and (spread > 0.0).all()
+        depth = np.hstack([result["clamp_depth"].values, result["depth_top"].values])
+        extent = [result.attrs[f"geospatial_vertical_{end}"] for end in ("min", "max")]
+        assert extent == [depth.min(), depth.max()]
+        nameless = {
+            name for name, one in result.variables.items()
+            if "units" in one.attrs and not {"standard_name", "axis"} & {*one.attrs}
+        }  # fmt: skip
+        assert nameless == WITHOUT_STANDARD_NAME
         assert result["current_factor"].values == pytest.approx(np.ones(HOURS), abs=0.15)
         assert (result["status"].values == 0).all()
 
@@ -400,11 +414,11 @@ def test_a_folder_in_is_a_folder_out(calm, given, truth, folder):
         ).to_netcdf(folder / "in" / f"{name}.nc", engine="h5netcdf")
     words = (*COMMAND, "--pressures", "p.csv", "--onto", "in")
     done = calm(*words, "-o", "in")
-    assert done.code == 2 and "in is an input and is not overwritten" in done.err
+    assert done.code == 2 and "in is an input file and was not overwritten" in done.err
     done = calm(*words, "-o", "out")
     assert done.code == 0, done.err
     assert [one.name for one in (folder / "out").iterdir()] == ["a.nc"]
-    assert "b.nc: no part of the line; it is not written" in done.err
+    assert "b.nc: it belongs to no part of the line and is not written" in done.err
     with xarray.open_dataset(folder / "out" / "a.nc", engine="h5netcdf") as copy:
         assert np.abs(copy["depth"].values[:, 0] - truth[1][:, 2]).max() < 2.0
         assert copy.attrs["history"].count("sha256:") == 3

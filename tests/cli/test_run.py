@@ -172,7 +172,7 @@ def test_catalogue_of_ones_own(calm, write_mooring, folder):
         (["-o", "missing/x.json"], "there is no folder"),
         (["-o", "."], "its name must end in .json, .csv, .html, .pdf, .svg, .png or .nc"),
         (["-o", "x.jpg"], "cannot write x.jpg: its name must end in"),
-        (["-o", "same.csv", "-o", "./same.csv"], "two outputs would go to same.csv"),
+        (["-o", "same.csv", "-o", "./same.csv"], "two outputs have the same path, same.csv"),
         (["-o", "-"], "cannot write -: its name must end in"),
         (["-o", "m.yaml"], "cannot write m.yaml: its name must end in"),
         (["-o", "--explain"], "--explain was given where a path is needed"),
@@ -197,7 +197,7 @@ def test_pictures_of_one_name_are_refused(calm, write_mooring, folder):
     (folder / "other").mkdir()
     done = calm("run", write_mooring("a.yaml"), write_mooring("other/a.yaml"), "-o", "p.png")
     assert done.code == 2
-    assert "two outputs would go to p-a.png" in done.err
+    assert "two outputs have the same path, p-a.png" in done.err
 
 
 def test_people_read_the_units_of_the_file_or_of_the_command(calm, write_mooring, folder):

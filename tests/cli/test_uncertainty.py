@@ -23,7 +23,7 @@ def test_the_table_and_the_json_say_the_same(calm, write_mooring):
     assert set(said["anchor"]) == {"tension", "required_weight"}
     assert said["contributions"] == []  # too few samples for a fit
     shown = calm("run", file, *DRAWS).out
-    assert "Uncertainty of these figures" in shown
+    assert "Uncertainty of these values" in shown
     for figure in top["depth_top"]:
         assert f"{figure:.1f}" in shown
 
@@ -34,7 +34,7 @@ def test_the_table_is_in_the_units_asked_for(calm, write_mooring):
         "components"
     ]
     shown = calm("run", file, *DRAWS, "--units", "length=ft,force=kN").out
-    spread = shown[shown.index("Uncertainty of these figures") :]
+    spread = shown[shown.index("Uncertainty of these values") :]
     assert " ft" in spread and " kN" in spread
     for figure in top["depth_top"]:
         assert f"{figure / 0.3048:.1f}" in spread
@@ -62,7 +62,7 @@ def test_the_band_is_drawn_and_reported(calm, write_mooring, folder):
     calm("run", write_mooring(), *DRAWS, "-o", "band.svg", "-o", "sure.html")
     assert "5 to 95 %" in (folder / "band.svg").read_text(encoding="utf-8")
     page = (folder / "sure.html").read_text(encoding="utf-8")
-    assert "Uncertainty of these figures" in page
+    assert "Uncertainty of these values" in page
 
 
 def test_what_cannot_be_drawn_is_refused(calm, write_mooring, heavy):

@@ -68,8 +68,8 @@ def test_the_band_measured_at_sea_and_other_cut_offs(calm, buoy):
     assert "in seas of Hs 1 to 5 m" in words
     assert "0.57 to 1.00 times the computed one" in words
     low, high = (top[end]["tension_std"] for end in ("measured_low", "measured_high"))
-    assert f"That range is {low:.0f} N to {high:.0f} N here at the top" in words
-    assert "outside the heights" not in words
+    assert f"For this mooring that means {low:.0f} N to {high:.0f} N at the top" in words
+    assert "outside that range" not in words
     for name, factor in (("half", 0.5), ("as above", 1.0), ("twice", 2.0)):
         (row,) = [line for line in text.splitlines() if line.startswith(f"{name} ")]
         loads = top if factor == 1.0 else top[f"{name}_cut_off"]
@@ -79,7 +79,7 @@ def test_the_band_measured_at_sea_and_other_cut_offs(calm, buoy):
             f"{loads[each]:.0f}" for each in ("tension_std", "tension_max", "tension_min")
         ]
     low_sea = " ".join(calm("waves", buoy(), "--hs", "0.4 m", "--tp", "4 s").out.split())
-    assert "This sea is outside the heights compared." in low_sea
+    assert "The height of this sea is outside that range." in low_sea
     chain = told["fatigue"][1]
     assert chain["life_twice_cut_off"] <= chain["life"] <= chain["life_half_cut_off"]
 

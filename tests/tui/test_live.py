@@ -7,7 +7,7 @@ import pytest
 import calm
 from calm.case import Design, Result
 from calm.checks.assess import RULES
-from calm.checks.design_check import assessment_of, stands_of
+from calm.checks.design_check import assessment_of, environments_checked
 from calm.checks.finding import AS_GIVEN, State
 from calm.checks.wave_rules import IN_WAVES
 from calm.cli.reading import read_designs
@@ -69,7 +69,7 @@ def test_rows_are_those_of_run(name: str) -> None:
 def test_findings_are_those_of_check(name: str) -> None:
     path = LINES / f"{name}.yaml"
     view, mooring = judge(text_of(name), path), calm.load(path)
-    (stand,) = stands_of(mooring, mooring.file.name)
+    (stand,) = environments_checked(mooring, mooring.file.name)
     in_waves = {rule.name for rule in IN_WAVES}  # with the whole check alone: a sea takes seconds
     assert view.findings == tuple(
         each for each in stand.findings if each.situation == AS_GIVEN and each.rule not in in_waves
@@ -77,7 +77,7 @@ def test_findings_are_those_of_check(name: str) -> None:
     assert not view.complete
     fully = judge_fully(view)
     (design,), _ = read_designs([path], None, [], 1)  # in each of its environments
-    stands = [one for each in design.moorings for one in stands_of(each, design.name)]
+    stands = [one for each in design.moorings for one in environments_checked(each, design.name)]
     assessment = assessment_of(design.name, stands)
     assert [each.environment for each in fully.cases] == [each.environment for each in stands]
     assert fully.complete and fully.findings == tuple(assessment.all_findings())

@@ -23,7 +23,7 @@ def test_an_environment_that_is_undone_leaves_the_line_in_the_own_one(drive, sma
         await driver.press("u")
         await driver.settle()
         assert driver.view.environment is None and not driver.view.problems
-        assert "no environment storm now; the default environment is used" in driver.screen
+        assert "Environment storm no longer exists; the default environment" in driver.screen
         await driver.press("U")
         await driver.settle()
         assert driver.view.environment == "storm"

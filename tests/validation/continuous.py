@@ -176,7 +176,7 @@ class March:
 
     def _rod(self, rod: range, place: Place, share: Vector, shape: Shape, lands: bool) -> None:
         loads, origin, profile = self._on_rod(rod, share), place.position, self.profile
-        length, stands = float(self.line.length[rod].sum()), False
+        length, in_environments = float(self.line.length[rod].sum()), False
         if not place.lying:
             on_it = [(at, load) for _, _, at, load in loads]
             axis = rod_axis(on_it, length, origin, place.force, profile)
@@ -188,8 +188,8 @@ class March:
                 for depth, (_, load) in zip(depths, on_it, strict=True)
             ]
             rests = lands and place.force[2] > 0.0 >= (place.force + np.sum(pulls, axis=0))[2]
-            stands = bool(rests and axis[2] < 0.0)
-            if rests and not stands:
+            in_environments = bool(rests and axis[2] < 0.0)
+            if rests and not in_environments:
                 place.lie_down()  # it would tip over
         if place.lying:
             axis, pulls = place.direction_on_seabed(), []
@@ -208,7 +208,7 @@ class March:
             shape.top[piece] = place.position
             place.position = place.position + float(self.line.length[piece]) * axis
             shape.bottom[piece] = place.position
-        if stands:
+        if in_environments:
             place.lie_down()
             shape.force_bottom[rod[-1]] = place.force
         for piece in rod[1:]:

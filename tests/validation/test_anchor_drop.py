@@ -306,7 +306,7 @@ def test_streamed_as_far_as_asked(loaded, streamed):
 
 def test_what_floats_cannot_be_streamed_less_far(loaded):
     mooring = loaded(SHORT.replace("weight: 0.2 N/m", "buoyancy: 0.2 N/m"))
-    with pytest.raises(UsageError, match="it cannot be streamed to 30 m"):
+    with pytest.raises(UsageError, match="a distance of 30 m is not possible"):
         drop_plan(mooring, ship_speed=2.0, streamed=30.0, fineness=FEW)
 
 

@@ -121,7 +121,7 @@ def clump(x: float, y: float = 0.0) -> str:
 
 
 BALL, JOINT = "connector = ball\n", "connector = joint\n"
-HUNG = "terminal = { buoy = sinker }\n"
+SUSPENDED = "terminal = { buoy = sinker }\n"
 
 
 @pytest.fixture
@@ -146,8 +146,8 @@ def test_branch_as_a_file(imported: Callable[[str, float, str], Result]) -> None
     """
     layout = (
         clump(0.0) + wire(50) + BALL + wire(20) + JOINT
-        + "branch = {\n" + wire(20) + JOINT + wire(10) + HUNG + "}\n"
-        + wire(20) + JOINT + "branch = {\n" + wire(20) + HUNG + "}\n"
+        + "branch = {\n" + wire(20) + JOINT + wire(10) + SUSPENDED + "}\n"
+        + wire(20) + JOINT + "branch = {\n" + wire(20) + SUSPENDED + "}\n"
         + wire(20) + BALL + wire(50) + clump(120.0)
     )  # fmt: skip
     net = imported("horizontal", 70.0, layout)

@@ -244,8 +244,10 @@ def _fit(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[i
     rules += (
         f"; {100 * CONFIDENCE:.0f} % intervals by profile likelihood"
         if sure
-        else f"; no intervals: the shape {tail.shape:.2f} is not above {LEAST_SHAPE}, where the "
-        "theory of the likelihood ends"
+        else (
+            "; no intervals, because the likelihood theory is valid only for shapes above "
+            f"{LEAST_SHAPE}, and the shape is {tail.shape:.2f}"
+        )
     )
     levels = tuple(
         Level(period, tail.level(growth), *(tail.interval(growth) if sure else nothing))

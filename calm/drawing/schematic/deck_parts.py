@@ -8,7 +8,7 @@ from math import nan
 
 from calm.case.result_tables import run_of
 from calm.deck import Deck
-from calm.deck.deck_items import DeckItem, DeckRow, hardware_text, rows_on_paper
+from calm.deck.deck_items import DeckItem, DeckRow, hardware_text, printed_rows
 from calm.drawing.schematic.shown_parts import ShownPart, TextRow, afloat, one_line, place_text
 from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import MooringFile
@@ -57,7 +57,7 @@ def parts_of(
     found: list[ShownPart] = []
     joints: list[DeckItem] = []
     cable: Symbol | None = None
-    for row in rows_on_paper(listed, drawn=True):
+    for row in printed_rows(listed, drawn=True):
         one = row.first
         if one.is_connector and not one.apart and not getattr(one.part, "clamps", ()):
             joints += (*row.items, *row.joints)

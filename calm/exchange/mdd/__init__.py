@@ -11,4 +11,5 @@ register_format(
     lambda path, _: read_mdd(path),
     write_mdd,
     program="Mooring Design & Dynamics",
+    suffixes=(".mat",),
 )

@@ -239,18 +239,16 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
 def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
     """Return the matrix ``H``, shape (4, elements); a missing row of flags is filled with 0."""
     try:
-        size = variables.reals(name)
+        size = np.atleast_2d(variables.reals(name))
+        if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
+            size = size.T
+        if size.size and (size.ndim != 2 or size.shape[0] not in (3, 4)):
+            shape = "×".join(str(length) for length in size.shape)
+            raise ValueError(f"`{name}` is {shape}; it must have 4 rows, one column an element")
     except ValueError as error:
         problems.append(str(error))
         return np.zeros((4, 0))
-    if size.size == 0:
-        return np.zeros((4, 0))
-    size = np.atleast_2d(size)
-    if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
-        size = size.T
-    if size.ndim != 2 or size.shape[0] not in (3, 4):
-        shape = "×".join(str(length) for length in size.shape)
-        problems.append(f"`{name}` is {shape}; it must have 4 rows, one column an element")
+    if not size.size:
         return np.zeros((4, 0))
     return size if size.shape[0] == 4 else np.vstack([size, np.zeros(size.shape[1])])
 

@@ -11,4 +11,5 @@ register_format(
     write_moordyn,
     program="MoorDyn or MoorPy",
     writes_nets=True,
+    suffixes=(".txt", ".dat"),
 )

@@ -115,7 +115,7 @@ class _File:
 def read_moordyn(path: Path) -> model.ImportedDesign:
     """Read a single line from an anchor up to a float, or a net of legs.
 
-    InputError: it cannot be read, or holds a body or a rod.
+    InputError: the file cannot be read, or contains a body or a rod.
     """
     tables, options = _read_sections(path)
     for name in ("bodies", "rods"):

@@ -10,4 +10,4 @@ from calm.exchange.table.writer import write_list
 register_format(
     "table", is_table, read_list, program="a list in CSV or a spreadsheet", takes_elements=True
 )
-register_format("csv", write=write_list)
+register_format("csv", write=write_list, suffixes=(".csv",))

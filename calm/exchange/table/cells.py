@@ -292,9 +292,14 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     return decimal, ""
 
 
+def is_workbook(content: bytes) -> bool:
+    """Return whether a file is an Excel workbook."""
+    return content.startswith(_SPREADSHEETS)
+
+
 def is_table(content: bytes) -> bool:
     """Return whether a file is a workbook, or text whose lines share a separator."""
-    if content.startswith(_SPREADSHEETS):
+    if is_workbook(content):
         return True
     if content.startswith(_UTF_16):
         content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
@@ -317,7 +322,7 @@ def read_sheets(path: Path) -> ReadSheets:
     the file cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
-    if content.startswith(_SPREADSHEETS):
+    if is_workbook(content):
         sheets, hidden = _workbook(path, content)
     else:
         sheets, hidden = {"": cells_in(_text(path, content))}, {}

@@ -120,7 +120,6 @@ def _width(variables: MatVariables) -> int:
 
 
 def _entry(text: str, group: str, end: int) -> ListRow | None:
-    """Return the element of a row; None if the row cannot be read."""
     content = text.encode()
     try:
         figures = [float(word) for word in content[end:].split()]

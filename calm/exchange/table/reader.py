@@ -78,7 +78,9 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     rows = _from_the_top(rows, path, design)
     if headings and "depth" in headings.columns and not _go_down(rows):
         heading = headings.columns["depth"].heading
-        remarks.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
+        remarks.append(
+            model.Remark(f"column {heading}", ("does not grow down the line and was ignored"))
+        )
         for row in rows:
             row.figures.pop("depth", None)
     design.items = _items(rows)

@@ -25,7 +25,7 @@ _CONTROL = "a control character cannot be written into the file"
 _LAYOUT_PREVENTS = "the layout of the file does not allow this change; make it in the text"
 
 _EMPTY = """\
-# Every figure carries its unit: 12 mm, 1.5 knot, 35 kgf, 0.22 kgf/m, 30 deg, 1/2 in.
+# Every value has a unit: 12 mm, 1.5 knot, 35 kgf, 0.22 kgf/m, 30 deg, 1/2 in.
 
 name: New mooring
 

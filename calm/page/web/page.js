@@ -62,6 +62,76 @@ async function put(name, content, kind) {
 
 const contents = (files) => Promise.all(files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())]));
 
+// Keys without text, in Textual's notation. Characters, also those of AltGr and dead keys, come as text.
+const KEYS = { ArrowUp: "up", ArrowDown: "down", ArrowLeft: "left", ArrowRight: "right", PageUp: "pageup", PageDown: "pagedown",
+  Home: "home", End: "end", Insert: "insert", Delete: "delete", Backspace: "backspace", Enter: "enter", Tab: "tab", Escape: "escape" };
+const OF_BROWSER = ["ctrl+v", "shift+insert", "f11", "f12"]; // pastes arrive by their own event
+
+function keyName(event) {
+  const { key, shiftKey: shift, metaKey: meta } = event;
+  const third = event.getModifierState("AltGraph");
+  const [alt, ctrl] = [event.altKey && !third, event.ctrlKey && !third];
+  const named = KEYS[key] || (/^F\d+$/.test(key) && key.toLowerCase());
+  const lettered = (ctrl || alt) && /^[\x21-\x7e]$/.test(key) && key.toLowerCase();
+  if (meta || event.isComposing || !(named || lettered) || (lettered && shift)) return null;
+  const name = [alt && "alt", ctrl && "ctrl", shift && "shift", named || lettered].filter(Boolean).join("+");
+  return OF_BROWSER.includes(name) ? null : name;
+}
+
+const SCROLL = 50; // pixels for each event of the wheel
+
+// keyboard, clipboard and mouse
+function listen(terminal, send) {
+  terminal.attachCustomKeyEventHandler((event) => {
+    const text = event.type === "keydown" && keyName(event);
+    if (text) { event.preventDefault(); send({ kind: "key", text }); }
+    const types = [...event.key].length === 1 || ["Dead", "Process", "Unidentified"].includes(event.key);
+    return types && !text && (event.getModifierState("AltGraph") || !(event.ctrlKey || event.metaKey));
+  });
+  terminal.onData((text) => { if (!text.startsWith("\x1b")) send({ kind: "type", text }); }); // else a reply of the terminal
+
+  const place = $("terminal");
+  place.addEventListener("paste", (event) => {
+    event.preventDefault();
+    event.stopPropagation();
+    send({ kind: "paste", text: event.clipboardData.getData("text/plain") });
+  }, true);
+
+  const screen = terminal.element.querySelector(".xterm-screen");
+  const within = (value, most) => Math.max(0, Math.min(most - 1, Math.floor(value)));
+  let [pressed, last, scrolled] = [0, "", 0];
+  function mouse(text, event) {
+    const box = screen.getBoundingClientRect();
+    const x = within(((event.clientX - box.left) / box.width) * terminal.cols, terminal.cols);
+    const y = within(((event.clientY - box.top) / box.height) * terminal.rows, terminal.rows);
+    if (text === "move" && last === `${x} ${y}`) return;
+    last = `${x} ${y}`;
+    const held = { shift: event.shiftKey, alt: event.altKey, ctrl: event.ctrlKey };
+    send({ kind: "mouse", text, x, y, button: pressed, held });
+  }
+  // before xterm.js, which would select text
+  place.addEventListener("mousedown", (event) => {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    event.stopPropagation();
+    terminal.focus();
+    pressed = 1;
+    mouse("down", event);
+  }, true);
+  addEventListener("mouseup", (event) => {
+    if (event.button !== 0 || !pressed) return;
+    mouse("up", event);
+    pressed = 0;
+  }, true);
+  addEventListener("mousemove", (event) => { if (pressed || place.contains(event.target)) mouse("move", event); });
+  place.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    event.stopPropagation();
+    scrolled += event.deltaY * (event.deltaMode ? SCROLL / 2 : 1);
+    for (; Math.abs(scrolled) >= SCROLL; scrolled -= Math.sign(scrolled) * SCROLL) mouse(scrolled < 0 ? "scroll up" : "scroll down", event);
+  }, { capture: true, passive: false });
+}
+
 async function start() {
   const worker = new Worker(versioned("worker.js"), { type: "module" });
   const send = (message) => worker.postMessage(message);
@@ -75,10 +145,11 @@ async function start() {
   worker.onmessage = ({ data: { kind, text, content, share } }) => {
     if (kind === "write") terminal.write(text);
     else if (kind === "progress") { $("stage").textContent = text; $("progress").value = share; }
-    else if (kind === "open") { document.title = `${text} – CALM`; $("loading").hidden = true; terminal.focus(); }
+    else if (kind === "open") { document.title = `${text} – CALM`; $("loading").hidden = true; tell(""); terminal.focus(); }
     else if (kind === "saved") put(text, content, kind);
     else if (kind === "document") { put(text, content, kind); busy(false); }
     else if (kind === "told") tell(text);
+    else if (kind === "copied") navigator.clipboard?.writeText(text).catch(() => {});
     else if (kind === "failed") { tell(text, true); busy(false); }
     else if (kind === "stopped") { $("loading").hidden = false; stop(text); }
   };
@@ -89,8 +160,7 @@ async function start() {
     fontSize: 14, scrollback: 0, allowProposedApi: true, theme: { background: "#101418" },
   });
   terminal.open($("terminal"));
-  terminal.onData((text) => send({ kind: "type", text }));
-  terminal.onBinary((text) => send({ kind: "type", text }));
+  listen(terminal, send);
 
   // the number of cells that fit
   function fit() {
@@ -109,7 +179,7 @@ async function start() {
   // the bar
   function button(place, title, message, hint = "") {
     const made = Object.assign(document.createElement("button"), { textContent: title, title: hint });
-    made.onclick = () => { send(message); terminal.focus(); };
+    made.onclick = () => { tell(""); send(message); terminal.focus(); };
     $(place).append(made);
     return made;
   }

@@ -1,17 +1,15 @@
 // Python of the page: loads the runtime and CALM, then passes messages between the page and the builder.
 const FOLDER = "/moorings";
-// Pyodide's event loop names tasks by a function that its Python 3.13 does not have.
+// Pyodide's event loop fails with a task factory, which Textual sets.
 const BEGIN = `
-import asyncio.tasks
-if not hasattr(asyncio.tasks, "_set_task_name"):
-    asyncio.tasks._set_task_name = lambda task, name: task.set_name(name) if name else None
+import asyncio
+asyncio.get_event_loop().set_task_factory = lambda factory: None
 from calm.page.builder import WebPage
 WebPage
 `;
 const early = [];
 let builder = null;
 let python = null;
-let changed = false;
 
 const post = (kind, text, content) => self.postMessage({ kind, text, content });
 const begun = performance.now();
@@ -37,7 +35,6 @@ function receive(message) {
   const given = python.toPy(message);
   builder.receive(given);
   given.destroy();
-  changed = true;
 }
 
 async function fetched(name) {
@@ -58,34 +55,20 @@ async function start({ settings, columns, rows }) {
   const version = python.runPython("import sys; f'{sys.version_info[0]}.{sys.version_info[1]}'");
   python.unpackArchive(await archive, "zip", { extractDir: `/lib/python${version}/site-packages` });
 
-  // the files of earlier visits, and unsaved work
+  // the files of earlier visits, and unsaved work; each change is written to the IndexedDB of this browser
   python.FS.mkdirTree(FOLDER);
-  python.FS.mount(python.FS.filesystems.IDBFS, {}, FOLDER);
-  await synchronised(true);
-  keepFiles();
+  python.FS.mount(python.FS.filesystems.IDBFS, { autoPersist: true }, FOLDER);
+  await new Promise((done) => python.FS.syncfs(true, (error) => { if (error) console.info(`files are not kept: ${error}`); done(); }));
 
   progress("Starting CALM …", 0.75);
   const toPage = (kind, text, content) => {
     let bytes = null;
     if (content) { bytes = content.toJs(); content.destroy(); }
     post(kind, text, bytes);
-    if (kind === "saved") changed = true;
   };
   const make = python.runPython(BEGIN);
   builder = make(toPage, FOLDER, columns, rows);
   progress("Opening the line …", 0.95);
   early.splice(0).forEach(receive);
   await builder.run();
-}
-
-function keepFiles() {
-  setTimeout(async () => {
-    if (changed) { changed = false; await synchronised(false); }
-    keepFiles();
-  }, 3000);
-}
-
-// IndexedDB of this browser; without it files last as long as the page
-function synchronised(fromBrowser) {
-  return new Promise((done) => python.FS.syncfs(fromBrowser, (error) => { if (error) console.info(`files are not kept: ${error}`); done(); }));
 }

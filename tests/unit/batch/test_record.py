@@ -187,8 +187,8 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
             "level is used there, in 300.0 m of water",
             "the strongest of 20 currents is 0.0092 m/s in the declared unit, cm/s; are they in "
             "m/s or kn?",
-            "levels where the current or their depth has no value are left out of their profile",
-            "levels above the surface are left out",
+            "levels without a current or a depth are excluded from their profile",
+            "levels above the surface are excluded",
             "levels below the seabed are used where they have a value: the current at the seabed "
             "lies between",
             "between levels the current is linear in depth, beyond the first and the last it is "

@@ -159,7 +159,7 @@ def test_drag_along_a_leaning_wire(tmp_path):
 
 
 def test_each_rule_is_judged_at_both_stops_and_where_the_wire_leans_most(tmp_path):
-    names = [each.name for each in check(mooring(tmp_path, TURNING)).stands[0].situations]
+    names = [each.name for each in check(mooring(tmp_path, TURNING)).in_environments[0].situations]
     assert "MMP at its lower stop" in names
     assert "MMP at its largest wire angle" in names
     assert [each for each in names if "MMP" in each] == names[2:4]

@@ -138,7 +138,7 @@ def test_a_target_beyond_the_anchor(mooring):
     nearest = LENGTH * (1.0 - 1.0 / sqrt(1.0 + best**2))
     assert f"The closest is {nearest:.4g}" in sizing.message
     assert "float.buoyancy at 1900 N" in sizing.message or "1899.9" in sizing.message
-    assert "Above that: anchor-lifts: The vertical load of the line is" in sizing.message
+    assert "Above this value: anchor-lifts: The vertical load of the line is" in sizing.message
     assert "--between" in sizing.advice
 
 
@@ -227,7 +227,7 @@ def test_the_document_is_plain_json(mooring):
         ("knockdown(top) <= 2 kg", "float.buoyancy", None, "`2 kg` is a mass; a length"),
         ("tilt(CDT) <= 2 deg", "float.buoyancy", None, "did you mean `CTD`?"),
         ("tilt(glass) <= 2 deg", "float.buoyancy", None, "2 parts have the label `glass`"),
-        ("required_weight(top) <= 2 N", "float.buoyancy", None, "leave out the brackets"),
+        ("required_weight(top) <= 2 N", "float.buoyancy", None, "omit the brackets"),
         ("tilt <= 2 deg", "float", None, "there is no field to change; allowed: buoyancy, count"),
         ("tilt <= 2 deg", "float.bouyancy", None, "did you mean `buoyancy`?"),
         ("tilt <= 2 deg", "flaot.buoyancy", None, "did you mean `float`?"),

@@ -53,7 +53,7 @@ def test_an_anchor_is_judged_where_what_it_weighs_in_water_is_known(load, figure
     warned = [each for each in result.warnings if "is assumed to be steel (7850 kg/m³)" in each]
     assert len(warned) == (not known)
     assessment = check(mooring)
-    found = {one.rule: one for one in assessment.stands[0].findings if one.rule in RULES}
+    found = {one.rule: one for one in assessment.in_environments[0].findings if one.rule in RULES}
     missing = [one.missing for one in assessment.findings if one.missing is not None]
     needed = {one.quantity: set(one.needed_by) for one in missing}
     assert set(found) == (set(RULES) if known else set())
@@ -75,6 +75,6 @@ def test_an_anchor_slides_below_the_weight_that_holds_both_pulls(load, share, st
     """Dewey's rule: 1.5 (V + H / 0.6) in water, H and V the pulls on the anchor."""
     pulls = load(", weight: 5000 N").solve().anchor
     needed = 1.5 * (pulls.vertical + pulls.horizontal / 0.6)
-    stands = check(load(f", weight: {share * needed} N")).stands[0]
-    found = {one.rule: one for one in stands.findings if one.situation == "as given"}
+    in_environments = check(load(f", weight: {share * needed} N")).in_environments[0]
+    found = {one.rule: one for one in in_environments.findings if one.situation == "as given"}
     assert found["anchor-sliding"].state == found["anchor-weight"].state == state

@@ -4,7 +4,12 @@ import pytest
 
 import calm
 from calm.checks.design_check import check
-from calm.checks.recovery import breaks_of, losses_of
+from calm.checks.leg_graph import LegGraph
+
+
+def losses_of(leg):
+    return LegGraph.upright(leg).losses(leg)
+
 
 FILE = """
 name: By hand
@@ -33,7 +38,8 @@ def breaks(tmp_path):
     def of(text=FILE):
         path = tmp_path / "m.yaml"
         path.write_text(text)
-        return breaks_of(calm.load(path).leg)
+        leg = calm.load(path).leg
+        return LegGraph.upright(leg).breaks(leg)
 
     return of
 

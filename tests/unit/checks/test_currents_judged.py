@@ -3,7 +3,7 @@
 import pytest
 
 from calm.case import load
-from calm.checks.design_check import assessment_of, stands_of
+from calm.checks.design_check import assessment_of, environments_checked
 from calm.checks.situations import currents
 from calm.errors import InputError
 from calm.files.strumming_keys import StrummingFactor
@@ -91,13 +91,13 @@ def test_a_profile_that_does_not_cover_the_line_is_told(current, tmp_path):
 def test_a_mooring_deployed_elsewhere_is_unknown(tmp_path):
     where = "deployed: {position: {latitude: 21 deg, longitude: -10 deg}}\n"
     mooring = of(tmp_path, more=where)
-    assessment = assessment_of("m", stands_of(mooring, "m"))
+    assessment = assessment_of("m", environments_checked(mooring, "m"))
     (found,) = (one for one in assessment.findings if one.rule == "as-deployed")
     assert found.state == "unknown"
     assert found.message.startswith("Deployed 3002 km from the planned position")
     near = of(tmp_path, more=where.replace("21", "48.1"))
     assert not [
-        one for one in assessment_of("m", stands_of(near, "m")).findings
+        one for one in assessment_of("m", environments_checked(near, "m")).findings
         if one.rule == "as-deployed"
     ]  # fmt: skip
 
@@ -132,7 +132,7 @@ def test_an_accept_by_nobody_is_told(tmp_path):
         thin = SOUND.replace("weight: 0.2 N/m", "weight: 0.2 N/m, cn: 0.001")
         thin = thin.replace("CURRENT", HALF)
         judged = load(tmp_path / "m.yaml", text=thin + text.replace(" MORE", more))
-        notices = assessment_of("m", stands_of(judged, "m")).notices
+        notices = assessment_of("m", environments_checked(judged, "m")).notices
         assert (
             notices.count("1 of 1 `accept` entries lacks a name (`by`) or an end date (`until`)")
             == count

@@ -45,7 +45,7 @@ def judged(tmp_path: Path, figures: str, checks: str = "", waves: str = "") -> A
 
 def of_link(assessment: Assessment, rule: str) -> tuple[State, float | None, str]:
     (finding,) = [
-        one for one in assessment.stands[0].findings
+        one for one in assessment.in_environments[0].findings
         if (one.rule, one.component, one.situation) == (rule, "link", "as given")
     ]  # fmt: skip
     return finding.state, finding.limit, finding.message
@@ -109,7 +109,7 @@ def test_what_an_estimate_leaves_unknown_may_be_accepted(tmp_path: Path) -> None
 
 def test_results_show_no_estimate_as_a_figure(tmp_path: Path) -> None:
     assessment = judged(tmp_path, ESTIMATE.replace("LOW", "3 kN"))
-    result = assessment.stands[0].result
+    result = assessment.in_environments[0].result
     assert result is not None
     (row,) = [row for row in result.components if row.label == "link"]
     assert row.part.component.working_load is None

@@ -10,7 +10,7 @@ import pytest
 
 from calm.case import load
 from calm.checks.assess import ONCE, RULES
-from calm.checks.design_check import assessment_of, stands_of
+from calm.checks.design_check import assessment_of, environments_checked
 from calm.checks.finding import Finding
 from calm.shipped import shipped_folder
 from tests.judged import without_checks
@@ -643,7 +643,7 @@ FLAWS = (
         "clamp-grip",
         "CTD 900 m",
         "fail",
-        "it grips 1.00 N",
+        "its grip is 1.00 N",
     ),
     Flaw(
         "a wire that winds up its float",
@@ -830,7 +830,7 @@ FLAWS = (
         "figures",
         "wire 1",
         "fail",
-        "wire 1 has a buoyancy of 1.2 N/m; water of its diameter weighs",
+        "wire 1 has a buoyancy of 1.2 N/m; water of the same diameter weighs",
     ),
     Flaw(
         "a wire of 250 m in place of 200 m",
@@ -967,7 +967,7 @@ def _findings(flaw: Flaw, folder: Path) -> Iterable[Finding]:
     path = folder / "flawed.yaml"
     path.write_text(text, encoding="utf-8")
     mooring = load(path)
-    (stand,) = stands_of(mooring, "flawed")
+    (stand,) = environments_checked(mooring, "flawed")
     if flaw.rule in {"current", "environment", "missing", *(rule.name for rule in ONCE)}:
         return assessment_of("flawed", [stand]).all_findings()
     return stand.findings  # no launch and no recovery need be computed

@@ -37,7 +37,7 @@ def test_governing_use_is_that_of_every_situation_solved(name: str) -> None:
     found = [one for one in _judged(name).every_finding() if one.rule == "tilt"]
     every = [
         (row.tilt, limit)
-        for stand in _judged(name).stands
+        for stand in _judged(name).in_environments
         for situation in stand.situations
         if situation.result is not None
         for row in (*situation.result.components, *situation.result.clamps)

@@ -68,7 +68,7 @@ def test_an_anchor_is_too_light_where_the_float_lifts_more():
 def test_the_top_is_too_shallow_where_the_water_is():
     # upright at 500 - 400 - stretch 7.6 m; 90 m is reached 2.4 m shallower, of 5 m a deviation
     found = judged(depth="1 %")
-    (result,) = [stand.result for stand in found.stands]
+    (result,) = [stand.result for stand in found.in_environments]
     deviations = (result.top.depth - 90.0) / 5.0
     assert 0.2 < deviations < 0.7
     assert probability(found, "top-depth", "top float") == pytest.approx(

@@ -8,10 +8,9 @@ import pytest
 
 from calm.case import Design, load
 from calm.checks.assessment import Assessment
-from calm.checks.design_check import assessment_of, stands_of
+from calm.checks.design_check import assessment_of, environments_checked
 from calm.checks.finding import State
 from calm.checks.leg_graph import LegGraph
-from calm.checks.recovery import breaks_of, losses_of
 
 WATER = """\
 name: n
@@ -48,14 +47,14 @@ def line(text: str) -> Design:
 
 
 def judged(net: Design) -> Assessment:
-    return assessment_of("n", stands_of(net, "n"))
+    return assessment_of("n", environments_checked(net, "n"))
 
 
 @pytest.mark.parametrize("text", [ONE_LEG, TWO_LEGS])
 def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
     """Every situation and rule; 1e-3 is what the stated errors of both allow of a tension."""
     single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
-    whole = assessment_of("n", stands_of(single, "n"))
+    whole = assessment_of("n", environments_checked(single, "n"))
     # what runs from piece to piece is seen within a leg alone
     of_neighbours = {"strength-steps", "swivel", "metals", "release-present"}
     handled = {"launch-strength", "launch-speed", "recovery", "tangling", "missing"}
@@ -80,7 +79,8 @@ def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
 def test_its_breaks_and_losses_are_those_of_the_line(text: str) -> None:
     """Lifts are taken where the line stands, not upright: a metre of depth is 1e-5 of them."""
     single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
-    for mine, its in ((breaks_of(single.leg), net.backup), (losses_of(single.leg), net.losses)):
+    leg, graph = single.leg, LegGraph.upright(single.leg)
+    for mine, its in ((graph.breaks(leg), net.backup), (graph.losses(leg), net.losses)):
         assert [each.label for each in mine] == [each.label for each in its]
         for one, other in zip(mine, its, strict=True):
             for name in ("margin", "weight_lifted", "required", "judged", "loose"):
@@ -133,7 +133,7 @@ def test_each_anchor_is_judged_by_its_own_rules(y: Assessment) -> None:
 
 def test_a_break_of_any_leg_says_what_is_left_and_what_drifts(y: Assessment) -> None:
     result = load(Path("y.yaml"), text=Y).solve()
-    graph = LegGraph(result.legs)
+    graph = LegGraph.in_equilibrium(result.legs)
     lift = dict(zip([piece.label for piece in graph.pieces], graph.lifts.tolist(), strict=True))
     breaks = {each.label: each for each in y.backup}
     assert list(breaks) == ["top", "upper wire", "west wire", "east wire"]
@@ -162,7 +162,7 @@ def test_what_no_release_frees_is_unknown() -> None:
 def test_a_net_that_does_not_stand_is_a_failure_with_its_reason() -> None:
     text = Y.replace("length: 130 m", "length: 10 m")  # its anchors are 80 m apart
     found = judged(load(Path("y.yaml"), text=text))
-    assert [each.rule for each in found.stands[0].findings] == ["equilibrium"]
+    assert [each.rule for each in found.in_environments[0].findings] == ["equilibrium"]
     assert found.state is State.FAIL
 
 

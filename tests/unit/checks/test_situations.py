@@ -272,7 +272,7 @@ def found(assessment: Assessment, rule: str, situation: str) -> list[str]:
 
 def test_a_buoy_that_the_tide_drowns_fails(tmp_path: Path) -> None:
     one = judged(tmp_path, high=112, speed=0.3, length=98)
-    high = next(each for each in one.stands[0].situations if each.name == "high water")
+    high = next(each for each in one.in_environments[0].situations if each.name == "high water")
     assert high.result is not None and high.result.type == "subsurface"
     assert found(one, "reserve", "as given") == ["pass"]
     assert found(one, "reserve", "high water") == ["fail"]
@@ -282,11 +282,14 @@ def test_a_buoy_that_the_tide_drowns_fails(tmp_path: Path) -> None:
 def test_a_buoy_on_a_slack_line_that_the_current_takes_under_fails(tmp_path: Path) -> None:
     """It has no shape in still water, and is a buoy all the same: with the factor of one."""
     one = judged(tmp_path, high=101, speed=3.0, length=108)
-    assert one.stands[0].result is not None and one.stands[0].result.type == "subsurface"
+    assert (
+        one.in_environments[0].result is not None
+        and one.in_environments[0].result.type == "subsurface"
+    )
     assert found(one, "reserve", "as given") == ["fail"]
     (rope,) = [
         each
-        for each in one.stands[0].findings
+        for each in one.in_environments[0].findings
         if (each.rule, each.component, each.situation) == ("strength", "rope", "as given")
     ]
     assert rope.limit == pytest.approx(40_000.0 / 5.0)
@@ -296,7 +299,7 @@ def test_a_taut_line_is_slackest_in_still_low_water(tmp_path: Path) -> None:
     one = judged(tmp_path, high=101, speed=0.5, length=92)
     least = {
         each.name: each.result.components.least_tension[1]
-        for each in one.stands[0].situations
+        for each in one.in_environments[0].situations
         if each.result is not None
     }
     assert min(least, key=lambda name: float(least[name])) == "still low water"
@@ -305,10 +308,10 @@ def test_a_taut_line_is_slackest_in_still_low_water(tmp_path: Path) -> None:
 def test_the_least_margin_of_a_rule_is_told_whatever_the_state(tmp_path: Path) -> None:
     one = check(mooring(tmp_path))
     (given,) = [
-        each for each in one.stands[0].findings
+        each for each in one.in_environments[0].findings
         if (each.rule, each.situation) == ("anchor-weight", "as given")
     ]  # fmt: skip
-    (tighter,) = [each for each in one.stands[0].tighter if each.rule == "anchor-weight"]
+    (tighter,) = [each for each in one.in_environments[0].tighter if each.rule == "anchor-weight"]
     assert tighter.situation == "strumming"
     assert tighter.state is given.state
     assert tighter.margin is not None and given.margin is not None
@@ -321,7 +324,7 @@ def test_a_line_that_folds_in_still_water_fails(tmp_path: Path) -> None:
     path.write_text(FOLD, encoding="utf-8")
     read = load(path)
     one = check(read)
-    assert one.stands[0].result is not None
+    assert one.in_environments[0].result is not None
     assert found(one, "equilibrium", "still water") == ["fail"]
 
 

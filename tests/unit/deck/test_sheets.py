@@ -7,7 +7,7 @@ import pytest
 
 import calm
 from calm.deck import Deck, deck_of
-from calm.deck.deck_items import Order, hardware_text, rows_on_paper
+from calm.deck.deck_items import Order, hardware_text, printed_rows
 from calm.deck.hardware import Stock, all_shipped
 from calm.drop import drop_plan
 from calm.drop.fall import Fineness
@@ -83,7 +83,7 @@ def test_the_order_over_the_side(moorings, deck):
 
 def test_what_shares_a_row_on_paper(tmp_path, deck):
     told = [
-        (row.label, row.name, hardware_text(row.joints)) for row in rows_on_paper(deck.deployment)
+        (row.label, row.name, hardware_text(row.joints)) for row in printed_rows(deck.deployment)
     ]
     assert told[:3] == [
         # the shackle with a serial number is a row of its own
@@ -100,7 +100,7 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
                         "  wire: {kind")  # fmt: skip
     (tmp_path / "m.yaml").write_text(text)
     sheets = deck_of([calm.load(tmp_path / "m.yaml")])
-    rows = {row.label: row for row in rows_on_paper(sheets.deployment)}
+    rows = {row.label: row for row in printed_rows(sheets.deployment)}
     cluster = rows["cluster"]
     assert (cluster.name, hardware_text(cluster.joints)) == ("2 × pack", "13 shackle")
     assert len(_parts_of(rows["cluster"])) == 4
@@ -109,7 +109,7 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     # nothing is lost, nothing counted twice; the other way round the same clusters
     for order in Order:
         listed = deck_of([sheets.result.design], order).deployment
-        assert sum(len(_parts_of(row)) for row in rows_on_paper(listed)) == len(sheets.parts)
+        assert sum(len(_parts_of(row)) for row in printed_rows(listed)) == len(sheets.parts)
 
 
 def _parts_of(row):

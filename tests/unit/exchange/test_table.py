@@ -779,7 +779,9 @@ def test_depths_that_are_no_places_plan_nothing(old, new, read, tmp_path):
     made = read(PLANNED.replace(old, new))
     assert all(part.planned_depth is None for part in parts_of(pieces(made, tmp_path)))
     told = [str(each) for each in made.guessed]
-    assert (new == ",6000,") == ("column Depth (m): does not grow down the line: left out" in told)
+    assert (new == ",6000,") == (
+        "column Depth (m): does not grow down the line and was ignored" in told
+    )
 
 
 @pytest.mark.parametrize("heading", ["Länge kumuliert [m]", "Distance from anchor (m)"])

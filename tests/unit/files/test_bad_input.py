@@ -118,7 +118,7 @@ ONE_MISTAKE = {
     ),
     "depth without fit": (
         changed("480 m", "480 m, top_depth: 90 m"),
-        (11, 35, "`top_depth` goes with `length: fit`"),
+        (11, 35, "`top_depth` is only for `length: fit`"),
     ),
     "fit below the seabed": (
         changed("480 m", "fit, top_depth: 1100 m"),

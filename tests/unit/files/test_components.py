@@ -178,7 +178,7 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
             "gives `kn` and `cd`; drag must be given by one of: `kn` with `kt`, `drag_area` with "
             "`cd`, `drag_measurements`, or `made_of`",
         ),
-        ({"drag_area": "1 m^2"}, "`drag_area` and `cd` go together"),
+        ({"drag_area": "1 m^2"}, "`drag_area` and `cd` must be given together"),
         ({"kn": "1 N/(m/s)^2"}, "`kn` needs `kt`, or `inclination: insensitive`"),
         ({"made_of": []}, "`made_of` is empty"),
         ({"drag_measurements": []}, "`drag_measurements` is empty"),
@@ -188,11 +188,11 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
         ),
         (
             {"kn": "1 N/(m/s)^2", "kt": "1 N/(m/s)^2", "inclination": "insensitive"},
-            "`kt` has no meaning with `inclination: insensitive`",
+            "`kt` is not used with `inclination: insensitive`",
         ),
         (
             {"made_of": [{"kind": "sphere", "diameter": "1 m"}], "kt": "1 N/(m/s)^2"},
-            "`kt` has no meaning with `made_of`",
+            "`kt` is not used with `made_of`",
         ),
         ({"made_of": [{"kind": "cone"}]}, "`kind: cone` must be one of sphere, cylinder"),
         ({"made_of": [{"kind": ["cone"]}]}, "`kind: …` must be one of sphere, cylinder"),

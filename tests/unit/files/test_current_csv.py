@@ -67,7 +67,7 @@ def test_levels_of_a_record_without_a_value_are_left_out(csv: Path) -> None:
     table, notices = profile(csv, text, "2026-03-01T06:00")
     assert (table.depth, notices[0]) == (
         (0.0,),
-        "1 level without a value left out of the current",
+        "1 level without a value excluded from the current",
     )
     assert profile(csv, text, "2026-03-01T12:00")[0].depth == (50.0,)
     gap = text.replace("0,0.5,0.1", "0,,")

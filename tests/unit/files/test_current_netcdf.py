@@ -134,14 +134,14 @@ def test_levels_without_a_value_are_left_out(tmp_path: Path) -> None:
     dataset["uo"][1] = np.nan
     table, notices = read(dataset, tmp_path)
     assert table.depth == (5.0, 200.0)
-    assert notices == ["1 level without a value left out of the current"]
+    assert notices == ["1 level without a value excluded from the current"]
 
 
 def test_levels_above_the_surface_are_left_out(tmp_path: Path) -> None:
     dataset = profile().assign_coords(depth=("depth", [-3.0, 4.0, 11.0], DEPTH[2]))
     table, notices = read(dataset, tmp_path)
     assert table.depth == (4.0, 11.0)
-    assert notices[0] == "1 level above the surface left out of the current"
+    assert notices[0] == "1 level above the surface excluded from the current"
 
 
 @pytest.mark.parametrize(
@@ -188,7 +188,7 @@ def test_one_current_meter_is_a_profile_of_one_level(tmp_path: Path) -> None:
 def test_currents_that_are_flagged_as_bad_are_left_out(tmp_path, flags, told, left) -> None:
     table, notices = read(profile(uo_QC=("depth", flags, told)), tmp_path)
     assert table.depth == left
-    said = "1 of 3 currents are left out, as `uo_QC` marks them as bad"
+    said = "1 of 3 currents were excluded, because `uo_QC` marks them as bad"
     assert (said in notices) == (len(left) < 3)
 
 

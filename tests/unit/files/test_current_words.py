@@ -348,7 +348,7 @@ def test_valid_ranges_are_honoured(
     dataset["u"].encoding = encoding
     table, notices = read(dataset, tmp_path)
     assert table.u == pytest.approx([u for u, good in zip(U, known, strict=True) if good])
-    assert notices[0].endswith("without a value left out of the current")
+    assert notices[0].endswith("without a value excluded from the current")
 
 
 @pytest.mark.parametrize("fill", [-32.768, 99.99, 999.9, -9999.0])

@@ -104,7 +104,7 @@ NAMES = "none, bourget-marichal, vandiver, blevins, skop-griffin"
         (
             "{model: vandiver}",
             21,
-            "`vandiver` has no figures to give; write `strumming: vandiver`",
+            "`vandiver` takes no values; write `strumming: vandiver`",
         ),
         (
             "{model: bourget}",

@@ -178,11 +178,11 @@ ONE_MISTAKE = {
     ),
     "depth without fit": (
         changed("100 m", "100 m, body_depth: 70 m"),
-        (4, 35, "`body_depth` goes with `length: fit`"),
+        (4, 35, "`body_depth` is only for `length: fit`"),
     ),
     "depth of a rigid piece": (
         changed("label: fish", "body_depth: 70 m"),
-        (5, 18, "`body_depth` goes with `length: fit`"),
+        (5, 18, "`body_depth` is only for `length: fit`"),
     ),
     "depth misspelt": (
         changed("100 m", "fit, body_dept: 70 m"),

@@ -87,12 +87,60 @@ def test_text_of_an_instrument_becomes_a_dataset(tmp_path):
         assert copy["TIME"].values[1] == START + HOUR
         assert copy["PRES"].values == pytest.approx([152.0, np.nan], nan_ok=True)
         assert copy["CNDC"].attrs["units"] == "mS/cm" and float(copy["NOMINAL_DEPTH"]) == 150.0
+        assert copy["CNDC"].attrs["long_name"] == "sea water electrical conductivity"
         assert copy["NOMINAL_DEPTH"].attrs["units"] == "m"
         # by the estimated depth where no pressure was measured
         pressure = [152.0, gsw.p_from_z(-151.0, 45.0)]
         expected = gsw.SP_from_C([33.1, 33.2], [4.5, 4.6], pressure)
         assert copy["PSAL"].values == pytest.approx(expected, abs=1e-9)
         assert copy.attrs["serial_number"] == "22" and "DEPTH estimated" in copy.attrs["history"]
+
+
+MOORING = {
+    "title": "M 1: where its parts were", "keywords": "of the motion", "creator_name": "A. Martin",
+    "creator_email": "a.martin@example.org", "license": "CC-BY-4.0",
+    "geospatial_lat_min": 48.0, "geospatial_lon_min": -10.0,
+}  # fmt: skip
+
+
+def test_a_copy_says_what_is_known_of_the_mooring_and_keeps_what_its_file_said(tmp_path):
+    said = {"creator_name": "B. Other", "geospatial_vertical_max": 9.0}
+    path = single(tmp_path / "a.nc", NOMINAL_DEPTH=((), 150.0, {"units": "m"}),
+                  attrs={"instrument_serial_number": "22", **said})  # fmt: skip
+    (read,), _ = read_instruments(path, LINE)
+    write_depths(read, result().assign_attrs(MOORING), GAP, tmp_path / "copy.nc")
+    with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
+        about = copy.attrs
+        assert "DEPTH" in copy["TEMP"].coords
+    first, last = (f"{np.datetime_as_string(read.time[i], 's')}Z" for i in (0, -1))
+    assert (about["time_coverage_start"], about["time_coverage_end"]) == (first, last)
+    assert (about["geospatial_vertical_min"], about["geospatial_vertical_max"]) == (150.0, 152.0)
+    assert about["geospatial_vertical_positive"] == "down"
+    assert about["geospatial_bounds"] == "POINT (48.000000 -10.000000)"
+    assert (about["title"], about["creator_name"], about["license"]) == (
+        "mine", "B. Other", "CC-BY-4.0"
+    )  # fmt: skip
+    assert about["geospatial_lat_min"] == about["geospatial_lat_max"] == 48.0
+    # neither a part of what the file says of its creator, nor what nobody said
+    assert not {"creator_email", "Conventions", "keywords", "id", "project"} & {*about}
+
+
+def test_a_copy_of_text_is_a_file_for_archives(tmp_path):
+    path = tmp_path / "a_1.use"
+    path.write_text("SerialNumber = 22\nInstrDepth = 150\nColumns = YY:MM:DD:HH:T:C\n"
+                    "2026 3 1 0.5 4.5 33.1\n2026 3 1 1.0 4.6 33.2\n")  # fmt: skip
+    (read,), _ = read_instruments(path, LINE)
+    write_depths(read, result().assign_attrs(MOORING), GAP, tmp_path / "copy.nc")
+    with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf", decode_coords=False) as copy:
+        assert (float(copy["LATITUDE"]), float(copy["LONGITUDE"])) == (48.0, -10.0)
+        assert copy["TEMP"].attrs["coordinates"] == "LATITUDE LONGITUDE STATION DEPTH"
+        assert copy["DEPTH"].attrs["axis"] == "Z" and copy.attrs["featureType"] == "timeSeries"
+        assert {"CF-1.11", "ACDD-1.3"} <= {*copy.attrs["Conventions"].split(", ")}
+        assert copy.attrs["id"] == "OS_M-1_202603_D_a-1"
+        assert copy.attrs["title"] == "M 1: a_1.use"
+        assert copy.attrs["keywords"] == "sea_water_temperature, sea_water_electrical_conductivity"
+        for name in ("TIME", "TEMP", "CNDC", "PSAL", "DEPTH"):
+            assert {"standard_name", "long_name"} <= {*copy[name].attrs}, name
 
 
 def without_times(path):
@@ -169,7 +217,8 @@ def test_a_copy_keeps_to_cf_as_its_original(tmp_path):
     (read,), _ = read_instruments(path, LINE)
     write_depths(read, result(), GAP, tmp_path / "copy.nc")
     with h5netcdf.File(tmp_path / "copy.nc") as copy:
-        assert copy["TEMP"].attrs["coordinates"] == "TIME NOMINAL_DEPTH"
+        assert copy["TEMP"].attrs["coordinates"] == "TIME NOMINAL_DEPTH DEPTH"
+        assert "coordinates" not in copy["TIME"].attrs
         assert "ancillary_variables" not in copy["TEMP"].attrs
         assert "_FillValue" not in copy["LATITUDE"].attrs
         assert "axis" not in copy["DEPTH"].attrs

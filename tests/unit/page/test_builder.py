@@ -7,6 +7,7 @@ from functools import partial
 from io import BytesIO
 
 import pytest
+from textual.widgets import Input
 
 from calm.files.editing.working_file import Keeper
 from calm.page import driver
@@ -86,16 +87,64 @@ def test_a_first_visit_shows_an_example(visit):
     visit(story)
 
 
+def key(text):
+    return {"kind": "key", "text": text}
+
+
+def mouse(text, x, y, button=0):
+    held = {"shift": False, "alt": False, "ctrl": False}
+    return {"kind": "mouse", "text": text, "x": x, "y": y, "button": button, "held": held}
+
+
 def test_keys_mouse_and_sizes_arrive(visit):
     async def story(page, sent):
+        app = page.app
         page.receive({"kind": "resize", "columns": 100, "rows": 30})
-        await until(lambda: page.app.size == (100, 30))
+        await until(lambda: app.size == (100, 30))
         page.receive({"kind": "type", "text": "m"})
-        await until(lambda: page.app.screen is not page.app.builder)
-        page.receive({"kind": "type", "text": "\x1b"})  # Escape alone
-        await until(lambda: page.app.screen is page.app.builder)
-        page.receive({"kind": "type", "text": "\x1b[<0;10;5M\x1b[<0;10;5m"})
-        await until(lambda: page.app.is_idle)
+        await until(lambda: app.screen is not app.builder)
+        page.receive(key("escape"))
+        await until(lambda: app.screen is app.builder)
+        table = app.builder.query_one("LineTable")
+        first = table.cursor
+        page.receive(mouse("scroll down", 10, 5))
+        for kind in ("move", "down", "up"):
+            page.receive(mouse(kind, 10, 6, button=0 if kind == "move" else 1))
+        await until(lambda: table.cursor != first)
+        page.receive(key("up"))
+        await until(lambda: app.is_idle and not app.has_keys_waiting)
+
+    visit(story)
+
+
+def test_text_is_typed_and_pasted_into_a_field(visit):
+    async def story(page, sent):
+        app = page.app
+        page.receive(key("n") | {"kind": "type"})  # the label in place
+        await until(lambda: isinstance(app.focused, Input))
+        page.receive({"kind": "type", "text": "/-\x01 é"})
+        page.receive({"kind": "paste", "text": "深 end"})
+        await until(lambda: app.focused.value.endswith("/- é深 end"))
+        page.receive({"kind": "type", "text": "\r"})  # as an on-screen keyboard sends it
+        await until(lambda: "深 end" in app.session.draft.text)
+
+    visit(story)
+
+
+def test_a_paste_on_the_line_pastes_the_copied_rows(visit):
+    async def story(page, sent):
+        pieces = page.app.session.draft.text.count("use:")
+        page.receive(key("ctrl+c"))
+        page.receive({"kind": "paste", "text": ""})
+        await until(lambda: page.app.session.draft.text.count("use:") == pieces + 1)
+
+    visit(story)
+
+
+def test_a_copied_text_goes_to_the_clipboard_of_the_browser(visit):
+    async def story(page, sent):
+        page.app.copy_to_clipboard("some text")
+        assert sent.of("copied") == [("some text", None)]
 
     visit(story)
 
@@ -143,6 +192,16 @@ def test_files_are_opened_and_unsaved_work_is_offered_again(visit, tmp_path, mon
         await until(lambda: sent.of("open")[-1][0] == FIRST)
         await until(lambda: page.app is not None and page.app.is_running)
         await until(lambda: page.app.screen is not page.app.builder)  # the offer
+
+    visit(story)
+
+
+def test_a_file_that_is_no_text_is_refused(visit, tmp_path):
+    async def story(page, sent):
+        page.receive({"kind": "open", "files": [["photo.yaml", bytes(range(256))]]})
+        assert sent.of("failed") == [("photo.yaml: is a binary file; text is needed", None)]
+        assert sent.of("open") == [(FIRST, None)]
+        assert not (tmp_path / "moorings/photo.yaml").exists()
 
     visit(story)
 

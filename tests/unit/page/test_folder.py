@@ -129,5 +129,9 @@ def test_a_runtime_that_lacks_files_is_refused(tmp_path, runtime):
     with pytest.raises(UsageError, match=r"lacks xterm\.css, pydantic-core\.whl; it must contain"):
         write_page(tmp_path / "page", runtime)
     assert not (tmp_path / "page").exists()
+    lock = runtime / "pyodide/pyodide-lock.json"
+    lock.write_text(lock.read_text().replace('"gsw": {"file', '"other": {"file'))
+    with pytest.raises(UsageError, match=r"lacks xterm\.css, gsw, pydantic-core\.whl;"):
+        write_page(tmp_path / "page", runtime)
     with pytest.raises(UsageError, match="there is no folder"):
         write_page(tmp_path / "page", runtime / "nowhere")

@@ -150,13 +150,13 @@ def test_as_many_ranges_as_unknowns_give_no_interval():
     located = locate(survey([0.0, 120.0, 240.0], 1500.0), ONE)
     assert located.depth == pytest.approx(DEPTH, abs=1e-3)
     assert located.to_dict()["horizontal_95"] is None
-    assert any("no more ranges than unknowns" in each for each in located.warnings)
+    assert any("only as many ranges as unknowns" in each for each in located.warnings)
 
 
 def test_too_few_ranges_are_refused():
     with pytest.raises(UsageError, match=r"2 ranges; 3 are needed .* or 2 with --depth"):
         locate(survey([0.0, 120.0], 1500.0), ONE)
-    with pytest.raises(UsageError, match="1 range; 2 are needed to find a place"):
+    with pytest.raises(UsageError, match="1 range; 2 are needed to find a position"):
         locate(survey([0.0], 1500.0), ONE, depth=DEPTH)
 
 
@@ -164,8 +164,8 @@ def test_too_few_ranges_are_refused():
     ("bearing", "distance", "said"),
     [
         (np.linspace(0.0, 100.0, 10), 1500.0, "one side"),
-        (ROUND, 150.0, "nearly above"),
-        (ROUND, 9000.0, "from afar"),
+        (ROUND, 150.0, "nearly overhead"),
+        (ROUND, 9000.0, "from far away"),
     ],
 )
 def test_poor_geometry_is_reported(bearing, distance, said):
@@ -178,10 +178,10 @@ def test_a_straight_track_leaves_two_places_or_a_circle_of_them():
     bearing = np.degrees(np.arctan2(600.0, north))
     track = survey(bearing, np.hypot(600.0, north), np.tile([0.3, -0.3], 5))
     given = locate(track, ONE, depth=DEPTH)
-    assert any("along one line" in each for each in given.warnings)
-    assert any("Another place fits, 1200 m away" in each for each in given.warnings)
+    assert any("along one straight line" in each for each in given.warnings)
+    assert any("Another position fits, 1200 m away" in each for each in given.warnings)
     sought = locate(track, ONE)
-    assert any("so do nearer ones that are deeper" in each for each in sought.warnings)
+    assert any("as do nearer but deeper positions" in each for each in sought.warnings)
     assert sought.to_dict()["horizontal_95"] is None
     assert sought.to_dict()["depth_95"] is None
 

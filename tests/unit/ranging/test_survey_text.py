@@ -87,7 +87,7 @@ def test_what_is_understood_of_a_form_without_a_heading_is_said(tmp_path: Path) 
     path = tmp_path / "survey.dat"
     path.write_text(whoi())
     (said,) = read_ranges(path).notices
-    assert "seconds one way" in said and "south and west are negative" in said
+    assert "one-way time in seconds" in said and "south and west are negative" in said
     path.write_text(noc_without_target())
     (said,) = read_ranges(path).notices
     assert "1210 m" in said and "10 m above the seabed" in said

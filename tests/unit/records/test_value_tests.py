@@ -99,7 +99,7 @@ def test_a_few_impossible_values_of_one_size_are_fill_values():
 
 def test_levels_without_a_depth_and_a_clock_that_was_not_set():
     depth = np.array([20.0, np.nan, 120.0])
-    assert doubts(depth=depth) == ["720 of 2160 currents have no depth, and are left out"]
+    assert doubts(depth=depth) == ["720 of 2160 currents have no depth and are excluded"]
     (said,) = doubts(times=TIMES - TIMES[0] + np.datetime64("1970-01-01", "ns"))
     assert said == "720 of 720 times are in January 1970: was the clock not set?"
 

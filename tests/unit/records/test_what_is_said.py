@@ -88,7 +88,7 @@ def poor(record: xr.Dataset) -> xr.Dataset:
     (every_day, "its 30 profiles are 24 h apart, means or samples: tides and peaks between them"),
     (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
-    (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` are left out, outside its v"),
+    (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` were excluded, because they"),
     (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`: CALM reads the"),
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
     (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
@@ -132,7 +132,7 @@ def test_flags_leave_out_what_is_bad_with_a_count(record, tmp_path) -> None:
     record["u"].values[100:300] = 3.0
     record["v_qc"] = ("time", "depth"), flags
     assert said(record, tmp_path) == [
-        "2000 of 7200 currents are left out, as `v_qc` marks them as bad"
+        "2000 of 7200 currents were excluded, because `v_qc` marks them as bad"
     ]
     with open_record(tmp_path / "r.nc", Terms(SEABED)) as read:
         assert np.isnan(read.profiles(100, 101)[1]).all()
@@ -144,7 +144,9 @@ def test_flags_leave_out_what_is_bad_with_a_count(record, tmp_path) -> None:
 def test_flags_are_found_by_their_names(record, tmp_path, name) -> None:
     flags = np.where(np.arange(7200).reshape(720, 10) % 4, 1, 4).astype(np.int8)
     record[name] = ("time", "depth"), flags
-    assert f"1800 of 7200 currents are left out, as `{name}` marks" in said(record, tmp_path)[0]
+    assert (
+        f"1800 of 7200 currents were excluded, because `{name}` marks" in said(record, tmp_path)[0]
+    )
 
 
 def test_flags_of_another_variable_are_not_those_of_the_current(record, tmp_path) -> None:
@@ -157,7 +159,7 @@ def test_flags_may_be_bits(record, tmp_path) -> None:
     meanings = {"flag_masks": np.array([1, 2, 8], np.int8), "flag_meanings": "warm bad suspect"}
     record["u_qc"] = ("time", "depth"), bits, meanings
     assert said(record, tmp_path) == [
-        "3600 of 7200 currents are left out, as `u_qc` marks them as bad"
+        "3600 of 7200 currents were excluded, because `u_qc` marks them as bad"
     ]
     with open_record(tmp_path / "r.nc", Terms(SEABED)) as read:
         assert read.flags(0, 1)[0, :4].tolist() == [1, 1, 4, 4]

@@ -132,7 +132,7 @@ def test_the_figures_are_those_of_the_findings(assessment, section):
     failed = next(each for each in assessment.all_findings() if each.state is State.FAIL)
     assert failed.remedy in text
     assert f"{percent_text(failed.utilisation)}\u00a0%" in text
-    knockdown = assessment.stands[0].result.top.knockdown
+    knockdown = assessment.in_environments[0].result.top.knockdown
     assert f"{knockdown:.1f}" in text
 
 
@@ -189,11 +189,18 @@ def test_a_label_that_looks_like_an_identifier_is_left_alone():
 
 
 def test_a_mooring_without_equilibrium_is_reported(assessment):
-    stands = tuple(
+    in_environments = tuple(
         replace(stand, situations=(replace(stand.situations[0], result=None),), findings=())
-        for stand in assessment.stands
+        for stand in assessment.in_environments
     )
-    failed = replace(assessment, stands=stands, launch=None, recovery=None, backup=(), findings=())
+    failed = replace(
+        assessment,
+        in_environments=in_environments,
+        launch=None,
+        recovery=None,
+        backup=(),
+        findings=(),
+    )
     text = Page(calm.report.html.page(check_report([mooring_section(failed)]))).text
     assert "Design current: no equilibrium" in text
     assert "The mooring has no equilibrium" in text
@@ -201,11 +208,11 @@ def test_a_mooring_without_equilibrium_is_reported(assessment):
 
 
 def test_one_environment_without_equilibrium_leaves_the_others(assessment):
-    first, *others = assessment.stands
+    first, *others = assessment.in_environments
     fallen = replace(first, situations=(replace(first.situations[0], result=None),))
     text = Page(
         calm.report.html.page(
-            check_report([mooring_section(replace(assessment, stands=(fallen, *others)))])
+            check_report([mooring_section(replace(assessment, in_environments=(fallen, *others)))])
         )
     ).text
     assert "Design current: no equilibrium" in text and "Solid: case 2" in text

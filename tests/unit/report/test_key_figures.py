@@ -60,7 +60,9 @@ def test_a_weak_current_is_said(tmp_path):
 def test_the_least_factor_is_that_of_every_situation(assessment):
     found = least_factor(assessment)
     assert found is not None
-    results = [one.result for stand in assessment.stands for one in stand.situations if one.result]
+    results = [
+        one.result for stand in assessment.in_environments for one in stand.situations if one.result
+    ]
     factors = [result.components.safety_factor for result in results]
     assert found.factor == np.nanmin(factors)
     rows = {result.components.label[int(np.nanargmin(each))]
@@ -74,7 +76,7 @@ def test_the_json_has_the_figures_of_page_one(assessment):
     document = check_document([assessment])
     said = document["key_figures"]["Größe"]
     assert said == key_figures(assessment)
-    assert said["sha256"] == input_hash([one.leg.file for one in assessment.stands])
+    assert said["sha256"] == input_hash([one.leg.file for one in assessment.in_environments])
     weights = [one for one in assessment.every_finding() if one.rule == "anchor-weight"]
     assert said["anchor"]["margin"] == min(one.margin for one in weights) < 0
     assert said["anchor"]["utilisation"] == max(one.utilisation for one in weights) > 1

@@ -198,9 +198,11 @@ def test_a_report_is_a_draft_until_it_has_number_revision_and_date(assessments, 
     assert not assessment.draft
 
     def verdict(file):
-        stand = assessment.stands[0]
+        stand = assessment.in_environments[0]
         leg = calm.Design(file).legs[0]
-        return signed_mooring(replace(assessment, stands=(replace(stand, leg=leg),))).verdict
+        return signed_mooring(
+            replace(assessment, in_environments=(replace(stand, leg=leg),))
+        ).verdict
 
     file = assessment.file
     assert verdict(file) == "Passes with open items"
@@ -227,7 +229,7 @@ def test_items_are_causes_and_not_findings(tmp_path):
     places = [order.index(item.state) for item in items if item.state in order]
     assert places == sorted(places)
     heads = [item.head for item in items]
-    assert "Meter 500 m, meter 900 m, meter 1500 m: pass by an estimate." in heads
+    assert "Meter 500 m, meter 900 m, meter 1500 m: pass on an estimated value." in heads
     assert len(items) < len([one for one in assessment.every_finding()
                              if one.state is not State.PASS])  # fmt: skip
 
@@ -239,9 +241,12 @@ def test_the_sentence_names_what_is_beyond_its_limit_without_failing(assessments
     assert "fish bite of parafil 1 112\u00a0%" in said
 
 
-def test_keys_of_a_file_are_words_on_paper():
-    told = plain("Load is 12.35 kN; set its `working_load`, -3 m at most.")
-    assert told == "Load is 12.35\u00a0kN; set its working load, −3\u00a0m at most."
+def test_keys_of_a_file_are_quoted_words_in_print_and_keys_on_a_terminal():
+    text = "Load is 12.35 kN; set its `working_load`, -3 m at most."
+    assert plain(text) == "Load is 12.35\u00a0kN; set its “working load”, −3\u00a0m at most."
+    assert plain(text, keys=True) == (
+        "Load is 12.35\u00a0kN; set its `working_load`, −3\u00a0m at most."
+    )
 
 
 def test_cases_have_codes_and_still_water_comes_last():

@@ -12,7 +12,7 @@ from calm.deck import deck_of
 from calm.report.deck_files import deck_csvs
 from calm.report.deck_lists import instruments_part
 from calm.report.deck_logs import deployment_part
-from calm.report.diagram import Paper, diagram_pages
+from calm.report.diagram import PageSize, diagram_pages
 from calm.report.result_files import to_csv
 from calm.report.sheet import result_part
 from calm.report.terminal import shown
@@ -66,5 +66,5 @@ def test_the_deck_has_it_beside_the_depth(design):
         rows = csv.DictReader(io.StringIO(deck_csvs(deck)[name]))
         told = {row["label"]: row["planned_depth[m]"] for row in rows}
         assert {label: float(depth) for label, depth in told.items() if depth} == PLANNED
-    pages = "".join(diagram_pages(deck, Paper.A4))
+    pages = "".join(diagram_pages(deck, PageSize.A4))
     assert ">planned<" in pages and ">350.0<" in pages
