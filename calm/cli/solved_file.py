@@ -71,7 +71,7 @@ class FileOutcome:
         return parts
 
     def rendered(self, suffix: str) -> bytes | None:
-        """The line drawn, or its report."""
+        """Return the drawing or the report of the line, as bytes of the file."""
         if self.result is None:
             return None
         if suffix in (".html", ".pdf"):

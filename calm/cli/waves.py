@@ -23,9 +23,6 @@ def waves(
     hs: options.Signed = None,
     tp: options.Signed = None,
     spectrum: str = "bretschneider",
-    gamma: float = 3.3,
-    swell: options.Signed = None,
-    swell_tp: options.Signed = None,
     toward: options.Signed = None,
     scatter: Path | None = None,
     duration: str = "3 h",
@@ -39,7 +36,7 @@ def waves(
     drag linearised for equal dissipation. It is not valid if a piece goes slack;
     the status is then slack-in-waves and the exit code 3. Without --hs, --scatter
     or a file as the --spectrum, the seas are those under `waves:` in the
-    environment.
+    environment, which may also have a swell and another peakedness.
 
     Parameters
     ----------
@@ -53,12 +50,6 @@ def waves(
         bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea),
         or a file of a measured one: CSV of frequency[Hz],density[m^2/Hz], or
         NetCDF.
-    gamma
-        Peak enhancement factor of jonswap.
-    swell
-        Significant height of a swell under the sea of --hs, travelling in the same direction.
-    swell_tp
-        Peak period of the swell.
     toward
         Direction in which the waves travel, clockwise from north; 90 deg by default.
     scatter
@@ -71,7 +62,6 @@ def waves(
     Examples
     --------
       calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
-      calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
       calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
       calm waves buoy.yaml --scatter site.csv --json waves.json
       calm waves buoy.yaml --spectrum measured.csv
@@ -85,9 +75,8 @@ def waves(
     if report is not None:
         folder.check_folder(report)
     of_options, direction, length = _sea_states(
-        {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
-        spectrum, gamma, toward, scatter, duration,
-    )  # fmt: skip
+        {"hs": hs, "tp": tp}, spectrum, toward, scatter, duration
+    )
     mooring = load(file, environment, catalog or [])
     leg = mooring.moored
     given, seas = mooring.file.environment.waves, of_options or mooring.file.environment.seas
@@ -120,7 +109,6 @@ def waves(
 def _sea_states(
     waves: dict[str, str | None],
     spectrum: str,
-    gamma: float,
     toward: str | None,
     scatter: Path | None,
     duration: str,
@@ -135,8 +123,6 @@ def _sea_states(
     given = options.quantities(
         hs=(waves["hs"], "length"),
         tp=(waves["tp"], "time"),
-        swell=(waves["swell"], "length"),
-        swell_tp=(waves["swell_tp"], "time"),
         toward=(toward, "angle"),
         duration=(duration, "time"),
     )
@@ -147,8 +133,6 @@ def _sea_states(
     ]
     if 0.0 < given["duration"] < 60.0:
         complaints.append("--duration must be at least one minute")
-    if not 1.0 <= gamma <= 10.0:
-        complaints.append("--gamma must be from 1, a fully developed sea, to 10")
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
     if not named and not path.is_file():
         near = nearest(spectrum, sea_states.SPECTRA)
@@ -156,9 +140,6 @@ def _sea_states(
         names = ", ".join(sea_states.SPECTRA)
         complaints.append(f"--spectrum: `{spectrum}` is neither {names} nor a file{suggestion}")
     chosen = [options.option(name) for name, each in waves.items() if each is not None]
-    swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
-    if len(swells) == 1:
-        complaints.append("--swell and --swell-tp must be used together")
     if scatter is not None and (chosen or not named):
         complaints.append(
             f"--scatter contains heights and periods; leave out {', '.join(chosen) or 'the file'}"
@@ -173,11 +154,9 @@ def _sea_states(
         raise UsageError("\n".join(complaints))
     seas = None
     if scatter is not None:
-        seas = sea_states.scatter_states(scatter, spectrum, gamma)
+        seas = sea_states.scatter_states(scatter, spectrum)
     elif not named:
         seas = [sea_states.measured_spectrum(path)]
     elif chosen:
-        seas = [sea_states.spectrum_of(spectrum, given["hs"], given.get("tp"), gamma)]
-        if swells:
-            seas = [sea_states.with_swell(seas[0], given["swell"], given["swell_tp"])]
+        seas = [sea_states.spectrum_of(spectrum, given["hs"], given.get("tp"))]
     return seas, given.get("toward"), given["duration"]

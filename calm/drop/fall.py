@@ -19,6 +19,10 @@ and its upper limit [m].
 """
 AT_REST = 1e-7
 """Motion per time step, as a fraction of the depth, below which the line is at rest."""
+UNMOVED = 1e-10
+"""Motion in a time step, as a fraction of the depth, that is due to rounding: the line is at rest,
+and the longest time step follows.
+"""
 MAX_STEP = 1e6
 """Length of the longest time step [s], after which a line is at rest."""
 SLOWEST_FLOW = 0.01
@@ -210,12 +214,14 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
     depth = mover.sea.water.depth
     states = [state]
     for _ in range(_FALLS + 1):
-        length = step
+        length, moved = step, 0.0
         while length < MAX_STEP:
             after = _stepped(mover, states[-1], length, depth)
+            moved = float(np.abs(after.node - states[-1].node).max())
             length = _REST_GROWTH * (after.time - states[-1].time)
+            if moved < UNMOVED * depth:
+                length = max(length, MAX_STEP / _REST_GROWTH)
             states.append(after)
-        moved = float(np.abs(states[-1].node - states[-2].node).max())
         if moved > AT_REST * depth:
             raise Status.NOT_CONVERGED.because("The line does not settle on the seabed.")
         laid = _laid_down(mover, states[-1])

@@ -210,7 +210,7 @@ def _omitted(leg: Leg) -> tuple[str, ...]:
     file = leg.file
     omitted = ["limits of the design check, strengths, ratings and tilts of components"]
     if file.solver.strumming is not None:
-        omitted.append("strumming: cables have their drag at rest")
+        omitted.append("strumming: cables have their drag without vibration")
     anchor = leg.bottom.anchor
     if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
         omitted.append("the slope of the seabed: it is level there, as deep as the deepest anchor")

@@ -94,7 +94,7 @@ class Clock:
         """Description of the clock error in a sentence."""
         way = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
-        return f"its clock was {abs(self.late):g} s {way} at {when}; its times are put right"
+        return f"its clock was {abs(self.late):g} s {way} at {when}; its times were corrected"
 
 
 def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:

@@ -300,8 +300,8 @@ def joined(
     both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
     if currents and not both.any():
         raise UsageError(
-            "no time has both a current and a pressure: the currents have none, or the two "
-            "records are of different times, or further apart than --gap"
+            "no time has both a current and a pressure; the currents have no values, the records "
+            "do not overlap, or their samples are further apart than --gap"
         )
     return measured
 

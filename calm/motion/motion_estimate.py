@@ -141,7 +141,7 @@ class RecoveredMooring:
         """Read the files."""
         for kind in self.correct:
             if kind not in CORRECTABLE:
-                what = f"--correct: `{kind}` cannot be taken off"
+                what = f"--correct: `{kind}` cannot be corrected"
                 raise UsageError(unknown(what, kind, CORRECTABLE))
         self.names = fitted(self.fit, bool(self.currents))
         self.hidden = [*self.hold_out]
@@ -199,7 +199,7 @@ class RecoveredMooring:
             used.append(one)
             notes += more
             if one.dropped:
-                notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
+                notes.append(f"{one.label}: {one.dropped} pressures were excluded by their flag")
         notes += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
         if not any(np.isfinite(one.value).any() for one in used):
             raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))

@@ -122,32 +122,49 @@ class Fault:
             100.0 * abs(one - 1.0) for one in (self.value, self.low, self.high)
         )
         text = {
-            "currents": f"they read {share} of the current",
-            "speed": f"its speeds are {share} of the current"
+            "currents": f"they measure {share} of the current",
+            "speed": f"its speeds are {share} of the true current"
             + ": its direction or its unit is wrong" * (not 0.25 < self.value < 4.0),
-            "slows": f"its speeds change to {share} of the current by the end: a rotor that slows",
-            "buoyancy": f"the net force of its floats is {share} of that in the file: one that is "
-            "missing, flooded or not as listed",
+            "slows": (
+                f"its speeds decrease to {share} of the true current by the end; its rotor may be "
+                "fouled"
+            ),
+            "buoyancy": (
+                f"the net buoyancy of its floats is {share} of the value in the file; a float may "
+                "be missing, flooded or wrongly listed"
+            ),
             "length": f"its cables are {longer:.1f} % ({low:.1f} to {high:.1f}) "
             f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
-            "drag": f"its drag is {share} of that assumed",
-            "fouling": f"its drag changes to {share} of itself by the end: fouling",
+            "drag": f"its drag is {share} of the assumed drag",
+            "fouling": (
+                f"its drag changes to {share} of its initial value by the end, probably by fouling"
+            ),
             "moved": f"the whole mooring is {abs(self.value):.1f} m {band} "
-            f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on: it moved, and the "
-            "seabed there is at another depth",
+            f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on; it has probably "
+            "moved to another water depth",
             "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
-            + f", or those of the currents {'early' if self.value > 0.0 else 'late'}"
+            + f", or the clocks of the currents are {'early' if self.value > 0.0 else 'late'}"
             * (self.label == ALL),
-            "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
-            "the gain of the pressures, or their unit, is wrong",
-            "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
-            "the line that is wrong",
-            "drift": f"drifts by {self.value:+.1f} m {band} until {until}",
-            "slip": f"hangs {abs(self.value):.1f} m {below} its place from {when} on: a clamp that "
-            "slipped",
-            "exchanged": f"its label and that of {self.other} are exchanged",
+            "gain": (
+                f"its pressures are {self.value:.3f} times the expected ones ({self.low:.3f} to "
+                f"{self.high:.3f}); their gain or their unit is wrong"
+            ),
+            "offset": (
+                f"it has a constant offset of {self.value:+.1f} m; its zero, a length, or its "
+                "position on the line is wrong"
+            ),
+            "drift": f"it drifts by {self.value:+.1f} m {band} until {until}",
+            "slip": (
+                f"it is {abs(self.value):.1f} m {below} its nominal position from {when} on; its "
+                "clamp has probably slipped"
+            ),
+            "exchanged": f"its label and the label of {self.other} appear to be exchanged",
         }[self.kind]
-        also = f", or {self.rival}: they cannot tell" if rival and self.rival else ""
+        also = (
+            (f", or {self.rival}; the pressures cannot distinguish these")
+            if rival and self.rival
+            else ""
+        )
         return f"{self.label}: {text}{also}"
 
 
@@ -166,8 +183,8 @@ def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dic
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
     """Return a remark on each level with false currents, out of the given number of times."""
     return [
-        f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
-        f"first at {np.datetime_as_string(when[0], 'm')}"
+        f"current at {name}: its direction or speed is probably wrong at {len(when)} of {count} "
+        f"times, first at {np.datetime_as_string(when[0], 'm')}"
         for name, when in false.items()
     ]
 
@@ -188,10 +205,10 @@ def alone_remarks(common: Common) -> list[str]:
     if not far and common.worst < WORST:
         return []
     return [
-        f"{LINE}: does not fit the pressures (its cables would be {100.0 * abs(length - 1.0):.1f} "
-        f"% {'longer' if length > 1.0 else 'shorter'} than in the file, and its own error "
-        f"{100.0 * common.worst:.0f} % of the knockdown): a length, a float or the depth of the "
-        "water is wrong"
+        f"{LINE}: it is inconsistent with the pressures (its cables would be "
+        f"{100.0 * abs(length - 1.0):.1f} % {'longer' if length > 1.0 else 'shorter'} than in the "
+        f"file, and the error of the line {100.0 * common.worst:.0f} % of the knockdown); a "
+        "length, a float or the water depth is wrong"
     ]
 
 
@@ -200,7 +217,7 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
-        f"all sensors: {common.datum:+.1f} m from the line: the depth of the water, a length, or "
+        f"all sensors have a common offset of {common.datum:+.1f} m; the water depth, a length, or "
         "the zero of the pressures is wrong"
     ]
 

@@ -293,7 +293,7 @@ def plausible(
         first, last = np.flatnonzero(stuck)[[0, -1]]
         begins, ends = (np.datetime_as_string(sensor.time[at], "m") for at in (first, last))
         notes.append(
-            f"{sensor.label}: does not change at {stuck.sum()} of its {stuck.size} times, from "
+            f"{sensor.label}: has the same value at {stuck.sum()} of its {stuck.size} times, from "
             f"{begins} to {ends}, and is left out there"
         )
         sensor = replace(sensor, value=np.where(stuck, np.nan, sensor.value))

@@ -173,7 +173,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
         angle = -np.degrees(np.angle(straight))
         least = TURNED + abs(np.degrees(np.angle(agree)))
         if min(np.abs(mirror)) > max(COHERENT, *np.abs(straight)):
-            what = "its east and north are exchanged, or the sign of one is wrong"
+            what = "its east and north components are exchanged, or the sign of one is wrong"
         elif min(np.abs(straight)) < COHERENT:
             continue
         elif min(np.abs(angle)) > least:
@@ -186,7 +186,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             sense = "clockwise" if mean > 0.0 else "anticlockwise"
             why = "its compass, its declination, or a current that veers there"
             if abs(mean) > 180.0 - least - band:
-                why = "it says where the current comes from, or both signs are wrong"
+                why = "it gives the direction from which the current comes, or both signs are wrong"
             what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {sense}: {why}"
         elif max(fast) * UNLIKE < min(1.0, usual) or min(fast) > UNLIKE * max(1.0, usual):
             what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} of theirs: its unit"

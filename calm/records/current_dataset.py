@@ -252,7 +252,7 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
         )
     if declination is None:
         return ()
-    unstated = "" if current.magnetic else ", as you say: the file does not"
+    unstated = "" if current.magnetic else ", as specified by the user, not by the file"
     return (f"{which} were relative to magnetic north{unstated}, turned by {declination:g}°",)
 
 

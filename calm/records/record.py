@@ -167,7 +167,7 @@ def choose_profiles(
         notes.append(f"{last - first} of the {len(times)} profiles are in the requested period")
     chosen = slice(first, last, every)
     if every > 1:
-        notes.append(f"one profile in {every} is taken, from the first on")
+        notes.append(f"one profile in {every} is used, beginning with the first")
     return (chosen if order is None else order[chosen]), tuple(notes)
 
 

@@ -158,7 +158,7 @@ def full_sea_period(height: float) -> float:
     return 2.0 * pi / sqrt(0.16 * 9.80665 / height)
 
 
-def spectrum_of(kind: str, height: float, period: float | None, gamma: float) -> SeaState:
+def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3.3) -> SeaState:
     """Return the sea of a named spectrum.
 
     Parameters
@@ -190,7 +190,7 @@ def _impossible(height: float, period: float) -> str | None:
     if height > HIGHEST or period > LONGEST_PERIOD:
         return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
     if period < SHORTEST_PERIOD:
-        return f"{waves}: seas are solved for from a peak period of {SHORTEST_PERIOD:g} s"
+        return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
         highest = f"{length:.1f} m long, they are {STEEPEST * length:.2f} m high at most"
         return f"{waves} would break: {highest}"
@@ -342,7 +342,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
     return frequency, density[:, int(np.trapezoid(density, frequency, axis=0).argmax())]
 
 
-def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
+def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     """Return the seas of a scatter table, each with its share of the time.
 
     The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.

@@ -20,7 +20,7 @@ from textual.widgets import OptionList
 from calm.errors import CalmError
 from calm.files import Catalogue, editing
 from calm.tui import builder, dialogs, key_table, palette, saving, workspace
-from calm.tui.painted import Output
+from calm.tui.painted import TerminalOutput
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
@@ -189,9 +189,9 @@ class BuildApp(App[int]):
         return self.output.driver_class(super().get_driver_class())
 
     @cached_property
-    def output(self) -> Output:
+    def output(self) -> TerminalOutput:
         """What the driver writes to the terminal."""
-        return Output()
+        return TerminalOutput()
 
     def on_cursor_position(self) -> None:
         """Send the next frame; a reported position means that the last frame is displayed."""

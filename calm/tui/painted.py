@@ -163,7 +163,7 @@ class Pace:
         return self._answers and self._since is not None
 
 
-class Output:
+class TerminalOutput:
     """What an application writes to its terminal: frames of changed cells."""
 
     def __init__(self) -> None:
@@ -224,9 +224,9 @@ class Output:
 
 
 class _PaintingDriver(Driver):
-    """The part of a driver that writes through an output; `Output.driver_class` adds the rest."""
+    """The part of a driver that writes through its output; the rest is a driver of Textual."""
 
-    output: ClassVar[Output]
+    output: ClassVar[TerminalOutput]
 
     def write(self, data: str) -> None:
         self.output.take(data, super().write)  # type: ignore[safe-super]

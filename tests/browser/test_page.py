@@ -4,17 +4,20 @@ Skipped unless CALM_PAGE_RUNTIME names a folder with a release of Pyodide and xt
 CALM_BROWSER_PICTURES, a folder, it takes pictures.
 """
 
+import contextlib
 import functools
 import http.server
 import os
 import re
 import shutil
 import threading
+import time
 import zipfile
 from pathlib import Path
 
 import pytest
 
+from calm.page import folder
 from calm.page.folder import write_page
 from calm.shipped import shipped_folder
 
@@ -38,6 +41,18 @@ SCREEN = """() => {
 }"""
 
 
+KEPT = """() => new Promise((done) => {
+    indexedDB.open("/moorings").onsuccess = ({ target: { result } }) => {
+        const names = result.transaction("FILE_DATA").objectStore("FILE_DATA").getAllKeys();
+        names.onsuccess = () => {
+            result.close();
+            done(names.result.some((name) => name.endsWith(".calm-autosave")));
+        };
+    };
+})"""
+"""Whether the browser has a copy of unsaved work."""
+
+
 class Files(http.server.SimpleHTTPRequestHandler):
     """A server of files, nothing else; what was asked for is noted."""
 
@@ -47,15 +62,51 @@ class Files(http.server.SimpleHTTPRequestHandler):
         self.asked.append(self.path)
 
 
-@pytest.fixture(scope="module")
-def address(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("page")
-    write_page(folder, Path(RUNTIME))
-    handler = functools.partial(Files, directory=str(folder))
+class Elsewhere(Files):
+    """A server of the runtime for pages of other servers, as Pyodide's address is one."""
+
+    def translate_path(self, path):
+        name = Path(path.partition("?")[0]).name
+        return str(next(Path(RUNTIME).rglob(name)))
+
+    def end_headers(self):
+        self.send_header("Access-Control-Allow-Origin", "*")
+        self.send_header("Cache-Control", "no-store")  # by the browser itself
+        super().end_headers()
+
+
+def until(condition):
+    deadline = time.monotonic() + PATIENCE / 1e3
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.2)
+
+
+@contextlib.contextmanager
+def served(handler):
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_port}/index.html"
+        yield f"http://127.0.0.1:{server.server_port}/"
         server.shutdown()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory):
+    made = tmp_path_factory.mktemp("page")
+    write_page(made, Path(RUNTIME))
+    with served(functools.partial(Files, directory=str(made))) as address:
+        yield f"{address}index.html"
+
+
+@pytest.fixture
+def address_of_page_alone(tmp_path, monkeypatch):
+    """A page that loads its runtime from another server."""
+    with served(Elsewhere) as elsewhere:
+        monkeypatch.setattr(folder, "PYODIDE", elsewhere)
+        monkeypatch.setattr(folder, "TERMINAL", elsewhere)
+        write_page(tmp_path)
+        with served(functools.partial(Files, directory=str(tmp_path))) as address:
+            yield address
 
 
 @pytest.fixture(scope="module")
@@ -94,9 +145,9 @@ class Visit:
             raise
 
     def picture(self, name):
-        if folder := os.environ.get("CALM_BROWSER_PICTURES"):
+        if pictures := os.environ.get("CALM_BROWSER_PICTURES"):
             self.page.wait_for_timeout(400)
-            self.page.screenshot(path=f"{folder}/{name}.png")
+            self.page.screenshot(path=f"{pictures}/{name}.png")
 
     def download(self, press):
         with self.page.expect_download(timeout=PATIENCE) as waiting:
@@ -169,8 +220,8 @@ def test_a_line_is_opened_edited_saved_and_printed(visit, tmp_path):
         name, content = visit.download(lambda kind=kind: page.click(f"#documents >> text={kind}"))
         assert name == f"mine{suffix}"
         assert content.lower().startswith(begins.lower()) and len(content) > 500
-        if folder := os.environ.get("CALM_BROWSER_PICTURES"):
-            (Path(folder) / name).write_bytes(content)
+        if pictures := os.environ.get("CALM_BROWSER_PICTURES"):
+            (Path(pictures) / name).write_bytes(content)
     visit.picture("page-documents")
     assert not [
         url for url in visit.asked if not url.startswith(("http://127.0.0.1", "blob:", "data:"))
@@ -206,16 +257,26 @@ def test_mouse_and_help(visit):
     visit.picture("page-water")
 
 
+def test_a_page_that_loads_its_runtime_from_elsewhere_is_kept(browser, address_of_page_alone):
+    context = browser.new_context(viewport={"width": 1366, "height": 800})
+    Visit(context, address_of_page_alone).page.close()
+    context.set_offline(True)
+    again = Visit(context, address_of_page_alone)
+    again.shows("ADCP")
+    context.close()
+    assert not again.complained
+
+
 def test_it_works_without_a_network_and_goes_on_where_it_was(browser, address):
     context = browser.new_context(viewport={"width": 1366, "height": 800})
     first = Visit(context, address)
     first.page.click("text=New")
     first.shows("The line is empty")
     first.page.keyboard.type("b")  # begins with a mooring: the first of the list
-    first.page.wait_for_timeout(2000)
+    first.shows("Begin with")
     first.page.keyboard.press("1")
     first.shows("not saved")
-    first.page.wait_for_timeout(3000)  # the work is kept
+    until(lambda: first.page.evaluate(KEPT))
     first.page.close()
     context.set_offline(True)
     Files.asked.clear()

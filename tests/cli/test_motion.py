@@ -185,7 +185,7 @@ def test_netcdf_with_flags_and_one_file_for_a_sensor(calm, given, truth, folder)
     one.to_netcdf(folder / "one.nc", engine="h5netcdf")
     done = calm(*COMMAND, "--pressures", "p.nc", "lower=one.nc", "-o", "d.nc", "--json", "-")
     assert done.code == 0, done.err
-    assert "upper: 2 pressures left out for their flag" in done.err
+    assert "upper: 2 pressures were excluded by their flag" in done.err
     said = json.loads(done.out)
     assert [one["n"] for one in said["sensors"]] == [46, 48, 48]
     files = [one["file"] for one in said["read"]]
@@ -250,7 +250,7 @@ def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):
     xarray.Dataset(variables, coordinates).to_netcdf(folder / "p.nc", engine="h5netcdf")
     done = calm(*COMMAND, "--pressures", "p.nc", "-o", "d.nc")
     assert done.code == 2 and "no sensor has a good pressure" in done.err
-    assert "middle: 48 pressures left out for their flag" in done.err
+    assert "middle: 48 pressures were excluded by their flag" in done.err
     assert not list(folder.glob("d.nc*"))
 
 
@@ -434,7 +434,7 @@ def test_currents_that_look_false_are_named(calm, given, truth, folder):
     done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--report", "r", "--json", "-")
     assert done.code == 0, done.err
     doubts = json.loads(done.out)["doubts"]
-    assert any("current at 0.0 m: its direction or speed looks false at 3 of 48" in one
+    assert any("current at 0.0 m: its direction or speed is probably wrong at 3 of 48" in one
                and "2026-03-01T15:00" in one for one in doubts), doubts  # fmt: skip
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert result["level_label"].values.tolist() == ["0.0 m", "150.0 m", "300.0 m"]
@@ -519,7 +519,7 @@ def test_a_sensor_that_sticks_is_left_out_there(calm, given, truth, folder):
     values[HOURS // 2 :, 2] = values[HOURS // 2, 2]
     given("s.csv", values=values)
     done = calm(*COMMAND, "--pressures", "s.csv", "-o", "d.nc")
-    assert done.code == 0 and "lower: does not change at 24 of its 48 times" in done.err
+    assert done.code == 0 and "lower: has the same value at 24 of its 48 times" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert np.isnan(result["residual"].values[HOURS // 2 :, 2]).all()
 

@@ -11,7 +11,7 @@ from rich.style import Style
 from textual.driver import Driver
 from textual.strip import Strip
 
-from calm.tui.painted import Output, Painted
+from calm.tui.painted import Painted, TerminalOutput
 
 COLUMNS, ROWS = 40, 6
 HALF = COLUMNS // 2  # where one widget ends and the next begins
@@ -149,7 +149,7 @@ class Terminal(Driver):
 
 def test_a_frame_waits_for_the_terminal_and_has_all_changes_since():
     async def story():
-        output = Output()
+        output = TerminalOutput()
         driver = output.driver_class(Terminal)()
         driver.start_application_mode()
         for text in "one", "two", "three":

@@ -90,7 +90,7 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
     }
     volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
     component.hull = ((0.0, 0.0, 0.0), (height or _FLAT, volume, shown[component.kind]))
-    component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
+    component.comment = "At the surface its draft and drag are proportional to the used buoyancy."
 
 
 def _is_too_small(element: MddElement) -> bool:

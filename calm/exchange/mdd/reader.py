@@ -98,7 +98,7 @@ def _lay_tow(
     design.tow = model.ImportedTow(speed, bearing_of(east, north))
     height = variables.first("afh")
     if height > 0.0:
-        what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"
+        what = f"an A-frame of {height:g} m is only drawn; the wire begins at the water"
         design.dropped.append(model.Remark("afh", what))
 
 

@@ -36,7 +36,7 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         names = [*names[::-1], "Top of Tow Rope"]
         variables |= {"Usp": design.tow.east, "Vsp": design.tow.north, "afh": design.tow.height}
         if design.tow.height:
-            lost.append("the height of the sheave: there the wire counts from the water")
+            lost.append("the height of the sheave: in that program the wire begins at the water")
     else:
         assert design.anchor is not None
         anchor, weight = design.anchor
@@ -62,8 +62,8 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         lost.append("wind")
     if design.afloat:
         lost.append(
-            "the hull of the float: there it sinks, and drags, in proportion to the buoyancy it "
-            "uses; its Cd is such that it drags as here in this current"
+            "the hull of the float: in that program draft and drag are proportional to the used "
+            "buoyancy; its Cd gives the same drag as in CALM in this current"
         )
     losses = design.losses(lost)
     variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *losses])

@@ -136,7 +136,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
     deepest = max(lines, key=lambda line: line.depth)
     first = replace(lines[0], name=exported.name, depth=deepest.depth)
     if first.tow is not None:
-        raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
+        raise UsageError("a tow has no anchor; only moorings are written for MoorDyn")
     system = _System(first.mean_density, first.gravity)
     lost = ["rigid pieces in a row: each row is one stiff length"]
     for design in lines:

@@ -136,7 +136,7 @@ def _line(row: ListRow) -> _Definition:
 
 def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
     """Return the drag coefficient in the list, or a typical value for the kind as a guess."""
-    key, guess = "cx" if kind == "sphere" else "cn", f"the usual one of a {kind}"
+    key, guess = "cx" if kind == "sphere" else "cn", f"the usual value for a {kind}"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 

@@ -28,7 +28,7 @@ from calm.exchange.table.rows import (
 )
 from calm.files.components import FLEXIBLE_KINDS
 
-_NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
+_NOTE = "A list has no data on the water, and few on drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
 _NAMES = 3  # least number of names in a list that has only names
 
@@ -236,7 +236,9 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
         raise refused(path, f"has {len(pieces)} pieces")
     anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
     if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
-        design.notes.append("The list runs from the anchor up: here it is reversed.")
+        design.notes.append(
+            "The list runs from the anchor up; the mooring file has the reverse order."
+        )
         return _turned(rows)
     if anchored and anchored[-1] == len(pieces) - 1:
         return rows
@@ -248,7 +250,9 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
             "since it has neither ship nor speed",
         )
     if lifts[0] < lifts[1]:
-        design.notes.append("The list runs from the lower end up: here it is reversed.")
+        design.notes.append(
+            "The list runs from the lower end up; the mooring file has the reverse order."
+        )
         rows = _turned(rows)
     design.guessed.append(model.Remark("line.anchor", "the list has none"))
     return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]

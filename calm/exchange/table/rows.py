@@ -168,7 +168,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
             continue
         widest = _WIDEST_LINE if row.is_line else _WIDEST
         if what in ("diameter", "width") and not (unit or column.known) and figure > widest:
-            row.refuse(f"{column.heading} is {figure:g} m; which unit is it in?")
+            row.refuse(f"{column.heading} is {figure:g} m; is its unit correct?")
         if unit.per_metre if unit else column.per_metre:
             row.metre.add(what)
             several = _METRES.search(f"{column.heading} {found.rest}")
@@ -216,7 +216,7 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
                 "give each piece its own length"
             ]
     return [
-        f"{row.where}: is {row.figures['length']:g} m long; which unit is that in?"
+        f"{row.where}: is {row.figures['length']:g} m long; is its unit correct?"
         for row in pieces
         if row.figures["length"] > _TALLEST
         and not row.is_line

@@ -138,8 +138,10 @@ async function start() {
   let terminal = null;
   let measured = "";
 
-  const style = Object.assign(document.createElement("link"), { rel: "stylesheet", href: versioned(settings.terminal["xterm.css"]) });
-  const script = Object.assign(document.createElement("script"), { src: versioned(settings.terminal["xterm.js"]) });
+  // without `crossOrigin` offline.js could not tell whether these were loaded, and would not keep them
+  const crossOrigin = "anonymous";
+  const style = Object.assign(document.createElement("link"), { crossOrigin, rel: "stylesheet", href: versioned(settings.terminal["xterm.css"]) });
+  const script = Object.assign(document.createElement("script"), { crossOrigin, src: versioned(settings.terminal["xterm.js"]) });
   worker.onerror = (event) => stop(event.message || "the worker failed");
 
   worker.onmessage = ({ data: { kind, text, content, share } }) => {

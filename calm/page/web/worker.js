@@ -55,10 +55,12 @@ async function start({ settings, columns, rows }) {
   const version = python.runPython("import sys; f'{sys.version_info[0]}.{sys.version_info[1]}'");
   python.unpackArchive(await archive, "zip", { extractDir: `/lib/python${version}/site-packages` });
 
-  // the files of earlier visits, and unsaved work; each change is written to the IndexedDB of this browser
+  // the files of earlier visits, and unsaved work, in the IndexedDB of this browser
   python.FS.mkdirTree(FOLDER);
-  python.FS.mount(python.FS.filesystems.IDBFS, { autoPersist: true }, FOLDER);
-  await new Promise((done) => python.FS.syncfs(true, (error) => { if (error) console.info(`files are not kept: ${error}`); done(); }));
+  python.FS.mount(python.FS.filesystems.IDBFS, {}, FOLDER);
+  const reason = await synchronised(true);
+  if (reason) console.info(`files are not kept: ${reason}`);
+  else keepFiles();
 
   progress("Starting CALM …", 0.75);
   const toPage = (kind, text, content) => {
@@ -71,4 +73,16 @@ async function start({ settings, columns, rows }) {
   progress("Opening the line …", 0.95);
   early.splice(0).forEach(receive);
   await builder.run();
+}
+
+// after any change; what Python writes later than its answer to a message would otherwise be missed
+async function keepFiles() {
+  for (;;) {
+    await new Promise((done) => setTimeout(done, 1000));
+    await synchronised(false);
+  }
+}
+
+function synchronised(fromBrowser) {
+  return new Promise((done) => python.FS.syncfs(fromBrowser, done));
 }

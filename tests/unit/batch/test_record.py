@@ -214,7 +214,7 @@ def test_period_and_every(tmp_path: Path) -> None:
         assert np.array_equal(record.profiles(2, 3)[1], whole[5:6])
         assert record.notes[:2] == (
             "5 of the 7 profiles are in the requested period",
-            "one profile in 2 is taken, from the first on",
+            "one profile in 2 is used, beginning with the first",
         )
     with pytest.raises(UsageError, match=r"in this period: it is from 2026-03-01T00:00 to 2026-"):
         opened(path, time=parse_period("2027/"))

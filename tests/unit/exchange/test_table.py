@@ -520,7 +520,7 @@ NOT_UNDERSTOOD = {
     "a ton": (with_cell("Weight in water (tons)", "0.3"), "of 907, 1000 or 1016 kg"),
     "a length for a weight": (with_cell("Weight in water (mm)", "3"), "not a unit of force"),
     "two units": (ENGLISH.replace("Length (m)", "Length (m) (ft)"), "names two units"),
-    "a diameter of 8 m": (ENGLISH.replace("(mm)", ""), "is 8 m; which unit is it in?"),
+    "a diameter of 8 m": (ENGLISH.replace("(mm)", ""), "is 8 m; is its unit correct?"),
     "two decimal signs": (
         FRENCH.replace("0,05", "0.05"),
         "has decimal points, `0.05` (row 6), and decimal commas, `0,4` (row 2)",
@@ -633,7 +633,7 @@ def test_lengths_that_are_counted_from_an_end_are_refused(upward, read):
 
 
 def test_a_release_of_400_m_is_asked_for_its_unit(read):
-    with pytest.raises(InputError, match="Release: is 900 m long; which unit"):
+    with pytest.raises(InputError, match="Release: is 900 m long; is its unit"):
         read(SHORT.replace("1,0.9,", "1,900,"))
 
 

@@ -139,7 +139,8 @@ def test_a_declination_is_applied_to_what_does_not_name_its_north(tmp_path: Path
     table, notices = read(currents(), tmp_path, Terms(300.0, declination=90.0))
     assert table.u == pytest.approx(V) and table.card.declination == 90.0
     assert notices[:1] == [
-        "`u` and `v` were relative to magnetic north, as you say: the file does not, turned by 90°"
+        "`u` and `v` were relative to magnetic north, as specified by the user, not by the file, "
+        "turned by 90°"
     ]
 
 

@@ -45,7 +45,9 @@ def test_all_sensors_off_alike_are_named(datum, named):
     found = datum_remarks(replace(common((0.0, 0.0)), datum=datum), 300.0)
     assert len(found) == named
     for one in found:
-        assert one.startswith(f"all sensors: {datum:+.1f} m from the line: the depth of the water")
+        assert one.startswith(
+            f"all sensors have a common offset of {datum:+.1f} m; the water depth"
+        )
 
 
 @pytest.mark.parametrize(
@@ -58,8 +60,8 @@ def test_all_sensors_off_alike_are_named(datum, named):
         ),
         (lambda flow: flow * np.exp(1j * np.radians(15.0)), "turned 14° (± 4°) anticlockwise"),
         (lambda flow: flow * np.exp(1j * np.radians(8.0)), None),
-        (lambda flow: -flow, "it says where the current comes from"),
-        (lambda flow: 1j * flow.conj(), "its east and north are exchanged"),
+        (lambda flow: -flow, "it gives the direction from which the current comes"),
+        (lambda flow: 1j * flow.conj(), "its east and north components are exchanged"),
         (lambda flow: 0.1 * flow, "its speeds are 0.11 of theirs: its unit"),
     ],
 )
@@ -101,6 +103,6 @@ def test_a_line_that_misses_pressures_alone_is_named():
     assert alone_remarks(known) == []
     (said,) = alone_remarks(replace(known, factors={"length": 0.98}))
     assert said.startswith(
-        "the line: does not fit the pressures (its cables would be 2.0 % shorter"
+        "the line: it is inconsistent with the pressures (its cables would be 2.0 % shorter"
     )
     assert len(alone_remarks(replace(known, worst=0.3))) == 1

@@ -136,7 +136,9 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
     assert study.false == {"20.0 m": used.time[[3]]}
     assert len(study.remarks) == 1 and "20.0 m" in study.remarks[0]
     far = replace(task, common=replace(task.common, datum=10.0))
-    assert "all sensors: +10.0 m from the line" in judged(far, measured(), result).remarks[-1]
+    assert (
+        "all sensors have a common offset of +10.0 m" in judged(far, measured(), result).remarks[-1]
+    )
 
 
 def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkeypatch):
