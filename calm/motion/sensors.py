@@ -275,7 +275,7 @@ def plausible(
             )
         when = np.datetime_as_string(sensor.time[again][0], "s")
         notes.append(
-            f"{sensor.label}: {again.sum()} of its times stand twice, the first {when}: the first "
+            f"{sensor.label}: {again.sum()} of its times appear twice, the first {when}: the first "
             "reading of each counts"
         )
         sensor = replace(sensor, time=sensor.time[~again], value=sensor.value[~again])
