@@ -7,14 +7,12 @@ by the same share, and the current is too fast by the same factor at all depths.
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from math import cos, log1p, radians, sin
-from statistics import NormalDist
 from typing import Any, NamedTuple, ParamSpec, TypeVar, cast
 
 import numpy as np
 
 from calm.case.leg import Leg
 from calm.case.memory import NoMemory
-from calm.case.sobol_sequence import scrambled
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.line import Floats, Line, Water
@@ -69,9 +67,12 @@ def normals_of(samples: int, seed: int) -> Floats:
     """Return standard normal numbers (samples, causes) from a scrambled Sobol' sequence; `samples`
     is a power of two.
     """
-    shares = np.clip(scrambled(samples, len(CAUSES), seed), 1e-12, 1.0 - 1e-12)
-    normal = NormalDist().inv_cdf
-    return np.array([normal(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    sequence = qmc.Sobol(len(CAUSES), scramble=True, seed=seed)
+    normals: Floats = ndtri(np.clip(sequence.random(samples), 1e-12, 1.0 - 1e-12))
+    return normals
 
 
 def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:

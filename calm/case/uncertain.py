@@ -135,6 +135,7 @@ def uncertain(
     samples: int = SAMPLES,
     seed: int = 0,
     mapped: Mapped = map,
+    normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
     """Compute the uncertainty of a solved mooring's results.
 
@@ -144,6 +145,7 @@ def uncertain(
     samples : a power of two from `FEWEST` to `MOST`
     seed : seed of the scrambling; the same seed gives the same results
     mapped : function that applies the solver to blocks of samples
+    normals : function that returns `normals_of(samples, seed)`, if another process computes it
 
     Raises
     ------
@@ -156,7 +158,7 @@ def uncertain(
     checked_samples(samples)
     expect_many(samples, CompiledPart.NEARBY)
     _figures(leg, [Draw()])  # loads compiled code once, before processes are forked
-    normal = normals_of(samples, seed)
+    normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(leg.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]
     outcomes = [each for block in mapped(partial(_figures, leg), blocks) for each in block]

@@ -6,8 +6,9 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
+from functools import partial
 from time import monotonic
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from calm.cli.outputs import narrate
 from calm.quantities import duration, show_in, shown_units
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 _Task = TypeVar("_Task")
 _Done = TypeVar("_Done")
+_Given = ParamSpec("_Given")
 
 BAR = 24
 """Number of characters of a full bar."""
@@ -151,6 +153,29 @@ def mapped(
             child.kill()
         raise
     pool.shutdown()
+    return done
+
+
+def begun(
+    function: Callable[_Given, _Done], *given: _Given.args, **named: _Given.kwargs
+) -> Callable[[], _Done]:
+    """Start a computation in another process, and return a function that waits for its result.
+
+    The function must be a module-level function, which another process can
+    import. On a machine with one core, it runs in this process when the result is
+    requested.
+    """
+    if (os.cpu_count() or 1) < 2:
+        return partial(function, *given, **named)
+    from concurrent.futures import ProcessPoolExecutor
+
+    pool = ProcessPoolExecutor(1, initializer=_as_parent, initargs=(shown_units(),))
+    made = pool.submit(function, *given, **named)
+
+    def done() -> _Done:
+        with pool:
+            return made.result()
+
     return done
 
 

@@ -144,12 +144,17 @@ def _explained(result: Result) -> Explanation:
 
 
 def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
-    """Return a function that finds the uncertainty of a result from many samples."""
-    from calm.case.uncertain import uncertain
-    from calm.cli.progress import mapped
+    """Return a function that finds the uncertainty of a result from many samples.
 
+    The sequence of samples is begun now: scipy takes as long to load as the compiled march.
+    """
+    from calm.case.draws import normals_of
+    from calm.case.uncertain import uncertain
+    from calm.cli.progress import begun, mapped
+
+    normals = begun(normals_of, samples, seed)
     solved = partial(mapped, workers=None, what="blocks of samples solved")
-    return partial(uncertain, samples=samples, seed=seed, mapped=solved)
+    return lambda result: uncertain(result, samples, seed, solved, normals)
 
 
 def _schematic(line: Design, result: Result | None) -> tuple[TerminalSchematic, ...]:

@@ -11,7 +11,7 @@ from calm.drop.motion import ChainState, FallingAnchor, Mover, NoStep
 from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
 from calm.solve import Status
-from calm.solve.bracketed_root import bracketed_root
+from calm.solve.least_change import bracketed_root
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
 """Thickness of the surface layer in which floats lose their buoyancy: as a fraction of the depth,
@@ -280,7 +280,11 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
                 f"even behind a very slow ship the line extends {_streamed(state):.1f} m astern; a "
                 f"distance of {streamed:g} m is not possible"
             )
-    excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
+    high = min(2.0 * share, 1.0)
+    share, _, _ = bracketed_root(
+        lambda _, x: excess(x), None, high, excess(high), share, excess(share), 0.0, 1e-7 * share
+    )
+    excess(share)
     if abs(_streamed(state) - streamed) > STREAMED_WITHIN * reach:
         raise Status.NOT_CONVERGED.because(
             f"The line does not extend {streamed:g} m astern at any speed of the ship."

@@ -72,11 +72,6 @@ def test_everyday_commands_load_no_heavy_library(commands: list[list[str]]) -> N
     assert not [name for name in modules if name.startswith("calm.exchange")]  # file formats
 
 
-def test_random_draws_load_no_statistics() -> None:
-    words = ["run", "lines/s1000.yaml", "--uncertainty", "--samples", "64"]
-    assert not {"scipy.stats", "scipy.special"} & loaded(COMMAND.format(arguments=words))
-
-
 def test_help_reads_no_files() -> None:
     assert not {"pydantic", "yaml", "calm.files"} & loaded(COMMAND.format(commands=[["--help"]]))
 

@@ -140,7 +140,7 @@ def test_a_sensor_that_is_not_where_the_file_says_is_named_and_bends_nothing(
 ):
     missed, inside, doubted = recovered(mooring, 0, THREE, (label, down, start))
     found, *_ = (one for one in doubted if one.startswith(f"{label}: "))
-    assert said in found and "cannot tell" not in found
+    assert said in found and "cannot distinguish" not in found
     assert (np.abs(missed) < 3.0).all()
     assert inside.mean() > 0.9
 
@@ -157,7 +157,7 @@ def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest
 @pytest.mark.thorough
 def test_a_slip_in_strong_currents_is_not_taken_for_their_errors(mooring):
     missed, inside, doubted = recovered(mooring, 414, USED, ("Aquadopp 626", 20.0, 44))
-    assert doubted[0].startswith("Aquadopp 626: ") and "below its place" in doubted[0]
+    assert doubted[0].startswith("Aquadopp 626: ") and "below its nominal position" in doubted[0]
     assert (np.abs(missed) < 3.0).all()
     assert inside.mean() > 0.9
 

@@ -17,7 +17,6 @@ from calm.case.draws import (
     draws_of,
     normals_of,
 )
-from calm.case.sobol_sequence import MOST_DIMENSIONS, scrambled
 from calm.case.uncertain import sobol_indices, uncertain
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
@@ -76,16 +75,6 @@ def test_the_draws_are_normal_and_those_of_their_seed():
     assert np.corrcoef(normals.T) == pytest.approx(np.eye(len(CAUSES)), abs=0.05)
     assert (normals_of(1024, 3) == normals).all()
     assert (normals_of(1024, 4) != normals).any()
-
-
-@pytest.mark.parametrize("seed", [0, 12345])
-def test_the_sequence_is_that_of_scipy(seed):
-    from scipy.stats import qmc
-
-    for dimensions in range(1, MOST_DIMENSIONS + 1):
-        theirs = qmc.Sobol(dimensions, scramble=True, seed=seed).random(256)
-        assert (scrambled(256, dimensions, seed) == theirs).all()
-    assert len(CAUSES) <= MOST_DIMENSIONS
 
 
 def test_each_factor_is_of_what_it_says():
