@@ -54,7 +54,9 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
     if not figures and any(one.rule == "equilibrium" for one in found):
-        return "# The mooring has no equilibrium, so its missing values are unknown.\n"
+        return (
+            "# The mooring has no equilibrium, so the values that its check lacks are not known.\n"
+        )
     if not figures:
         return "# No component lacks a value.\n"
     ids = grouped_by(figures, lambda one: one.component_id)
