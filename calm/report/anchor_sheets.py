@@ -254,8 +254,8 @@ def _draw_speed(
     fastest = float(np.max(path.anchor_speed[drawn]))
     axes = page.axes(*place, Scale(0.0, 1.1 * fastest), down, clipped=True)
     axes.line(path.anchor_speed[drawn], path.anchor_depth[drawn], Stroke("#111111", 1.2))
-    for share in (0.25, 0.5, 0.75):
-        time = share * path.time[-1]
+    falling = [one.time for one in plan.moments if 0.0 < one.time < path.time[-1]]
+    for time in falling:
         at = float(np.interp(time, path.time, path.anchor_depth))
         value = float(np.interp(time, path.time, path.anchor_speed))
         axes.mark(value, at, "o", 3.0, "#111111")
