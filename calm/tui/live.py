@@ -161,7 +161,9 @@ def in_all_environments(
             found.append(here)
             continue
         try:
-            file = read_mooring(view.path, environment=name, catalogs=catalogs, text=view.text)
+            file = read_mooring(
+                view.path, environment=name, catalogs=catalogs, text=view.text, stand_in=True
+            )
         except InputError as error:
             problems += error.problems
         else:
