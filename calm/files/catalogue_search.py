@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, lru_cache
 from math import inf
+from typing import Self
 
-from calm.errors import CalmError, InputError
+from calm.errors import InputError
 from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
 from calm.files.components import lacking
 from calm.files.yaml_document import SourceMapping, compose
@@ -38,11 +39,13 @@ _MIN_SIMILARITY = 0.8
 have 0.86.
 """
 _MIN_SIMILARITY_SHORT = 0.75
-"""Similarity above which a word of `_SHORT_WORD` letters is treated as misspelt: `wyre` and
-`wire`.
+"""Similarity above which a word of `_SHORT_WORD` letters is treated as misspelt, if its first
+letter is right: `wyre` is `wire`, but `back` is not `pack`.
 """
 _SHORT_WORD = 4
 """Number of letters below which an unknown word is never treated as misspelt."""
+_SUGGESTED = 3
+"""Number of components that are suggested for an unknown one."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +86,9 @@ class Listed:
         return named if self.diameter is None else (*named, self.diameter)
 
 
-class Index:
+class WordIndex:
     """The components available to a line, in catalogue order, with the file's own components
-    first.
+    first. It knows no values: a search with a limit finds nothing.
     """
 
     def __init__(self, catalogue: Catalogue) -> None:
@@ -93,10 +96,9 @@ class Index:
         shipped, entries = catalogue.levels[-1], filter(None, map(catalogue.entry, catalogue.ids()))
         found = [_listed(entry, shipped.get(entry.id) is not entry) for entry in entries]
         self._listed = {each.id: each for each in sorted(found, key=lambda each: not each.own)}
-        self._figures: dict[str, Figures] = {}
 
     @classmethod
-    def of(cls, catalogue: Catalogue, text: str) -> Index:
+    def of(cls, catalogue: Catalogue, text: str) -> Self:
         """Build the index of a catalogue and of a mooring file's `components:`, as far as
         readable.
         """
@@ -113,10 +115,21 @@ class Index:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Return the values of a component by the keys of their columns."""
-        if id not in self._figures:
-            self._figures[id] = figures_of(self.catalogue, id)
-        return self._figures[id]
+        """Return the values of a component by the keys of their columns; empty if unknown."""
+        return {}
+
+    def suggested(self, text: str, near: str | None) -> list[str]:
+        """Return up to three ids for a text that is not an id.
+
+        `near`, the id with the most similar letters, is the only one if no component has every word
+        of the text, or if it has them and the text has a number, such as a size. Otherwise the
+        components with every word are returned, those used most in the shipped lines first.
+        """
+        found = self.search(text) or ([] if near else self.search(self.spelt(text)))
+        ids = [each.id for each in sorted(found, key=lambda each: -_uses()[each.id])]
+        if near and (not ids or (near in ids and any(map(str.isdigit, text)))):
+            return [near]
+        return ids[:_SUGGESTED]
 
     def search(
         self,
@@ -204,8 +217,10 @@ class Index:
         known = {word for word in own if word.isalpha() and len(word) >= _SHORT_WORD}
         for word in _words(_SIZE.sub(" ", _parsed(text)[0])):
             if len(word) >= _SHORT_WORD and word.isalpha() and word not in every:
-                alike = _MIN_SIMILARITY if len(word) > _SHORT_WORD else _MIN_SIMILARITY_SHORT
-                near = difflib.get_close_matches(word, known, 1, alike)
+                short = len(word) == _SHORT_WORD
+                alike = _MIN_SIMILARITY_SHORT if short else _MIN_SIMILARITY
+                likely = [one for one in known if not short or one[0] == word[0]]
+                near = difflib.get_close_matches(word, likely, 1, alike)
                 text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
         return text
 
@@ -383,25 +398,6 @@ _RELATIONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": opera
 
 
 Figures = dict[str, float | None]
-
-
-def figures_of(catalogue: Catalogue, id: str) -> Figures:
-    """Return the values of a component or assembly by the keys of `COLUMNS`, in SI units."""
-    from calm.assemble.component_forces import datasheet
-
-    try:
-        definition = catalogue.get(id)
-        sheet = datasheet(definition, catalogue)
-    except CalmError:
-        return {}
-    return {
-        "net": None if sheet is None else sheet.net_buoyancy,
-        "breaking": getattr(definition, "breaking_load", None),
-        "working": getattr(definition, "working_load", None),
-        "depth": getattr(definition, "depth_rating", None),
-        "drag": None if sheet is None else sheet.kn,
-        "mass": getattr(definition, "mass", None),
-    }
 
 
 @dataclass(frozen=True)
