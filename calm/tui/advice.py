@@ -5,29 +5,25 @@ This module does not depend on the screen. Targets are met by the search of `cal
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
 
 from calm.case import Design, targets
 from calm.case.adjustment import parse_change
-from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.case.size import NOT_MET, size
-from calm.checks.finding import AS_GIVEN, OWN, Finding, State, environment_text
-from calm.checks.situations import situations_of
+from calm.checks.finding import Finding, State
 from calm.checks.strength import ANCHOR_RULES
 from calm.errors import CalmError, UsageError
-from calm.files import Anchor, Catalogue, MooringFile, Piece, Rigid
+from calm.files import Anchor, Catalogue, Piece, Rigid
 from calm.files.editing import Draft
 from calm.quantities import QUANTITIES, rounded, say
 from calm.solve import Status
-from calm.tui.live import View, in_all_environments
+from calm.tui.live import View, held_lines
 
 _DIGITS = 3
 _GRAVE = (State.FAIL, State.WARN)
-_HOLDS_ANY_LOAD = 1e9
-"""Weight of an anchor that no line lifts [N]."""
 
 
 @dataclass(frozen=True)
@@ -130,57 +126,11 @@ def _for(finding: Finding, mooring: Design) -> Iterator[Offer]:
         yield from _buoyancy(mooring, finding)
 
 
-@dataclass(frozen=True)
-class _Load:
-    """The line in one environment and situation, with an anchor that holds any load."""
-
-    when: str
-    result: LegResult
-
-    def needed(self, anchor: Anchor) -> float:
-        """Return the weight in water that an anchor needs here, with its own friction [N]."""
-        load, file = self.result.anchor_load, _on(self.result.file, anchor)
-        needed = file.checks.anchor_factor * (
-            load.vertical + load.horizontal / file.anchor_friction
-        )
-        return max(needed, 0.0)
-
-    def weight(self, anchor: Anchor) -> float:
-        """Return the weight of an anchor and its clamps in the water here [N]."""
-        leg = self.result.leg
-        return Leg(_on(leg.file, anchor), given_water=leg.water).anchor_weight
-
-
-def _on(file: MooringFile, anchor: Anchor) -> MooringFile:
-    """Return a file with another anchor, of the same height, at the end of its line."""
-    last = replace(file.pieces[-1], component=anchor)
-    return replace(file, pieces=(*file.pieces[:-1], last))
-
-
-def _loads(view: View, catalogs: Sequence[str | Path]) -> Iterator[_Load]:
-    """Solve a line in every environment and situation, with an anchor that holds any load."""
-    assert view.file is not None
-
-    def held(file: MooringFile) -> Design:
-        unlimited = file.anchor.model_copy(update={"weight": _HOLDS_ANY_LOAD})
-        return Design(_on(file, unlimited), memory=view.memory)
-
-    with suppress(CalmError):  # no equilibrium even with an anchor that holds
-        designs, _ = in_all_environments(view, held(view.file), catalogs)
-        for design in designs:
-            for each in situations_of(held(design.file)):
-                name = design.environment.name or OWN
-                where = "" if name == view.here else environment_text(name)
-                when = "" if each[0].name == AS_GIVEN else each[0].name
-                if each[0].result is not None:
-                    yield _Load(", ".join(filter(None, (where, when))), each[0].result)
-
-
 def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -> Iterator[Offer]:
     """Suggest the lightest anchor of the catalogue that holds in every environment and situation,
     and a weight for an anchor that the catalogue of CALM does not define.
     """
-    loads = [*_loads(view, catalogs)]
+    loads = view.held or held_lines(view, catalogs)
     if view.file is None or not loads:
         return
     last, item = view.file.pieces[-1], len(view.items) - 1

@@ -11,6 +11,7 @@ from calm.quantities import say
 from calm.tui.advice import differences, offers, sized
 from calm.tui.comparing import changed_lines
 from calm.tui.live import judge, judge_fully
+from calm.tui.verdict_text import verdict_lines
 from tests.tui.conftest import MOORING
 
 LIGHT = MOORING.replace("weight: 5000 N", "weight: 2500 N")
@@ -76,6 +77,9 @@ def test_a_line_without_an_anchor_gets_the_lightest_that_holds():
     view = fully(text)
     assert not view.anchored
     (offer,) = offers(view, CATALOGUE)
+    (told,) = (each.text for each in verdict_lines(view) if each.text.startswith("needs "))
+    needs, _, when = told.removeprefix("needs ").removesuffix(" in water").partition(" (")
+    assert when == "strumming)" and offer.title.endswith(f"{needs} needed ({when}")
     made = offer.make(Draft(text))
     assert len(made.items) == len(Draft(text).items) + 1
     chosen = CATALOGUE.get(made.items[-1].values["use"])
