@@ -121,15 +121,15 @@ class WordIndex:
     def suggested(self, text: str, near: str | None) -> list[str]:
         """Return up to three ids for a text that is not an id.
 
-        `near`, the id with the most similar letters, is the only one if no component has every word
-        of the text, or if it has them and the text has a number, such as a size. Otherwise the
-        components with every word are returned, those used most in the shipped lines first.
+        `near`, the id with the most similar letters, is the only one if the text has a number, such
+        as a size, or if no component has every word of the text. Otherwise the components with
+        every word are returned, those used most in the shipped lines first.
         """
+        if near and any(map(str.isdigit, text)):
+            return [near]
         found = self.search(text) or ([] if near else self.search(self.spelt(text)))
         ids = [each.id for each in sorted(found, key=lambda each: -_uses()[each.id])]
-        if near and (not ids or (near in ids and any(map(str.isdigit, text)))):
-            return [near]
-        return ids[:_SUGGESTED]
+        return ids[:_SUGGESTED] if ids or near is None else [near]
 
     def search(
         self,

@@ -91,9 +91,13 @@ class ComparingScreen(line_screen.LineScreen):
         def work() -> None:
             from calm.files import Catalogue
 
-            catalogue = Catalogue.load(catalogs) if index is None else index.catalogue
-            found = offers(view, catalogue, catalogs)[:_MOST_OFFERS]
-            self.call_later(show, found)
+            try:
+                catalogue = Catalogue.load(catalogs) if index is None else index.catalogue
+                found = offers(view, catalogue, catalogs)[:_MOST_OFFERS]
+            except CalmError as error:
+                self.call_later(self.workspace.tell, str(error), wrong=True)
+            else:
+                self.call_later(show, found)
 
         def show(found: list[Offer]) -> None:
             self.workspace.tell("")

@@ -495,6 +495,7 @@ checks: {maximum_tilt: 30}
         ("wire", ["wire-jacketed-8"]),
         ("glas-cluster-4", ["glass-cluster-4"]),
         ("chain-g30-16", ["chain-short-g30-16"]),
+        ("wire-jacketed-9", ["wire-jacketed-8"]),
     ],
 )
 def test_an_unknown_component_is_searched_by_its_words(
