@@ -185,12 +185,15 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
-    Names are selected by similar letters, and then ranked by their words and numbers: for
-    ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
+    Names are selected by similar letters, or else by containing every word of the text, and then
+    ranked by their words and numbers: for ``chain-g30-16``, ``chain-short-g30-16`` precedes
+    ``chain-g80-16``; for ``ADCP``, ``ADCP 450 m`` is found.
     """
-    given = text[:LONGEST_TEXT]
-    alike = difflib.get_close_matches(given, list(known), 50)
+    given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)
+    alike = difflib.get_close_matches(given, names, 50)
+    if not alike and any(len(word) > 2 and word.isalpha() for word in wanted):
+        alike = [name for name in names if {*wanted} <= {*_parts(name)}]
     return max(alike, key=lambda name: _likeness(wanted, _parts(name)), default=None)
 
 

@@ -4,7 +4,9 @@ A change is made in the models of the file, as if the file contained the new val
 values follow.
 """
 
-from collections.abc import Callable
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from calm.case.parts import all_parts
@@ -12,7 +14,7 @@ from calm.case.targets import pointed
 from calm.errors import UsageError, unknown
 from calm.files import Anchor, Cable, Chain, Clamp, Flexible, MooringFile, Piece
 from calm.files.definition import STANDARD_GRAVITY
-from calm.files.pieces import numbered, placed
+from calm.files.pieces import numbered, parts_of, placed
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0
@@ -25,6 +27,11 @@ MOST_COUNT = 1000
 """Largest count of a component, unless the user gives a range."""
 
 Parts = tuple[Piece | Clamp, ...]
+
+_ANCHOR_WEIGHT = (
+    "the weight that it needs follows from its load: `calm run` prints the weight required, and "
+    "`calm check` the largest of all situations"
+)
 
 
 @dataclass(frozen=True)
@@ -71,9 +78,10 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     """Change the net buoyancy of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
     component = parts[0].component
     for each in (part.component for part in parts):
-        if isinstance(each, Chain | Anchor):
-            article = "an anchor" if isinstance(each, Anchor) else f"a {each.kind}"
-            raise LookupError(f"{article} has a weight instead of a buoyancy")
+        if isinstance(each, Anchor):
+            raise LookupError(f"an anchor has a weight instead of a buoyancy; {_ANCHOR_WEIGHT}")
+        if isinstance(each, Chain):
+            raise LookupError(f"a {each.kind} has a weight instead of a buoyancy")
     if any(part.component != component for part in parts):
         raise LookupError("these parts differ; select one")
     now = component.net_buoyancy
@@ -133,7 +141,9 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Change the number of copies of an in-line component; each copy has its own clamps."""
+    """Change the number of copies of an in-line component or assembly; each copy has its own
+    clamps.
+    """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
         raise LookupError("only pieces in line have a count, not clamped instruments")
@@ -141,25 +151,49 @@ def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         raise LookupError("a line has one anchor")
     _refuse_several_items(pieces)
     item = tuple(one for one in file.pieces if one.place.item == pieces[0].place.item)
-    one, last = item[0], item[-1]
-    if any((each.use, each.component) != (one.use, one.component) for each in item):
-        raise LookupError("it is part of an assembly, which is counted as a whole")
+    if len(pieces) < len(item) and pieces[0].place.part >= 0:
+        name = pieces[0].named
+        advice = f"change `{name}.count`" if name else "give the assembly a `label` in the file"
+        raise LookupError(f"it is part of an assembly, which is counted as a whole: {advice}")
     if any(each.length is None for each in item):
         raise LookupError("its length is fitted (`length: fit`), which allows only one piece")
-    if len(item) > 1:  # labels of several copies are numbered
-        one = one.with_clamps(
-            lambda clamp: replace(clamp, label=clamp.label.rpartition(" ")[0]),
-            label=one.label.rpartition(" ")[0],
-        )
+    once = _without_numbers([one for one in item if one.place.repeat == 0], item)
+    now = len(item) // len(once)
 
     def to(value: float) -> MooringFile:
-        repeats = (placed(one, replace(one.place, repeat=number)) for number in range(int(value)))
-        line = (*file.pieces[: one.index], *repeats, *file.pieces[last.index + 1 :])
-        legs = tuple(leg.grown(one.index, len(line) - len(file.pieces)) for leg in file.legs)
+        repeats = (
+            placed(one, replace(one.place, repeat=number))
+            for number in range(int(value))
+            for one in once
+        )
+        line = (*file.pieces[: item[0].index], *repeats, *file.pieces[item[-1].index + 1 :])
+        more = len(line) - len(file.pieces)
+        legs = tuple(leg.grown(item[0].index, more) for leg in file.legs)
         return replace(file, pieces=numbered(line), legs=legs)
 
     limits = 1.0, float(MOST_COUNT)
-    return Adjustment(text, file, item, "number", float(len(item)), limits, to, whole=True)
+    return Adjustment(text, file, item, "number", float(now), limits, to, whole=True)
+
+
+_NUMBERED = re.compile(r"(.+) \d+")
+
+
+def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece]:
+    """Remove from the labels of a copy the numbers that distinguish equal labels of its item."""
+    stems = Counter(
+        found[1] for part in parts_of(item) if (found := _NUMBERED.fullmatch(part.label))
+    )
+
+    def stem(label: str) -> str:
+        found = _NUMBERED.fullmatch(label)
+        return found[1] if found and stems[found[1]] > 1 else label
+
+    return [
+        piece.with_clamps(
+            lambda clamp: replace(clamp, label=stem(clamp.label)), label=stem(piece.label)
+        )
+        for piece in once
+    ]
 
 
 def _refuse_several_items(pieces: list[Piece]) -> None:
@@ -176,8 +210,8 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
     Parameters
     ----------
-    text : the label of a part of the line, or the common label of several without their numbers; a
-        point; ``buoyancy``, ``length`` or ``count``
+    text : the label of a part of the line, or the common label of several without their numbers, or
+        for a count the label of an assembly; a point; ``buoyancy``, ``length`` or ``count``
     file : the mooring in which the label is looked up
 
     Raises
@@ -190,9 +224,17 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
     if not point or field not in _FIELDS:
         what = f"unknown field `{field}`" if point else "there is no field to change"
         message = unknown(what, field if point else "", _FIELDS)
+        anchors = (one for one in file.pieces if isinstance(one.component, Anchor))
+        if field == "weight" and any(name in ("anchor", one.label, one.use) for one in anchors):
+            message = f"the weight of an anchor is not searched for; {_ANCHOR_WEIGHT}"
         raise pointed("--change", text, len(name) + 1 if point else len(text), message)
     try:
-        return _FIELDS[field](text, file, all_parts(file.pieces, name))
+        assembly = tuple(one for one in file.pieces if one.named == name and one.place.part >= 0)
+        if assembly and field != "count":
+            parts = parts_of(_without_numbers(assembly, assembly))
+            listed = ", ".join(dict.fromkeys(f"`{part.label}`" for part in parts))
+            raise LookupError(f"an assembly has no {field}: change its count, or a part: {listed}")
+        return _FIELDS[field](text, file, assembly or all_parts(file.pieces, name))
     except LookupError as error:
         raise pointed("--change", text, 0, str(error.args[0])) from None
 

@@ -168,9 +168,11 @@ def assessment_of(
 
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
     """Return the moorings in their environments, with the codes of load cases added to their
-    findings.
+    findings, and with the governing weight in all remedies for an anchor that is too light.
     """
     numbers = _numbers(in_environments)
+    every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
+    weights = strength.heaviest(every)
 
     def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
         return tuple(
@@ -180,7 +182,7 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
                 or situations.case_of(numbers[one.environment], one.situation)
                 + "w" * (one.rule in _WAVE_RULES),
             )
-            for one in found
+            for one in strength.with_one_weight(found, weights)
         )
 
     return tuple(

@@ -1,6 +1,7 @@
 """Strength rules: load capacity of every piece, minimum tension of the line, and anchor holding."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -9,11 +10,11 @@ from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.case.warnings import counted_working_load, is_synthetic
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
-from calm.checks.finding import State, Verdict, at_least, rule
+from calm.checks.finding import Finding, State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.leg_graph import SHORT_LEAD
 from calm.checks.posture import reaches_the_surface
-from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
+from calm.files import Cable, Component, Flexible, MooringFile, Piece, Place, SafetyFactors
 from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
@@ -319,13 +320,13 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     limit = None if weight is None else weight / factor
 
-    def words(vertical: float, _: LegResult) -> tuple[str, str]:
+    def words(vertical: float, result: LegResult) -> tuple[str, str]:
         load = f"The vertical anchor load is {say('load', vertical)}"
         if limit is None:
             return f"{load}; {_UNKNOWN_WEIGHT}.", _SET_WEIGHT
         return (
             f"{load}; the anchor's weight in water over {factor:g} is {say('load', limit)}.",
-            _heavier(leg, factor * vertical),
+            _heavier(leg, result.anchor_load.required_weight),
         )
 
     source = cited(leg.file, "anchor_factor")
@@ -363,6 +364,39 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         lacks="weight",
         stated=lambda _, result: (result.anchor_load.horizontal, held(result)),
     )
+
+
+ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
+"""Rules that a sufficient weight of the anchor satisfies. The weight that the first requires
+satisfies all, in the same situation.
+"""
+
+
+def with_one_weight(
+    findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
+) -> Iterator[Finding]:
+    """Give all findings on an anchor that is too light the remedy of the finding with the largest
+    required weight.
+
+    `governing` are these findings by the place of the anchor, see `heaviest`.
+    """
+    for one in findings:
+        lead = governing.get(one.place)
+        too_light = one.rule in ANCHOR_RULES and one.remedy is not None and one.limit is not None
+        yield replace(one, remedy=lead.remedy) if lead is not None and too_light else one
+
+
+def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
+    """Return, by the place of the anchor, the finding with the largest required weight among those
+    of anchors that are too light.
+    """
+    found: dict[Place | None, Finding] = {}
+    for one in findings:
+        if one.rule == anchor_weight.name and one.remedy is not None and one.limit is not None:
+            known = found.get(one.place)
+            if known is None or known.limit is None or one.limit > known.limit:
+                found[one.place] = one
+    return found
 
 
 def _weight(leg: Leg) -> float | None:

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import accumulate
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from calm.errors import about_quantity, shown, unknown
+from calm.errors import LONGEST_TEXT, about_quantity, shown, unknown
 from calm.files import components, item_keys
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import LENIENT_IF_GREATER, LENIENT_IF_LESS, LimitKey
@@ -18,6 +18,9 @@ from calm.files.planned_depth import named_depth
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.units import QuantityError
+
+if TYPE_CHECKING:
+    from calm.files.catalogue_search import WordIndex
 
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
@@ -55,6 +58,7 @@ class LineReader:
         self._defined: dict[str, Defined | None] = {}
         self._assemblies: dict[str, tuple[Piece, ...]] = {}
         self._open: list[str] = []
+        self._index: WordIndex | None = None
 
     def check(self, ids: Iterable[str]) -> None:
         """Validate definitions, whether or not the line uses them."""
@@ -358,8 +362,10 @@ class LineReader:
             return None
         entry = self._catalogue.entry(use)
         if entry is None:
-            near = self._catalogue.nearest(use)
-            offer = f"; did you mean {near}?" if near else " (`calm catalog list` shows all)"
+            offer = " (`calm catalog list` shows all)"
+            if near := self._suggested(use):
+                *others, last = near
+                offer = f"; did you mean {', '.join(others)}{' or ' * bool(others)}{last}?"
             if some := self._catalogue.of_a_sort(use):
                 offer = f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog list {use}`)"
             item.refuse(("use",), f"`use: {shown(use)}`: no such component{offer}")
@@ -373,6 +379,16 @@ class LineReader:
             if entry.section.base is None or entry.replaces:
                 self._notices += [notice] * (notice not in self._notices)
         return entry
+
+    def _suggested(self, use: str) -> list[str]:
+        """Return up to three ids that an unknown id may stand for."""
+        from calm.files.catalogue_search import WordIndex
+
+        if len(use) > LONGEST_TEXT:
+            return []
+        if self._index is None:
+            self._index = WordIndex(self._catalogue)
+        return self._index.suggested(use, self._catalogue.nearest(use))
 
     def _definition(
         self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]

@@ -47,6 +47,14 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
             text += f" (without {', '.join(map(_heading, definition.lacks))})"
         return text
 
+    def net_force(row: tuple[str, Defined]) -> str | None:
+        sheet = datasheet(row[1], catalogue)
+        return (
+            None
+            if sheet is None
+            else _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(row[1])
+        )
+
     def figure(heading: str, key: str) -> Field:
         def text(row: tuple[str, Defined]) -> str | None:
             return None if getattr(row[1], key, None) is None else _say(row[1], key)
@@ -58,7 +66,7 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
         rows,
         words("id", 0),
         words("name", name),
-        figure("net force\nin water", "net_buoyancy"),
+        number("net force\nin water", net_force),
         figure("breaking\nload", "breaking_load"),
         dense=True,
     )

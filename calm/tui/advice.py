@@ -7,21 +7,22 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import ceil
+from pathlib import Path
 
 from calm.case import Design, targets
 from calm.case.adjustment import parse_change
 from calm.case.leg_result import LegResult
 from calm.case.size import NOT_MET, size
 from calm.checks.finding import Finding, State
+from calm.checks.strength import ANCHOR_RULES
 from calm.errors import CalmError, UsageError
 from calm.files import Anchor, Catalogue, Piece, Rigid
 from calm.files.editing import Draft
 from calm.quantities import QUANTITIES, rounded, say
 from calm.solve import Status
-from calm.tui.live import View, judge
+from calm.tui.live import View, held_lines
 
 _DIGITS = 3
-_ANCHOR = ("anchor-weight", "anchor-uplift", "anchor-sliding")
 _GRAVE = (State.FAIL, State.WARN)
 
 
@@ -47,32 +48,44 @@ def single(view: View) -> LegResult | None:
     return None if result is None or result.several or result.towed else result.leg
 
 
-def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
-    """Return suggested changes for the failures and warnings of a line, the most severe first."""
-    result = single(view)
-    if view.result is None or result is None:
-        return [*_against_lifting(view, catalogue)]
-    mooring = view.result.design
-    grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
-    found: dict[str, Offer] = {}
-    for finding in grave:
-        for offer in _for(finding, mooring, result, grave, catalogue):
-            found.setdefault(offer.title, offer)
-    return [*found.values()]
+def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
+    """Return suggested changes for the failures and warnings of a line, the most severe first.
 
+    The line is solved in every situation if it lacks an anchor or needs a heavier one.
 
-def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """Suggest a heavier anchor for a line that lifts its anchor.
-
-    The weight is found with an anchor that holds any load.
+    Parameters
+    ----------
+    catalogue : components from which an anchor is chosen
+    catalogs : catalogue files of the user, to read the line in its other environments
     """
-    if view.failure is None or view.failure.status != Status.ANCHOR_LIFTS.label:
-        return
-    draft = Draft(view.text)
-    held = judge(draft.delete([len(draft.items) - 1]).text, view.path, view.environment)
-    if view.file is not None and (result := single(held)) is not None:
-        needed = result.anchor_load.required_weight
-        yield from _anchors(view.file.pieces[-1], needed, catalogue)
+    anchors = [*_anchors(view, catalogue, catalogs)] if _needs_an_anchor(view) else []
+    grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
+    listed = [] if any(map(_is_of_anchor, grave)) else [*anchors]
+    for finding in grave:
+        if _is_of_anchor(finding):
+            listed += anchors
+        elif view.result is not None and single(view) is not None:
+            listed += _for(finding, view.result.design)
+    return [*{offer.title: offer for offer in listed}.values()]
+
+
+def _needs_an_anchor(view: View) -> bool:
+    """Return whether a single moored line has no anchor, or one that is too light."""
+    if (
+        view.file is None
+        or view.file.legs
+        or view.file.tow is not None
+        or "no float" in view.missing
+    ):
+        return False
+    lifts = view.failure is not None and view.failure.status == Status.ANCHOR_LIFTS.label
+    grave = any(each.state in _GRAVE and _is_of_anchor(each) for each in view.findings)
+    return lifts or grave or not view.anchored
+
+
+def _is_of_anchor(finding: Finding) -> bool:
+    lifts = finding.rule == "equilibrium" and finding.message.startswith(Status.ANCHOR_LIFTS.label)
+    return lifts or finding.rule in ANCHOR_RULES
 
 
 def sized(mooring: Design, target: str, change: str) -> Offer:
@@ -106,59 +119,76 @@ def sized(mooring: Design, target: str, change: str) -> Offer:
     return Offer(f"{change} so that {target}", f"{change} for {target}", make)
 
 
-def _for(
-    finding: Finding,
-    mooring: Design,
-    result: LegResult,
-    grave: Sequence[Finding],
-    catalogue: Catalogue | None,
-) -> Iterator[Offer]:
-    if finding.rule in _ANCHOR:
-        yield from _anchors(mooring.file.pieces[-1], _needed_weight(result, grave), catalogue)
-    elif finding.rule == "backup" and finding.limit is not None and finding.value is not None:
+def _for(finding: Finding, mooring: Design) -> Iterator[Offer]:
+    if finding.rule == "backup" and finding.limit is not None and finding.value is not None:
         yield from _floats(mooring, finding, finding.limit - finding.value)
     elif finding.rule in ("knockdown", "excursion", "tilt", "depth-rating") and finding.limit:
         yield from _buoyancy(mooring, finding)
 
 
-def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
-    """Return the anchor weight in water [N] that satisfies all findings on the anchor."""
-    factor = result.file.checks.anchor_factor
-    needed = [result.anchor_load.required_weight]
-    for finding in grave:
-        if finding.rule == "anchor-weight" and finding.limit is not None:
-            needed.append(finding.limit)
-        if finding.rule == "anchor-uplift" and finding.value is not None:
-            needed.append(factor * finding.value)
-        if finding.rule == "anchor-sliding" and finding.value is not None:
-            vertical = result.anchor_load.vertical
-            needed.append(factor * (vertical + finding.value / result.anchor_load.friction))
-    return max(needed)
-
-
-def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """Suggest the lightest sufficient anchor in the catalogue, and a heavier version of the present
-    anchor.
+def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -> Iterator[Offer]:
+    """Suggest the lightest anchor of the catalogue that holds in every environment and situation,
+    and a weight for an anchor that the catalogue of CALM does not define.
     """
-    item = last.place.item
-    heavy = [] if catalogue is None else [*_heavy_enough(catalogue, needed)]
-    if heavy:
-        weight, id = min(heavy)
-        title = f"anchor: {id}, {say('tension', weight)} in water; {say('tension', needed)} needed"
-        yield Offer(title, f"use {id}", _put(item, "use", id))
-    weight = rounded(needed, _DIGITS, up=True)
-    title = f"anchor: {last.use} with a weight of {say('tension', weight)} in water"
-    yield Offer(title, "a heavier anchor", _put(item, "weight", f"{weight:g} N"))
+    loads = view.held or held_lines(view, catalogs)
+    if view.file is None or not loads:
+        return
+    last, item = view.file.pieces[-1], len(view.items) - 1
+    present = view.file.anchor
+
+    def says(anchor: Anchor) -> str:
+        worst = max(loads, key=lambda load: load.needed(anchor))
+        when = f" ({worst.when})" if worst.when else ""
+        return f"{say('tension', worst.needed(anchor))} needed{when}"
+
+    holding = [
+        (weight, id, anchor)
+        for id, anchor in _anchors_of(catalogue)
+        if all(load.weight(anchor) >= load.needed(anchor) for load in loads)
+        for weight in [min(load.weight(anchor) for load in loads)]
+    ]
+    if holding:
+        weight, id, anchor = min(holding, key=lambda each: each[:2])
+        title = f"anchor: {id}, {say('tension', weight)} in water; {says(anchor)}"
+        change = _put(item, "use", id) if view.anchored else _added(id)
+        yield Offer(title, f"use {id}", change)
+    else:
+        heavy = f"No anchor of the catalogue holds: {says(present)}. Add one with `o`."
+        yield Offer(f"anchor: none of the catalogue holds; {says(present)}", "anchor", _no(heavy))
+    known = catalogue.levels[-1].get(last.use)
+    plain = view.anchored and present.mass is None
+    if plain and (known is None or known is not catalogue.entry(last.use)):
+        needed = max(load.needed(present) for load in loads)
+        clamped = loads[0].weight(present) + present.net_buoyancy
+        weight = rounded(needed - min(clamped, 0.0), _DIGITS, up=True)
+        title = f"anchor: {last.use} with a weight of {say('tension', weight)} in water"
+        yield Offer(f"{title}; {says(present)}", "a heavier anchor",
+                    _put(item, "weight", f"{weight:g} N"))  # fmt: skip
 
 
-def _heavy_enough(catalogue: Catalogue, needed: float) -> Iterator[tuple[float, str]]:
+def _anchors_of(catalogue: Catalogue) -> Iterator[tuple[str, Anchor]]:
+    """Yield the anchors of known weight in water; of several entries for one product, only the
+    recommended one.
+    """
     for id in catalogue.ids():
         entry = catalogue.entry(id)
-        if entry is not None and entry.section.data.get("kind") == "anchor":
+        fields = {} if entry is None else entry.section.data
+        if fields.get("kind") == "anchor" and "prefer" not in fields:
             with suppress(CalmError):  # a component of the user's catalogue with a mistake
                 component = catalogue.get(id)
-                if isinstance(component, Anchor) and -component.net_buoyancy >= needed:
-                    yield -component.net_buoyancy, id
+                if isinstance(component, Anchor) and component.material_known:
+                    yield id, component
+
+
+def _added(id: str) -> Callable[[Draft], Draft]:
+    return lambda draft: draft.insert(len(draft.items), {"use": id})
+
+
+def _no(reason: str) -> Callable[[Draft], Draft]:
+    def make(_: Draft) -> Draft:
+        raise UsageError(reason)
+
+    return make
 
 
 def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer]:
@@ -220,7 +250,7 @@ def differences(before: View, after: View) -> list[str]:
              other.anchor_load.required_weight),
             ("anchor weighs", "required_weight", one.anchor_load.weight, other.anchor_load.weight),
         ]  # fmt: skip
-        for name, quantity, old, new in figures:
+        for name, quantity, old, new in figures if before.anchored else figures[:-1]:
             texts = [QUANTITIES[quantity].say(value) for value in (old, new)]
             if texts[0] != texts[1]:
                 effects.append(f"{name} {texts[0]} → {texts[1]}")

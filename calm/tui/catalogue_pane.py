@@ -13,8 +13,9 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
-from calm.assemble.catalogue_search import COLUMNS, Index, Listed
+from calm.assemble.catalogue_search import Index
 from calm.errors import CalmError
+from calm.files.catalogue_search import COLUMNS, Listed
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.files.editing import Value
 from calm.files.editing.user_state import Remembered

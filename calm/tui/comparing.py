@@ -86,18 +86,34 @@ class ComparingScreen(line_screen.LineScreen):
         view = self.workspace.judged("Advice is available once the line is solved")
         if view is None:
             return
-        index, result = self.workspace.index, view.result
-        found = offers(view, None if index is None else index.catalogue)[:_MOST_OFFERS]
-        answers = numbered((offer.title, partial(self._try, offer, view)) for offer in found)
-        if result is not None and not result.towed:
-            other = partial(self._ask_for_target, view, result.design)
-            answers.append(Answer("o", "another target, as in `calm size`", other))
-        text = "Changes are shown before you accept them."
-        if not found:
-            text = "No automatic remedy is available for these findings. " + text
-        if single(view) is not None and not view.complete:
-            text += f" {PENDING}"
-        choose(self.app, Question("Advice", text, answers))
+        index, catalogs = self.workspace.index, self.session.catalogs
+
+        def work() -> None:
+            from calm.files import Catalogue
+
+            try:
+                catalogue = Catalogue.load(catalogs) if index is None else index.catalogue
+                found = offers(view, catalogue, catalogs)[:_MOST_OFFERS]
+            except CalmError as error:
+                self.call_later(self.workspace.tell, str(error), wrong=True)
+            else:
+                self.call_later(show, found)
+
+        def show(found: list[Offer]) -> None:
+            self.workspace.tell("")
+            answers = numbered((offer.title, partial(self._try, offer, view)) for offer in found)
+            if view.result is not None and not view.result.towed:
+                other = partial(self._ask_for_target, view, view.result.design)
+                answers.append(Answer("o", "another target, as in `calm size`", other))
+            text = "Changes are shown before you accept them."
+            if not found:
+                text = "No automatic remedy is available for these findings. " + text
+            if single(view) is not None and not view.complete and view.anchored:
+                text += f" {PENDING}"
+            choose(self.app, Question("Advice", text, answers))
+
+        self.tell("Looking for remedies …")
+        self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _ask_for_target(self, view: View, mooring: Design) -> None:
         from calm.tui.advice import sized

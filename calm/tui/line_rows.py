@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from textual.events import Paste
 
-from calm.assemble.catalogue_search import Index, Listed
+from calm.assemble.catalogue_search import Index
 from calm.case.columns import Output
 from calm.case.result_tables import table_columns
 from calm.checks.finding import State, percent_used, worst_state
 from calm.files import Place, components
+from calm.files.catalogue_search import Listed
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values

@@ -15,15 +15,28 @@ from pathlib import Path
 
 from calm.case import Design, Result
 from calm.case.columns import Output
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.case.memory import Memory
 from calm.case.result_tables import ComponentRow, rows_by_place, table_columns
 from calm.checks import assess, design_check
 from calm.checks.assessment import MooringInEnvironment, Situation
-from calm.checks.finding import AS_GIVEN, OWN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State, environment_text
 from calm.checks.missing import with_missing
+from calm.checks.situations import situations_of
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring, yaml_document
+from calm.files import (
+    Anchor,
+    MooringFile,
+    Piece,
+    Place,
+    editing,
+    pieces,
+    read_mooring,
+    yaml_document,
+)
+from calm.physics.seabed import required_weight
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
@@ -51,6 +64,7 @@ class View:
         which has no findings
     cases : results in each environment, once they are judged
     elsewhere : mistakes in other environments
+    held : a line without an anchor in every environment and situation, once solved
     memory : previous solutions, for the next text
     """
 
@@ -69,6 +83,7 @@ class View:
     complete: bool = False
     cases: tuple[MooringInEnvironment, ...] = ()
     elsewhere: tuple[Problem, ...] = ()
+    held: tuple[HeldLine, ...] = ()
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
@@ -133,10 +148,13 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     """Return the view with the complete findings of `calm check`.
 
     These include every environment and situation, waves, launch, recovery and breaks. A tow, and a
-    line without an anchor or without equilibrium, is returned unchanged.
+    line without equilibrium, is returned unchanged; a line without an anchor is solved in every
+    environment and situation.
     """
-    if view.complete or not view.anchored or view.result is None or view.result.towed:
+    if view.complete or view.result is None or view.result.towed:
         return view
+    if not view.anchored:
+        return view if view.result.several else replace(view, held=held_lines(view, catalogs))
     file = view.result.file
     moorings, problems = in_all_environments(view, view.result.design, catalogs)
     assessment = design_check.check(*moorings)
@@ -146,6 +164,65 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
         view, findings=findings, tighter=tighter, rows=rows, cases=assessment.in_environments,
         elsewhere=tuple(problems), complete=True,
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class HeldLine:
+    """A line in one environment and situation, with an anchor that holds any load.
+
+    `when` names the environment, unless it is that of the view, and the situation, unless as given.
+    """
+
+    when: str
+    result: LegResult
+
+    def needed(self, anchor: Anchor) -> float:
+        """Return the weight in water that an anchor needs here, with its own friction [N]."""
+        load, file = self.result.anchor_load, _anchored_by(self.result.file, anchor)
+        factor = file.checks.anchor_factor
+        return float(required_weight(load.vertical, load.horizontal, factor, file.anchor_friction))
+
+    def weight(self, anchor: Anchor) -> float:
+        """Return the weight of an anchor and its clamps in the water here [N]."""
+        leg = self.result.leg
+        return Leg(_anchored_by(leg.file, anchor), given_water=leg.water).anchor_weight
+
+
+def _anchored_by(file: MooringFile, anchor: Anchor) -> MooringFile:
+    """Return a file with another anchor, of the same height, at the end of its line."""
+    last = replace(file.pieces[-1], component=anchor)
+    return replace(file, pieces=(*file.pieces[:-1], last))
+
+
+_HOLDS_ANY_LOAD = 1e9
+"""Weight of an anchor that no line lifts [N]."""
+
+
+def held_lines(view: View, catalogs: Sequence[str | Path] = ()) -> tuple[HeldLine, ...]:
+    """Solve a single line in every environment and situation, with an anchor that holds any load;
+    empty if it has no equilibrium even so.
+    """
+    found: list[HeldLine] = []
+
+    def held(file: MooringFile) -> Design:
+        unlimited = file.anchor.model_copy(update={"weight": _HOLDS_ANY_LOAD})
+        return Design(_anchored_by(file, unlimited), memory=view.memory)
+
+    if view.file is None:
+        return ()
+    try:
+        designs, _ = in_all_environments(view, held(view.file), catalogs)
+    except NoEquilibrium:  # no length fits
+        return ()
+    for design in designs:
+        name = design.environment.name or OWN
+        where = "" if name == view.here else environment_text(name)
+        for situation, *_ in situations_of(held(design.file)):
+            when = "" if situation.name == AS_GIVEN else situation.name
+            if situation.result is not None:
+                parts = filter(None, (where, when))
+                found.append(HeldLine(", ".join(parts), situation.result))
+    return tuple(found)
 
 
 def in_all_environments(
@@ -161,7 +238,9 @@ def in_all_environments(
             found.append(here)
             continue
         try:
-            file = read_mooring(view.path, environment=name, catalogs=catalogs, text=view.text)
+            file = read_mooring(
+                view.path, environment=name, catalogs=catalogs, text=view.text, stand_in=True
+            )
         except InputError as error:
             problems += error.problems
         else:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from calm.case.leg_result import LegResult
     from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
-    from calm.tui.live import View
+    from calm.tui.live import HeldLine, View
 
 _MOST_PROBLEMS = 6
 
@@ -91,7 +91,7 @@ def verdict_lines(view: View | None) -> Iterator[VerdictLine]:
         yield VerdictLine(view.failure.advice, faint=True)
     findings = [_placed(each, view) for each in view.findings]
     tighter = [_placed(each, view) for each in view.tighter]
-    yield from _figures(view.result, [*findings, *tighter], pending=not view.complete)
+    yield from _figures(view, [*findings, *tighter], pending=not view.complete)
     for problem in view.elsewhere:
         yield VerdictLine(problem.message, place_of(problem, view.path), State.FAIL)
     if len(view.cases) > 1:
@@ -130,16 +130,15 @@ def _environment_line(case: MooringInEnvironment, view: View) -> VerdictLine:
     )
 
 
-def _figures(
-    result: Result | None, findings: Sequence[Finding], *, pending: bool
-) -> Iterator[VerdictLine]:
+def _figures(view: View, findings: Sequence[Finding], *, pending: bool) -> Iterator[VerdictLine]:
     """Yield values at the ends of the line; the solver is imported already if there is a result."""
+    result = view.result
     if result is None:
         return
     if result.several:
         yield from _net(result)
     elif not result.towed:
-        yield from _mooring(result.leg, findings, pending)
+        yield from _mooring(result.leg, findings, pending, view.held)
     else:
         point, body = result.tow_point, result.body
         pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
@@ -149,7 +148,7 @@ def _figures(
 
 
 def _mooring(
-    result: LegResult, findings: Sequence[Finding], pending: bool
+    result: LegResult, findings: Sequence[Finding], pending: bool, held: Sequence[HeldLine]
 ) -> Iterator[VerdictLine]:
     """Yield anchor and top values of the mooring as specified; values with a limit show their
     most severe finding.
@@ -160,7 +159,7 @@ def _mooring(
     anchor, top = result.anchor_load, result.top
     pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
     yield VerdictLine(pull, heading="Anchor")
-    yield _holds(result, _worst(findings, anchor_weight), pending)
+    yield _holds(result, _worst(findings, anchor_weight), pending, held)
     if result.type == "surface":
         used = f"{top.used_buoyancy:.0%} of the float's buoyancy in use"
         worst = _worst(findings, reserve)
@@ -181,12 +180,18 @@ def _mooring(
         )
 
 
-def _holds(result: LegResult, worst: Finding | None, pending: bool) -> VerdictLine:
-    """Return required and actual anchor weight; without an anchor, only the required weight."""
+def _holds(
+    result: LegResult, worst: Finding | None, pending: bool, held: Sequence[HeldLine]
+) -> VerdictLine:
+    """Return required and actual anchor weight; without an anchor, only the required weight, which
+    is the largest once the line is solved in every situation.
+    """
     if worst is None:
-        return VerdictLine(
-            f"needs {say('required_weight', result.anchor_load.required_weight)} in water"
-        )
+        needed, when = result.anchor_load.required_weight, ""
+        if held:
+            needed, when = max((one.needed(result.file.anchor), one.when) for one in held)
+        situation = f" ({when})" if when else ""
+        return VerdictLine(f"needs {say('required_weight', needed)}{situation} in water")
     needs = f"needs {say('required_weight', worst.limit)}{_situation(worst)}"
     has = f"has {say('required_weight', worst.value)} in water"
     unsure = pending and worst.state is State.PASS

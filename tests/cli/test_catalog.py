@@ -66,6 +66,14 @@ def test_assembly_is_shown(calm):
     assert "glass-17in" in calm("catalog", "show", "glass-cluster-4").out
 
 
+@pytest.mark.parametrize("id", ["glass-cluster-4", "release-pair-ar861"])
+def test_the_net_force_of_an_assembly_is_listed_as_on_its_card(calm, id):
+    card, listed = calm("catalog", "show", id).out, calm("catalog", "list", id).out
+    (shown,) = (line.split()[-2:] for line in card.splitlines() if "net force" in line)
+    row = next(line for line in listed.splitlines() if line.startswith(f"{id} "))
+    assert float(shown[0].replace("−", "-")) and " ".join(shown) in row
+
+
 def test_what_follows_from_the_figures_is_shown(calm):
     # Kn of a sphere: 1/2 x 1025 x 0.5 x pi/4 x 1.25^2 = 314.5 N/(m/s)^2; Cd x area is 0.6136 m^2.
     shown = calm("catalog", "show", "sphere-steel-1250").out
@@ -239,6 +247,11 @@ def test_search_says_how_it_read_a_misspelt_word(calm):
     done = calm("catalog", "list", "releese", "ar861", "--json")
     assert done.err == "no component matches `releese ar861`; searched for `release ar861`\n"
     assert "release-ar861" in [each["id"] for each in json.loads(done.out)]
+
+
+def test_a_short_word_with_another_first_letter_is_not_misspelt(calm):
+    done = calm("catalog", "list", "back-up", "buoyancy")
+    assert "searched for" not in done.err and "none matches `back`" in done.err
 
 
 def test_search_keeps_limits_and_puts_what_is_used_first(calm):

@@ -4,8 +4,9 @@ from functools import cache
 
 import pytest
 
-from calm.assemble.catalogue_search import COLUMNS, Index, wanted
+from calm.assemble.catalogue_search import Index
 from calm.files import Catalogue
+from calm.files.catalogue_search import COLUMNS, wanted
 
 
 @cache

@@ -184,7 +184,13 @@ def test_a_line_without_an_anchor_stands_on_one_that_holds_anything() -> None:
     assert without.result.anchor.required_weight == pytest.approx(
         whole.result.anchor.required_weight, rel=1e-3
     )
-    assert judge_fully(without) is without
+    fully = judge_fully(without)
+    assert fully.findings == without.findings and not fully.complete
+    assert {each.when for each in fully.held} == {"", "still water", "strumming"}
+    assert max(each.needed(without.file.anchor) for each in fully.held) == pytest.approx(
+        max(each.limit for each in judge_fully(whole).tighter if each.rule == "anchor-weight"),
+        rel=1e-3,
+    )
 
 
 def test_a_line_without_a_float_has_its_rows_without_figures() -> None:

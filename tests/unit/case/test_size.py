@@ -263,12 +263,60 @@ def test_a_caret_stands_under_each_mistake(mooring):
     ]
 
 
-def test_parts_of_an_assembly_are_not_counted(mooring):
-    pair = "  pair: {kind: assembly, parts: [{use: ball, buoyancy: 9 N}, {use: ball}]}\n"
-    glass = "{use: ball, label: glass, count: 2, buoyancy: 50 N}"
-    loaded = mooring(change=(glass, "{use: pair}"), components=pair)
-    with pytest.raises(UsageError, match="part of an assembly, which is counted as a whole"):
-        size(loaded, "tilt(thread) <= 2 deg", "ball 1.count")
+PAIR = """\
+  pair: {kind: assembly, parts: [{use: ball, label: upper, buoyancy: BUOYANCY}, {use: ball}]}
+"""
+GLASS = "{use: ball, label: glass, count: 2, buoyancy: 50 N}"
+
+
+@pytest.mark.parametrize(
+    ("item", "change", "told"),
+    [
+        ("{use: pair}", "ball.count", "give the assembly a `label` in the file"),
+        ("{use: pair, label: glass}", "glass ball.count", "change `glass.count`"),
+        ("{use: pair, label: glass, count: 3}", "glass ball 2.count", "change `glass.count`"),
+        ("{use: pair, label: glass, count: 3}", "glass.length",
+         "an assembly has no length: change its count, or a part: `glass upper`, `glass ball`"),
+    ],
+)  # fmt: skip
+def test_an_assembly_is_counted_as_a_whole(mooring, item, change, told):
+    loaded = mooring(change=(GLASS, item), components=PAIR.replace("BUOYANCY", "9 N"))
+    with pytest.raises(UsageError) as caught:
+        size(loaded, "tilt(thread) <= 2 deg", change)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_the_count_of_an_assembly_is_found_by_the_label_of_its_item(mooring, count):
+    """As many pairs of 50 N as reduce the tilt of a float of 800 N, like single floats of 50 N."""
+
+    def pairs(count):
+        item = f"{{use: pair, label: glass, count: {count}}}"
+        components = PAIR.replace("BUOYANCY", "50 N")
+        return mooring(change=(GLASS, item), components=components)
+
+    sizing = size(pairs(count), "tilt(thread) <= 15 deg", "glass.count")
+    single = size(mooring(), "tilt(thread) <= 15 deg", "glass.count")
+    assert sizing.before.value == count and sizing.status == "met"
+    assert sizing.after.value == single.after.value > 3
+    there = pairs(int(sizing.after.value)).solve()
+    labels = [row.label for row in sizing.after.result.components]
+    assert labels == [row.label for row in there.components]
+    assert sizing.after.measured == pytest.approx(
+        next(row.tilt for row in there.components if row.label == "thread")
+    )
+
+
+@pytest.mark.parametrize("change", ["block.weight", "anchor.weight", "block.buoyancy"])
+def test_the_weight_of_an_anchor_follows_from_its_load(mooring, change):
+    with pytest.raises(UsageError, match="`calm run` prints the weight required"):
+        size(mooring(), "tilt(thread) <= 2 deg", change)
+
+
+def test_a_word_of_a_label_is_enough_for_its_suggestion(mooring):
+    labelled = mooring(change=("label: CTD", "label: CTD 450 m"))
+    with pytest.raises(UsageError, match="did you mean `CTD 450 m`"):
+        size(labelled, "tilt(CTD) <= 2 deg", "float.buoyancy")
 
 
 def test_a_piece_cut_to_fit_has_no_length_to_change(mooring):

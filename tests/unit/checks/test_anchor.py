@@ -4,6 +4,8 @@ import pytest
 
 import calm
 from calm.checks.design_check import check
+from calm.checks.finding import State
+from calm.quantities import say
 
 FILE = """
 name: By hand
@@ -78,3 +80,26 @@ def test_an_anchor_slides_below_the_weight_that_holds_both_pulls(load, share, st
     in_environments = check(load(f", weight: {share * needed} N")).in_environments[0]
     found = {one.rule: one for one in in_environments.findings if one.situation == "as given"}
     assert found["anchor-sliding"].state == found["anchor-weight"].state == state
+
+
+def test_every_rule_asks_for_the_one_weight_that_satisfies_all(tmp_path):
+    """The largest weight of all situations and environments, in each remedy on the anchor."""
+    text = FILE.replace("mass: 1000 kg, FIGURES", "weight: 2500 N").replace("3000 N", "2400 N")
+    storm = "\nenvironments: {storm: {current: {speed: 0.9 m/s, toward: 90 deg}}}\nline:"
+    text, path = text.replace("\nline:", storm), tmp_path / "m.yaml"
+
+    def judged(text):
+        path.write_text(text, "utf-8")
+        assessment = check(calm.load(path), calm.load(path, environment="storm"))
+        every = (*assessment.all_findings(), *assessment.tighter_findings())
+        return [each for each in every if each.rule in RULES]
+
+    findings = judged(text)
+    failing = [each for each in findings if each.remedy is not None]
+    assert {each.rule for each in failing} == {*RULES}
+    assert len({(each.environment, each.situation) for each in failing}) > 1
+    needed = max(each.limit for each in findings if each.rule == "anchor-weight")
+    (remedy,) = {each.remedy for each in failing}
+    assert f"at least {say('load', needed)} in water" in remedy
+    heavier = judged(text.replace("weight: 2500 N", f"weight: {needed + 1.0:.0f} N"))
+    assert {each.state for each in heavier} == {State.PASS}

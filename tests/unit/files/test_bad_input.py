@@ -486,6 +486,29 @@ checks: {maximum_tilt: 30}
 
 
 @pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("microcat", ["sbe37"]),
+        ("microkat", ["sbe37"]),
+        ("glass balls", ["glass-cluster-4", "glass-cluster-5"]),
+        ("dual release", ["release-pair-ar861"]),
+        ("wire", ["wire-jacketed-8"]),
+        ("glas-cluster-4", ["glass-cluster-4"]),
+        ("chain-g30-16", ["chain-short-g30-16"]),
+        ("wire-jacketed-9", ["wire-jacketed-8"]),
+    ],
+)
+def test_an_unknown_component_is_searched_by_its_words(
+    mistakes: Mistakes, written: str, meant: list[str]
+) -> None:
+    text = changed("use: rope-12", f"use: {written}")
+    ((_, _, message),) = mistakes(text)
+    offered = message.partition("did you mean ")[2].rstrip("?").replace(" or ", ", ").split(", ")
+    assert {*meant} <= {*offered} and len(offered) <= 3
+    assert message.startswith(f"`use: {written}`: no such component; ")
+
+
+@pytest.mark.parametrize(
     ("line", "messages"),
     [
         (
