@@ -178,7 +178,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         narrate(f"calm: {complaint(error)}")
         return ExitCode.BAD_INPUT
     except CalmError as error:
-        narrate(f"calm: {error}")
+        narrate("\n".join(f"calm: {line}" for line in str(error).splitlines()))
         return ExitCode.BAD_INPUT
     except KeyboardInterrupt:
         narrate("calm: interrupted")

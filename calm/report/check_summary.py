@@ -12,6 +12,8 @@ from textwrap import wrap
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import (
+    DEFAULT_ENVIRONMENT,
+    OWN,
     Conclusion,
     Finding,
     State,
@@ -121,7 +123,7 @@ def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
     """Describe a case in brief; later cases of the same environment do not repeat its name."""
     if case.situation in (STILL, STILL_LOW):
         return case.situation
-    own = "design current" if case.environment == "own" else case.environment
+    own = DEFAULT_ENVIRONMENT if case.environment == OWN else case.environment
     if case.as_given:
         return short(own, 24)
     changed = {STRUMMING: "strumming", FOULED: "growth"}.get(case.situation, case.situation)

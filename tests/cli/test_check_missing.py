@@ -121,6 +121,21 @@ def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
     assert block["link"] == {"working_load": None}
 
 
+def test_values_that_no_verdict_waits_for_are_listed_as_comments(calm, folder):
+    text = LINE.replace("  - {use: link, count: 2}\n", "  - {use: rcm11, label: meter}\n")
+    (folder / "m.yaml").write_text(text.replace("sbe56-uwa", "sbe37"), encoding="utf-8")
+    done = calm("check", "m.yaml", "--missing", "-o", "block.yaml")
+    assert done.err.rstrip().endswith("block.yaml written; it has only comments")
+    block = (folder / "block.yaml").read_text(encoding="utf-8")
+    assert block.startswith("# No value is missing that a verdict waits for.\n")
+    assert "#   rcm11:  # meter\n#     working_load:  # estimated: at least 7.36 kN" in block
+    assert "#     mass:  # in air; the total mass is a lower bound without it\n" in block
+    assert "#   sbe37:  # sbe37 1 and 2\n#     grip:  # without it, clamp grip is not" in block
+    assert yaml.safe_load(block) is None
+    uncommented = "".join(f"{line[2:]}\n" for line in block.splitlines() if line.startswith("#   "))
+    assert yaml.safe_load(uncommented)["rcm11"] == {"working_load": None, "mass": None}
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

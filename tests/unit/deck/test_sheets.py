@@ -87,7 +87,7 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     ]
     assert told[:3] == [
         # the shackle with a serial number is a row of its own
-        ("top float", "ball", "13 shackle, 22 ring"),
+        ("top float", "ball", "13 mm shackle, 7/8 in ring"),
         ("shackle-16", deck.parts[3].name, ""),
         ("wire", "wire", ""),
     ]
@@ -102,10 +102,13 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     sheets = deck_of([calm.load(tmp_path / "m.yaml")])
     rows = {row.label: row for row in printed_rows(sheets.deployment)}
     cluster = rows["cluster"]
-    assert (cluster.name, hardware_text(cluster.joints)) == ("2 × pack", "13 shackle")
+    assert (cluster.name, hardware_text(cluster.joints)) == ("2 × pack", "13 mm shackle")
     assert len(_parts_of(rows["cluster"])) == 4
     (shared,) = (row for row in rows.values() if len(row.items) == 3)
-    assert (shared.name, hardware_text(shared.joints)) == ("3 × pack", "2 × 13 shackle, 16 shackle")
+    assert (shared.name, hardware_text(shared.joints)) == (
+        "3 × pack",
+        "2 × 13 mm shackle, 16 mm shackle",
+    )
     # nothing is lost, nothing counted twice; the other way round the same clusters
     for order in Order:
         listed = deck_of([sheets.result.design], order).deployment

@@ -201,7 +201,7 @@ def test_what_governs_or_is_open_is_drawn_and_marked_in_a_row_of_its_own(signed)
     rows = {cell.text: (number.text, cell.detail) for _, number, cell, *_ in drawing.rows}
     assert rows["lower swivel"] == ("27", "Miller swivel C212")
     number, words = rows["back-up glass chain 1–3"]
-    assert number == "19–25" and "swivel" not in words and "with 4 × 13 shackle" in words
+    assert number == "19–25" and "swivel" not in words and "with 4 × 13 mm shackle" in words
     labels = re.findall(r">([^<>]+)</text>", mooring_picture(signed))
     assert "lower swivel ≈1" in labels and "back-up glass chain 1–3" in labels
 
