@@ -3,11 +3,15 @@
 import gc
 import os
 from collections.abc import Iterator
+from functools import partial, wraps
 
 import pytest
 from hypothesis import settings
 
+from calm.case.memory import Memory
+from calm.drop import launch, plan
 from calm.quantities import show_in
+from calm.solve import net
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
 settings.register_profile("explore", deadline=None, max_examples=2000)
@@ -15,12 +19,13 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
 # the default of 700 is for less memory: looking for garbage took a third of the time of the builder
 gc.set_threshold(50_000, 20, 20)
+gc.disable()
 
 
 def pytest_collection_finish() -> None:
-    """What the collection of thousands of tests has made stays, and is not looked through again."""
-    gc.collect()
+    """What the collection of thousands of tests has made stays, and is never looked through."""
     gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -36,6 +41,22 @@ def solve_compiled() -> None:
     `CALM_COMPILED=never` makes the tests use the interpreted solver.
     """
     os.environ.setdefault("CALM_COMPILED", "always")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def computed_once() -> Iterator[None]:
+    """A line under tow, its fall and its rest, and the start of a net, are computed for the first
+    test that asks.
+    """
+    shared = Memory()
+    with pytest.MonkeyPatch.context() as patch:
+        for where, names in (
+            (launch, ("towed", "fall")), (plan, ("towed", "fall", "settle")), (net, ("start_of",)),
+        ):  # fmt: skip
+            for name in names:
+                law = getattr(where, name)
+                patch.setattr(where, name, wraps(law)(partial(shared.of, law)))
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -10,6 +10,7 @@ from math import hypot
 
 from calm.case.design import Design
 from calm.case.leg_result import LegResult
+from calm.case.profilers import held
 from calm.case.warnings import fast_pieces, power_text
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.errors import NoEquilibrium
@@ -58,10 +59,10 @@ def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
         return "", False
     solver = file.solver.model_copy(update={"drag": "reynolds"})
     pieces = tuple(_smooth(piece) if piece.index in fast else piece for piece in file.pieces)
+    # profilers stay at their upper stops, as for the knockdown of the result
+    other = held(replace(file, solver=solver, pieces=pieces))
     try:
-        smooth = (
-            Design(replace(file, solver=solver, pieces=pieces), result.leg.for_surface).solve().leg
-        )
+        smooth = Design(other, result.leg.for_surface).solve().leg
     except NoEquilibrium as failure:
         return f" With the drag curve of a smooth shape: {failure.status}.", True
     name, before, after = "offset", _offset(result), _offset(smooth)

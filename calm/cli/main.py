@@ -160,6 +160,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     prepare()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins takes time
+    # CALM's matrices are small: threads of NumPy's linear algebra only take time to start
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if arguments is None:
         gc.set_threshold(_GC_THRESHOLD)
         atexit.register(gc.freeze)  # remaining objects need no final collection

@@ -11,7 +11,7 @@ from calm.drop.motion import ChainState, FallingAnchor, Mover, NoStep
 from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
 from calm.solve import Status
-from calm.solve.bracketed_root import bracketed_root
+from calm.solve.least_change import bracketed_root
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
 """Thickness of the surface layer in which floats lose their buoyancy: as a fraction of the depth,
@@ -19,6 +19,10 @@ and its upper limit [m].
 """
 AT_REST = 1e-7
 """Motion per time step, as a fraction of the depth, below which the line is at rest."""
+UNMOVED = 1e-10
+"""Motion in a time step, as a fraction of the depth, that is due to rounding: the line is at rest,
+and the longest time step follows.
+"""
 MAX_STEP = 1e6
 """Length of the longest time step [s], after which a line is at rest."""
 SLOWEST_FLOW = 0.01
@@ -210,12 +214,14 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
     depth = mover.sea.water.depth
     states = [state]
     for _ in range(_FALLS + 1):
-        length = step
+        length, moved = step, 0.0
         while length < MAX_STEP:
             after = _stepped(mover, states[-1], length, depth)
+            moved = float(np.abs(after.node - states[-1].node).max())
             length = _REST_GROWTH * (after.time - states[-1].time)
+            if moved < UNMOVED * depth:
+                length = max(length, MAX_STEP / _REST_GROWTH)
             states.append(after)
-        moved = float(np.abs(states[-1].node - states[-2].node).max())
         if moved > AT_REST * depth:
             raise Status.NOT_CONVERGED.because("The line does not settle on the seabed.")
         laid = _laid_down(mover, states[-1])
@@ -274,7 +280,11 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
                 f"even behind a very slow ship the line extends {_streamed(state):.1f} m astern; a "
                 f"distance of {streamed:g} m is not possible"
             )
-    excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
+    high = min(2.0 * share, 1.0)
+    share, _, _ = bracketed_root(
+        lambda _, x: excess(x), None, high, excess(high), share, excess(share), 0.0, 1e-7 * share
+    )
+    excess(share)
     if abs(_streamed(state) - streamed) > STREAMED_WITHIN * reach:
         raise Status.NOT_CONVERGED.because(
             f"The line does not extend {streamed:g} m astern at any speed of the ship."

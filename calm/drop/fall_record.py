@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.case.leg_result import LegResult
 from calm.drop.chain import BarChain
-from calm.drop.fall import Motion
+from calm.drop.fall import UNMOVED, Motion
 from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
 from calm.files.pieces import clamps_in
@@ -30,7 +30,7 @@ class DepthReached:
     part : the piece or clamp
     rest : depth of its lower end at rest [m]
     greatest : the largest depth of its lower end [m]
-    time : time of the largest depth, after the release of the anchor [s]
+    time : time at which it is reached, after the release of the anchor [s]
     rating : its depth rating [m]; None if unknown
     """
 
@@ -172,12 +172,14 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     depth = np.array([_depths(chain, state) for state in states])
-    deepest = depth.argmax(axis=0)
+    greatest = depth.max(axis=0)
+    # at rest, depths differ by rounding only: the first of them counts
+    deepest = (depth >= greatest - UNMOVED * drop.mover.sea.water.depth).argmax(axis=0)
     return tuple(
         DepthReached(
             part=part,
             rest=float(depth[-1, i]),
-            greatest=float(depth[deepest[i], i]),
+            greatest=float(greatest[i]),
             time=states[deepest[i]].time,
             rating=part.component.depth_rating,
         )

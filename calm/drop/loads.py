@@ -127,7 +127,8 @@ def loads_on(
         raised = dense * on.lift * wet
         force[2] += raised * speed**2
         by_flow[2] += 2.0 * raised * flow
-    by_height = wetting * drag - (by_flow * shear).sum(axis=1)
+    by_height = wetting * drag
+    by_height -= by_flow[:, 0] * shear[0] + by_flow[:, 1] * shear[1] + by_flow[:, 2] * shear[2]
     by_height[2] += stiffness
     return Loads(force, by_flow, by_axis, by_height)
 

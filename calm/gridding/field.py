@@ -68,6 +68,23 @@ class RecordProfile:
 
 
 @dataclass(frozen=True)
+class Widening:
+    """Factors on deviations, 1 at least: between sensors by depth [m], and beyond them."""
+
+    depth: Floats
+    within: Floats
+    beyond: float
+
+    def at(self, level: Floats, between: NDArray[np.bool_]) -> Floats:
+        """Return the factors at levels, which lie between the sensors or beyond them."""
+        inside = np.interp(level, self.depth, self.within)
+        return np.where(between, inside, np.maximum(inside, self.beyond))
+
+
+NOT_WIDENED = Widening(np.zeros(1), np.ones(1), 1.0)
+
+
+@dataclass(frozen=True)
 class GriddedQuantity:
     """A quantity with fitted correlation scales.
 
@@ -84,21 +101,7 @@ class GriddedQuantity:
     scales: Scales
     noise: float
     in_time: bool = True
-    widened: Widening | None = None
-
-
-@dataclass(frozen=True)
-class Widening:
-    """Factors on deviations, 1 at least: between sensors by depth [m], and beyond them."""
-
-    depth: Floats
-    within: Floats
-    beyond: float
-
-    def at(self, level: Floats, between: NDArray[np.bool_]) -> Floats:
-        """Return the factors at levels, which lie between the sensors or beyond them."""
-        inside = np.interp(level, self.depth, self.within)
-        return np.where(between, inside, np.maximum(inside, self.beyond))
+    widened: Widening = NOT_WIDENED
 
 
 class LevelPosterior(NamedTuple):
@@ -302,8 +305,7 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
     flag = np.where(between & ~little, INTERPOLATED, DOUBTFUL)
     nothing = little & ~between
     flag = np.where(nothing, MISSING, flag).astype(np.int8)
-    if field.widened is not None:
-        deviation = deviation * field.widened.at(np.broadcast_to(levels, left.shape), between)
+    deviation = deviation * field.widened.at(np.broadcast_to(levels, left.shape), between)
     value, deviation = (np.where(nothing, np.nan, one) for one in (mean, deviation))
     return LevelValues(value, deviation, flag)
 
@@ -354,10 +356,7 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     count = block.depth.shape[1] // sensors
     inverse = np.linalg.inv(block.covariance)
     weighted = (inverse @ block.anomaly[:, :, None])[..., 0]
-    residual, spread = (
-        np.full((len(times), sensors), np.nan),
-        np.full((len(times), sensors), np.nan),
-    )
+    residual, spread = np.full((2, len(times), sensors), np.nan)
     here = count // 2
     for j in range(sensors):
         own = np.arange(count) * sensors + j
@@ -376,7 +375,7 @@ MIN_RESIDUALS = 20
 """Minimum number of residuals of a sensor for a factor."""
 
 
-def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening | None:
+def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening:
     """Find the factors by which bands must be widened to cover 95 % of each sensor, withheld in
     turn.
     """
@@ -384,7 +383,7 @@ def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening | No
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     enough = np.isfinite(residual).sum(axis=0) >= MIN_RESIDUALS
     if enough.sum() < 2:
-        return None
+        return NOT_WIDENED
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))
     between = (place > upper) & (place < lower)
     depth, within, beyond = [], [], 1.0

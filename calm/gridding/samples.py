@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from calm.batch.finished import labels_of
 from calm.errors import UsageError
 from calm.motion.matching import LinePlaces
-from calm.motion.measurements import interpolated
+from calm.motion.measurements import interpolated, nearest
 from calm.records.cf_files import UnreadableError, opened, read_times
 from calm.records.instrument_series import InstrumentSeries
 
@@ -187,11 +187,7 @@ def gather(
             interpolated(depths.time, known[:, at], one.time, gap)
             for known in (depths.depth, depths.deviation)
         )
-        after = np.clip(np.searchsorted(time, one.time), 1, max(len(time) - 1, 1))
-        before = np.maximum(after - 1, 0)
-        after = np.minimum(after, len(time) - 1)
-        nearer = np.abs(one.time - time[before]) <= np.abs(time[after] - one.time)
-        bin_of = np.where(nearer, before, after)
+        bin_of = nearest(time, one.time)
         good = np.isfinite(one.value) & np.isfinite(where)
         good &= np.abs(time[bin_of] - one.time) <= half
         count = np.bincount(bin_of[good], minlength=len(time)).astype(float)

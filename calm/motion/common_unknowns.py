@@ -6,7 +6,7 @@ evidence of many times.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -83,7 +83,7 @@ def common_beforehand(
     sensors : number of sensors
     mean : mean of the correction to the depths of the line [m]
     """
-    known = [FACTORS[name][1] for name in factors]
+    known = [FACTORS[name] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
     return Common(factors, mean, np.zeros(sensors), np.diag(np.square(spread)))
 
@@ -185,134 +185,76 @@ class LinearLaw:
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
-NEVER = -1
-"""Code, in place of a time, for sensors with too few readings to detect a slip."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
 """Codes of drifts, in place of a time, with the share of the record over which they last."""
 
 
-def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
-    """Return (n, s) change in the reading of each sensor per metre of slip or drift.
+def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
+    """Return (n,) change in the reading of a sensor per metre of offset, slip or drift.
 
     Parameters
     ----------
-    first : (s,) codes of `first_time`
-    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
+    code : 0 for an offset throughout, the time of a slip, or a code of `RAMPS`
+    fall : (n,) change in its depth per metre of displacement along the line
     share : (n,) elapsed share of the record at each time, 0 to 1
     """
-    began = (np.arange(len(fall))[:, None] >= first) & (first >= 0)
-    result: Floats = np.where(began, fall, 0.0)
-    for code, part in RAMPS.items():
-        result = np.where(first == code, np.minimum(share / part, 1.0)[:, None], result)
-    return result
+    if code in RAMPS:
+        return np.minimum(share / RAMPS[code], 1.0)
+    return np.where(np.arange(len(fall)) >= code, fall if code else 1.0, 0.0)
 
 
-def chance_of(first: int, times: int) -> tuple[float, float]:
-    """Return the log prior probability of a slip or drift, and the prior deviation of its size [m].
+def chance_of(code: int, times: int) -> tuple[float, float]:
+    """Return the log prior probability of a fault, and the prior deviation of its size [m].
 
-    `first` is a code of `first_time`, and `times` is the number of times at which a clamp may slip.
+    `code` is that of `moved_by`, and `times` the number of times at which a clamp may slip.
     """
-    if first in RAMPS:
+    if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
-    return float(np.log(SLIPPED / times if first else MISPLACED)), ELSEWHERE
+    return float(np.log(SLIPPED / times if code else MISPLACED)), ELSEWHERE
 
 
-def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
-    """Return (s,) the most likely time at which each sensor slips, if it does.
+def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
+    """Return the most likely time at which each of several changes in the readings begins.
 
-    0 means that it is displaced throughout; `NEVER`, that it has too few readings; a code of
-    `RAMPS`, that a drift is likelier than a slip at any time. Each fault is fitted jointly with the
-    common unknowns.
+    Each change lasts to the end, and is fitted jointly with the common unknowns. 0 stands for a
+    change that is likelier throughout, or with too few readings on either side of all times.
 
     Parameters
     ----------
     law : linear law of the times
-    mean, covariance : (q,), (q, q) prior of the unknowns
+    covariance : (q, q) prior of the unknowns, with zero mean
+    columns : (n, s) change in the readings per metre of its size, each
     """
-    count = len(law.time)
-    if not count:
-        return np.full(law.fall.shape[1], NEVER)
-    gained = Gains(law, mean, covariance)
-    sensors = np.eye(law.fall.shape[1])
-    steps = np.stack([gained.steps(law.fall * one, ELSEWHERE) for one in sensors], axis=1)
-    steps[1:] += np.log(SLIPPED / count)
-    steps[0] += np.log(MISPLACED)
-    after = _from_there_on(law.known.astype(float))
-    can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
-    can[0] = after[0] >= FEWEST
-    steps = np.where(can, steps, -np.inf)
-    first: Integers = np.where(can.any(axis=0), steps.argmax(axis=0), NEVER)
-    best = steps.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # a slip at any time
-    for code, part in RAMPS.items():
-        ramp = np.minimum(law.share / part, 1.0)[:, None]
-        chance, wide = chance_of(code, count)
-        drift = np.array([gained.whole(ramp * one, wide) for one in sensors]) + chance
-        better = (drift > best) & (after[0] >= 2 * FEWEST)
-        first, best = np.where(better, code, first), np.where(better, drift, best)
-    return first
-
-
-def common_step(law: LinearLaw, mean: Floats, covariance: Floats) -> int:
-    """Return the most likely time of a step in the depths of all sensors.
-
-    `NEVER` if there are too few times on either side.
-    """
-    count = len(law.time)
-    if count < 2 * FEWEST:
-        return NEVER
-    steps = Gains(law, mean, covariance).steps(np.ones_like(law.fall), ELSEWHERE)
-    return FEWEST + int(np.argmax(steps[FEWEST : count - FEWEST + 1]))
-
-
-class Gains:
-    """Log-likelihood gains from one more unknown, fitted with those of the record."""
-
-    def __init__(self, law: LinearLaw, mean: Floats, covariance: Floats) -> None:
-        before = np.linalg.inv(covariance)
-        self.inverse = np.linalg.inv(law.normal(law.fixed) + before)
-        pull = law.pulls(law.fixed, law.raw).sum(axis=0)
-        left = law.raw - law.fixed @ (self.inverse @ (pull + before @ mean))
-        self.heavy = law.weight[:, None, None] * law.inverse
-        self.pull = (self.heavy @ left[:, :, None])[:, :, 0]
-        self.fixed = law.fixed
-
-    def _parts(self, column: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return (n,), (n, q), (n,): the normal equations of each time for a column (n, s)."""
-        own = (self.heavy @ column[:, :, None])[:, :, 0]
-        crossed = np.einsum("nsq,ns->nq", self.fixed, own)
-        return (column * self.pull).sum(axis=1), crossed, (column * own).sum(axis=1)
-
-    def _gain(self, own: Floats, cross: Floats, alone: Floats, wide: float) -> Floats:
-        size = np.maximum(alone - np.einsum("nq,qr,nr->n", cross, self.inverse, cross), 0.0)
-        gain: Floats = 0.5 * own**2 / (size + wide**-2) - 0.5 * np.log1p(wide**2 * size)
-        return gain
-
-    def steps(self, column: Floats, wide: float) -> Floats:
-        """Return (n,) gains of a column that begins at each time, with prior deviation `wide`."""
-        own, cross, alone = (_from_there_on(part) for part in self._parts(column))
-        return self._gain(own, cross, alone, wide)
-
-    def whole(self, column: Floats, wide: float) -> float:
-        """Return the gain from a column that applies throughout."""
-        own, cross, alone = (part.sum(axis=0, keepdims=True) for part in self._parts(column))
-        return float(self._gain(own, cross, alone, wide)[0])
-
-
-def _from_there_on(values: Floats) -> Floats:
-    """Return sums over the first axis from each place to the end."""
-    sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
-    return sums
+    inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
+    left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))
+    heavy = law.weight[:, None, None] * law.inverse
+    pull = (heavy @ left[:, :, None])[:, :, 0]
+    found = []
+    for column in columns:
+        moved = (heavy @ column[:, :, None])[:, :, 0]
+        crossed = np.einsum("nsq,ns->nq", law.fixed, moved)
+        there = (law.known & (column != 0.0)).any(axis=1)
+        parts = (column * pull).sum(axis=1), crossed, (column * moved).sum(axis=1), there
+        own, cross, alone, after = (np.cumsum(part[::-1], axis=0)[::-1] for part in parts)
+        size = np.maximum(alone - np.einsum("nq,qr,nr->n", cross, inverse, cross), 0.0)
+        gain = 0.5 * own**2 / (size + ELSEWHERE**-2) - 0.5 * np.log1p(ELSEWHERE**2 * size)
+        gain[1:] += np.log(SLIPPED / MISPLACED / len(gain))
+        can = (after >= FEWEST) & (there.sum() - after >= FEWEST)
+        can[0] = True
+        found.append(int(np.where(can, gain, -np.inf).argmax()))
+    return found
 
 
 NORMAL = 1.4826
 """Standard deviation of a normal law over the median of its size."""
-FACTORS: Mapping[str, tuple[float, float]] = {
-    "cable_drag": (0.0, 0.15),
-    "rigid_drag": (0.0, 0.15),
-    "buoyancy": (0.0, 0.02),
-    "length": (0.0, 0.003),
-}
-"""Mean and deviation of the logarithms of the common factors."""
+FACTORS: Mapping[str, float] = {
+    "cable_drag": 0.15, "rigid_drag": 0.15, "buoyancy": 0.02, "length": 0.003
+}  # fmt: skip
+"""Factors that may be estimated for a whole record, and the prior deviation of their logarithms.
+
+They apply to the drag of cables and chains; the drag of rigid pieces and clamped instruments; the
+net force of all buoyant pieces; and the lengths of cables and chains.
+"""
 DATUM = 0.01
 """Prior deviation of the datum, an error common to all depths, as a share of the water depth."""
 OFFSET = 1.0

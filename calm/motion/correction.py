@@ -242,20 +242,17 @@ class Task:
             beside = self._neighbours[0][times], self._neighbours[1][times]
             found = estimated(moments, self.common, state, beside)
             forward, offset = moments.forward, self.common.offset
-            depth, deviation, way = found.depth, found.deviation, found.likely
+            depth, deviation, read = found.depth, found.deviation, found.likely
             surface = self.common.datum + found.sea
         else:
             forward, offset = smoother.best, smoother.offset[times]
-            depth, deviation, way = (
-                smoother.depth[times],
-                smoother.deviation[times],
-                smoother.way(times),
-            )
+            depth, deviation = smoother.depth[times], smoother.deviation[times]
+            read = smoother.read(times)
             surface = smoother.surface[times]
         # inferred currents may exceed the limit of measured ones, which is for errors in files
         limit = self.mooring.file.environment.maximum_speed
-        share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(way.u, way.v), 1e-9))
-        likely = forward.solve(way.level, share * way.u, share * way.v)
+        share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(read.u, read.v), 1e-9))
+        likely = forward.solve(read.level, share * read.u, share * read.v)
         clamps = likely.clamp_depth.shape[1]
         shift = depth - points(likely)
         down = depth - surface[:, None] - forward.still

@@ -17,13 +17,11 @@ class ReadCurrents:
     ----------
     level : (n, k) depths of the levels [m]
     u, v : (n, k) [m/s]
-    spread : (n, g, g) prior covariance of the logarithms
     """
 
     level: Floats
     u: Floats
     v: Floats
-    spread: Floats
 
 
 @dataclass(frozen=True)
@@ -70,4 +68,4 @@ class SpeedLaw:
     def read(self, level: Floats) -> ReadCurrents:
         """Return currents at levels (n, k) [m], with the same direction at all levels."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
-        return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))
+        return ReadCurrents(level, u, np.zeros_like(u))

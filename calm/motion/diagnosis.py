@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import (
     DATUM,
-    NEVER,
     ROBUST,
     LinearLaw,
     common_beforehand,
     fixed_slopes,
     repeated,
+    step_times,
 )
 from calm.motion.correction import Task
 from calm.motion.line_response import LineResponse
@@ -100,9 +100,9 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     if not len(times):
         return None, []
     if task.smoother is not None:
-        law, way, moments = task.smoother.by_meters(times, task.smoother.factor)
-        at = moments.linear(way, np.zeros((len(times), moments.groups)))
-        return law, list(line_suspects(task, moments, way, at))
+        law, read, moments = task.smoother.by_meters(times)
+        at = moments.linear(read, np.zeros((len(times), moments.groups)))
+        return law, list(line_suspects(task, moments, read, at))
     common, part = task.common, task.measured.at(times)
     moments = LineResponse(part, *task.forwards)
     here = unknown_state(moments, replace(common, covariance=np.zeros_like(common.covariance)))
@@ -111,10 +111,9 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     known = np.isfinite(part.depth[good])
     left = np.where(known, here.found.innovation[good], 0.0)
     fixed = fixed_slopes(here.at.common[good][:, part.point])
-    span = task.measured.time[[0, -1]]
     return LinearLaw(
         time,
-        (time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")),
+        task.measured.elapsed(time),
         known,
         np.where(known, left + fixed @ common.value, 0.0),
         left,
@@ -238,7 +237,7 @@ class Diagnosis:
         return result
 
     def _raw(self, taken: list[Suspect]) -> Floats:
-        return self.law.raw + sum((one.shift for one in taken), np.zeros_like(self.law.raw))
+        return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Compute the likelihood of the pressures with given faults and an additional one.
@@ -294,23 +293,21 @@ class Diagnosis:
             if one.wide:
                 raw = raw - one.column * one.fault.size
         rest = replace(law, raw=raw, left=begun.left)
-        first = common_unknowns.first_time(rest, np.zeros(len(self.spread)), self.spread)
+        sensors = np.arange(len(self.label))
+        columns = [law.fall * (sensors == j) for j in sensors]
+        *slips, start = step_times(rest, self.spread, [*columns, none + 1.0])
         for j, label in enumerate(self.label):
-            mine = np.arange(len(self.label)) == j
+            mine = sensors == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
             # inferred currents adapt to the zero of a sensor
             if not self.alone:
                 codes[0] = "offset"
-            if first[j] > 0:
-                codes[int(first[j])] = "slip"
+            if slips[j]:
+                codes[slips[j]] = "slip"
             for code, kind in codes.items():
-                if (label, kind) in had or first[j] == common_unknowns.NEVER:
+                if (label, kind) in had or law.known[:, j].sum() < common_unknowns.FEWEST:
                     continue
-                column = common_unknowns.moves(
-                    np.where(mine, code, common_unknowns.NEVER), law.fall, law.share
-                )
-                if kind == "offset":
-                    column = np.broadcast_to(mine * 1.0, none.shape)
+                column = mine * common_unknowns.moved_by(code, law.fall[:, j], law.share)[:, None]
                 chance, wide = common_unknowns.chance_of(code, len(law.time))
                 since, until = law.time[code] if kind == "slip" else NO_TIME, NO_TIME
                 if kind == "drift":
@@ -318,22 +315,18 @@ class Diagnosis:
                     span = self.measured.time[-1] - since
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, since=since, until=until)
-                yield Suspect(fault, column, wide, chance, none)
-        start = (
-            NEVER
-            if self.alone
-            else common_unknowns.common_step(rest, np.zeros(len(self.spread)), self.spread)
-        )
-        if start != NEVER and len(self.label) > 1 and (ALL, "moved") not in had:
+                yield Suspect(fault, column, wide, chance)
+        several = len(self.label) > 1 and not self.alone
+        if several and start and (ALL, "moved") not in had:
             step = np.where(np.arange(len(law.time)) >= start, 1.0, 0.0)[:, None] + none
             fault = Fault(ALL, "moved", since=law.time[start])
             chance = float(np.log(common_unknowns.MOVED / len(law.time)))
-            yield Suspect(fault, step, common_unknowns.ELSEWHERE, chance, none)
+            yield Suspect(fault, step, common_unknowns.ELSEWHERE, chance)
         yield from (one for one in self.causes if (one.fault.label, one.fault.kind) not in had)
         for label, mine in self._whose():
             if (label, "gain") not in had and not self.alone:
                 chance = float(np.log(ALL_GAINS if label == ALL else GAINS))
-                yield Suspect(Fault(label, "gain"), depth * mine, GAIN, chance, none)
+                yield Suspect(Fault(label, "gain"), depth * mine, GAIN, chance)
             if (label, "clock") not in had:
                 late = self._late(taken, begun.left, mine)
                 if late.fault.value:

@@ -51,7 +51,8 @@ def estimated(
     known : the best state of the currents
     neighbours : see `calm.motion.measurements.by_neighbours`; None for isolated times
     """
-    one, still = moments.measured, moments.forward.still
+    one, still, law = moments.measured, moments.forward.still, common.law
+    assert law is not None
     first, at = known.found, known.at
     own = line_response.own_errors(at.depth, still, True)
     logs = [np.where(np.isfinite(first.evidence), 0.0, -np.inf)]
@@ -65,9 +66,7 @@ def estimated(
         if not len(times):
             continue
         part = Linear(*(each[times] for each in vars(at).values()))
-        spike = posterior(
-            one.at(times), part, known.way.spread[times], common, still, sensor, own[times]
-        )
+        spike = posterior(one.at(times), part, law.covariance, common, still, sensor, own[times])
         chance = np.full(len(times), np.log(common_unknowns.SPIKES))
         if neighbours is not None:
             expected, deviation = (each[times, sensor] for each in neighbours)
@@ -93,8 +92,7 @@ def estimated(
         mean = depth / total[:, None]
         deviation = np.sqrt(np.maximum(square / total[:, None] - mean**2, 0.0))
         factor = np.exp(likely)
-        way = known.way
-        read = ReadCurrents(way.level, way.u * factor, way.v * factor, way.spread)
+        read = ReadCurrents(known.read.level, known.read.u * factor, known.read.v * factor)
         return Estimate(first.depth + mean, deviation, sea / total, read)
 
 
@@ -158,7 +156,7 @@ def posterior(
 
     Parameters
     ----------
-    spread : (n, g, g) prior covariance of the logarithms
+    spread : (g, g) prior covariance of the logarithms
     still : (p,) depths in still water [m]
     spike : index of a sensor whose readings are treated as spikes
     own : `own_errors` of the state, if already computed
@@ -170,9 +168,7 @@ def posterior(
     q = free + f + 1 + s
     state = np.zeros((n, q, q))
     state[:, :g, :g] = spread
-    state[:, g, g] = (
-        common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
-    ) ** 2
+    state[:, g, g] = one.tide_deviation**2
     state[:, free:, free:] = common.covariance
     slope = np.zeros((n, p, q))
     slope[:, :, :g], slope[:, :, g] = at.slope, 1.0
@@ -223,6 +219,6 @@ def posterior(
 class CurrentsState:
     """Currents, the line in these currents, and the posterior at this linearisation."""
 
-    way: ReadCurrents
+    read: ReadCurrents
     at: Linear
     found: Posterior

@@ -14,6 +14,7 @@ from calm.batch.finished import labels_of
 from calm.dataset.discovery import (
     ARCHIVED,
     FLAGS,
+    OF_FLAGS,
     archive_id,
     coverage,
     kept,
@@ -232,8 +233,7 @@ def write_depths(
     })  # fmt: skip
     copy[mark] = xr.Variable(dims, tables[2], {
         "standard_name": "quality_flag", "long_name": "quality flag of the depth",
-        "flag_values": np.array(list(FLAGS), np.int8), "flag_meanings": " ".join(FLAGS.values()),
-        "conventions": "OceanSITES QC Flags",
+        **OF_FLAGS, "flag_values": np.array(list(FLAGS), np.int8),
     })  # fmt: skip
     _add_salinity(copy, instruments, depth)
     _drop_references(copy)

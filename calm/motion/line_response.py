@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Design
 from calm.files.pieces import clamps_down
-from calm.motion.common_unknowns import Common
+from calm.motion.common_unknowns import FACTORS, Common
 from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
@@ -35,26 +35,26 @@ class LineResponse:
         group: Integers | None = None,
     ) -> None:  # fmt: skip
         self.measured, self.forward, self.shifted = measured, forward, shifted
-        self.group = measured.group if group is None else group
+        self.group = np.arange(measured.u.shape[1]) if group is None else group
         self.groups = int(self.group.max()) + 1 if len(self.group) else 0
 
-    def depths(self, way: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
+    def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
         """Return (n, p) depths of the points in currents that are multiplied by factors.
 
         Parameters
         ----------
-        way : interpretation of the currents
+        read : interpretation of the currents
         logs : (n, g) logarithms of the factors on the currents
         forward : mooring to use; by default that of the block
         """
         factor = np.exp(logs[:, self.group])
-        return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
+        return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
-    def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
+    def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
         """Return depths and slopes for factors of the currents, given as logarithms (n, g)."""
-        there = self.depths(way, logs)
-        own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
-        common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
+        there = self.depths(read, logs)
+        own = [self.depths(read, logs + ahead) for ahead in STEP * np.eye(self.groups)]
+        common = [self.depths(read, logs, forward) for forward in self.shifted.values()]
         return Linear(logs, there, _slopes(own, there), _slopes(common, there))
 
 
@@ -62,14 +62,6 @@ def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
     """Return (n, p, m) slopes, from depths (n, p) and depths a step ahead in each direction [m]."""
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
-
-
-FACTORS = ("cable_drag", "rigid_drag", "buoyancy", "length")
-"""Factors that may be estimated for a whole record.
-
-They apply to the drag of cables and chains; the drag of rigid pieces and clamped instruments; the
-net force of all buoyant pieces; and the lengths of cables and chains.
-"""
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:

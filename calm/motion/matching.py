@@ -168,34 +168,6 @@ CERTAIN = 2.0
 """Least excess cost of the second-best order of sensors for a unique match [m]."""
 
 
-def matched_by_label(
-    given: Sequence[Identity], line: LinePlaces
-) -> tuple[dict[int, int], list[str]]:
-    """Match sensors to points by label or serial number, with notes on the unmatched sensors.
-
-    UsageError: a sensor has neither label nor serial number; two sensors match the same part; or no
-    sensor matches.
-    """
-    points: dict[int, int] = {}
-    lost: list[str] = []
-    for i, sensor in enumerate(given):
-        if not (sensor.label or sensor.serial):
-            raise UsageError(
-                f"{sensor.source} does not say what its sensors are called; give it as "
-                f"LABEL={sensor.source}, or match by nominal place, --match height or depth"
-            )
-        at = named_point(sensor, line)
-        if at is None:
-            lost.append(nowhere(sensor, line))
-        elif at in points.values():
-            raise UsageError(f"--pressures: two sensors are called `{line.label[at]}`")
-        else:
-            points[i] = at
-    if not points:
-        raise UsageError("no sensor is a part of the line: " + "; ".join(lost))
-    return points, lost
-
-
 def matched_by_place(
     given: Sequence[Identity], line: LinePlaces, places: Sequence[int]
 ) -> tuple[dict[int, int], list[str]]:
@@ -258,8 +230,9 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
             f"place of {line.name}"
             for i in left
         ]
-        each = (f"{series[i].named} is `{line.label[at]}`" for i, at in sorted(order.items()))
-        sentences.append(f"by nominal depths, in their order: {'; '.join(each)}")
+        each = [f"{series[i].named} is `{line.label[at]}`" for i, at in sorted(order.items())]
+        if each:
+            sentences.append(f"by nominal depths, in their order: {'; '.join(each)}")
     if not found:
         raise UsageError(
             "no instrument is a part of the line: " + "; ".join(lost[:8])

@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import Common, LinearLaw
 from calm.motion.currents_law import ReadCurrents
 from calm.motion.line_response import Forward, LineResponse
-from calm.motion.measurements import FREE, MooringMeasurements, chosen_times
+from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, nearest
 from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
 
@@ -195,14 +196,13 @@ class ErrorScales:
     ----------
     flag : factor on the errors of a meter by its flag
     share : error of the line, as a share of the knockdown of each stretch
-    hours, reach : correlation time [h] and depth [m] of the current
+    hours : correlation time of the current [h]
     """
 
     flag: Mapping[int, float]
     share: float = SHARE
     tide: float = common_unknowns.TIDE
     hours: float = CURRENT_HOURS
-    reach: float = CURRENT_REACH
 
 
 class CurrentSmoother:
@@ -231,23 +231,20 @@ class CurrentSmoother:
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
         by_flag = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
-        self._most_tide = (
-            common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
-        )
-        self.scales = ErrorScales(by_flag, tide=self._most_tide)
+        self.scales = ErrorScales(by_flag, tide=one.tide_deviation)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
         self.state[:, self.columns.current] = self._measured_state(place)
         self.meter_weight = np.ones(one.u.shape)
         self.sensor_weight = np.ones(one.depth.shape)
-        usual = [common_unknowns.DATUM * self.seabed, *[common_unknowns.OFFSET] * sensors]
-        self.begin: Floats = np.square(usual)
-        self.first = self.begin.copy()
+        factors, datum = dict.fromkeys(self.names, 1.0), common_unknowns.DATUM * self.seabed
+        prior = common_unknowns.common_beforehand(factors, datum, sensors).covariance
+        self.common_covariance: Floats = prior
+        self.factor_prior, self.begin = np.split(prior.diagonal(), [len(factors)])
+        self.first = self.begin
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
-        known = [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
-        self.common_covariance = np.diag([*known, *self.begin])
         step = np.diff(self.hours, prepend=self.hours[:1])
         self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
         self._forwards: dict[tuple[float, ...], Forward] = {}
@@ -256,23 +253,20 @@ class CurrentSmoother:
         self._slopes_factor = np.full(len(self.names), np.inf)
         self.slope = np.zeros((len(one.time), len(self.still), 2 * count + len(self.names)))
 
-    def _along(self, place: Floats, value: Floats) -> Floats:
+    def _along(self, place: Floats, value: Any) -> Any:
         order = np.argsort(place, kind="stable")
         order = order[np.isfinite(value[order])]
         return np.interp(self.knots.depth, place[order], value[order])
 
     def _measured_state(self, place: Floats) -> Floats:
         """Return (n, 2 K) measured currents less their mean, interpolated to the knots."""
-        one, depth = self.measured, np.tile(place, (len(self.measured.time), 1))
-        known = np.isfinite(one.u) & np.isfinite(one.v)
-        parts = []
-        for i, each in enumerate((one.u, one.v)):
-            whole = line_response.filled(depth, each, known)
-            mine = self.mean[i * len(self.knots.depth) : (i + 1) * len(self.knots.depth)]
-            order = np.argsort(place, kind="stable")
-            rows = [np.interp(self.knots.depth, place[order], row[order]) for row in whole]
-            parts.append(np.nan_to_num(np.array(rows) - mine))
-        return np.hstack(parts)
+        both = self.measured.u + 1j * self.measured.v
+        known = np.flatnonzero(np.isfinite(both).any(axis=1))
+        state = np.zeros((len(both), len(self.mean)))
+        for i in known.tolist():
+            flow = self._along(place, both[i])
+            state[i] = np.concatenate([flow.real, flow.imag]) - self.mean
+        return state
 
     # --- the line
 
@@ -304,7 +298,8 @@ class CurrentSmoother:
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
         times = np.flatnonzero(far)
-        for part in np.split(times, range(BLOCK, len(times), BLOCK)):
+        for start in range(0, len(times), BLOCK):
+            part = times[start : start + BLOCK]
             self.slope[part] = self._slopes(there[part], now[part], factor, part)
         if len(times):
             self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
@@ -359,14 +354,16 @@ class CurrentSmoother:
         """Return the linear law of the currents at the knots, read by the meters alone."""
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
-        alike = np.exp(-apart / self.scales.reach) * np.outer(self.spread, self.spread)
-        steady: Floats = np.kron(both, alike)
-        weights: Floats = np.kron(both, self.knots.level)
+        alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)
+        steady, weights = (
+            np.asarray(np.kron(both, one), np.float64) for one in (alike, self.knots.level)
+        )
         step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
         fade = np.tile(np.exp(-step / self.scales.hours), (1, len(steady)))
         flow = np.hstack([one.u, one.v]) - weights @ self.mean
         noise = np.tile(self.alike * self.meter_noise / self.meter_weight, (1, 2))
-        return StateSpace(fade, steady, np.zeros_like(fade), steady, (weights[None],), flow, noise)
+        seen = np.broadcast_to(weights, (len(fade), *weights.shape))
+        return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
         """Return the linear law about the state, and (n, p, q) slopes of all points."""
@@ -390,15 +387,16 @@ class CurrentSmoother:
         slope[:, :, at.factor] = self.slope[:, :, flows:]
         slope[:, :, at.share] = self.scales.share * self.by_line(there)
         slope[:, :, at.tide] = slope[:, :, at.datum] = 1.0
-        meters = np.zeros((1, own.read.shape[1], at.count))
-        meters[:, :, at.current] = own.seen[0]
-        seen = slope[:, one.point].copy()
-        seen[:, :, at.offset] = np.eye(len(one.label))
+        sensors = slice(own.read.shape[1], None)
+        seen = np.zeros((n, sensors.start + len(one.label), at.count))
+        seen[:, : sensors.start, at.current] = own.seen
+        seen[:, sensors] = slope[:, one.point]
+        seen[:, sensors, at.offset] = np.eye(len(one.label))
         base = (there + self.bend)[:, one.point]
-        base -= np.einsum("nsq,nq->ns", seen[:, :, at.current], self.state[:, at.current])
+        base -= np.einsum("nsq,nq->ns", seen[:, sensors, at.current], self.state[:, at.current])
         read = np.hstack([own.read, one.depth - base - one.surface[:, None]])
         noise = np.hstack([own.noise, common_unknowns.NOISE**2 / self.sensor_weight])
-        return StateSpace(fade, steady, stepped, first, (meters, seen), read, noise), slope
+        return StateSpace(fade, steady, stepped, first, seen, read, noise), slope
 
     @cached_property
     def alike(self) -> float:
@@ -470,16 +468,16 @@ class CurrentSmoother:
         times = chosen_times(self.measured)
         if not self.names or not len(times):
             return
-        law, *_ = self.by_meters(times, self.factor)
+        law, *_ = self.by_meters(times)
         of_sensors = self._steps[np.searchsorted(self.measured.time, law.time)]
         raw = np.where(law.known, law.raw - of_sensors, 0.0)
         left = np.where(law.known, law.left - of_sensors, 0.0)
         law = replace(law, raw=raw, left=left)
-        known = [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
-        before = np.diag(1.0 / np.array([*known, *self.first]))
+        before = np.diag(1.0 / np.concatenate([self.factor_prior, self.first]))
         pulls = law.pulls(law.fixed, raw)
         alike = common_unknowns.repeated(law.pulls(law.fixed, left)[:, 0])
-        self.common_covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        self.common_covariance = np.asarray(covariance, np.float64)
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
         # drag times the square of the speed fits the pressures
@@ -513,7 +511,7 @@ class CurrentSmoother:
         for each in smoothed(law):
             t, spread = each.times, each.covariance
             now[t] = each.mean
-            seen, here = law.slopes(t), slope[t]
+            seen, here = law.seen[t], slope[t]
             left[t] -= np.einsum("nmq,nq->nm", seen, each.mean)
             wide[t] = (seen @ spread * seen).sum(axis=2)
             variance[t] = (here @ spread * here).sum(axis=2)
@@ -554,7 +552,7 @@ class CurrentSmoother:
             self.scales = replace(self.scales, share=grown)
         if turn >= 2 and count > 1:
             hours = float(np.clip(self.scales.hours / noise_share[1:].mean(), *HOURS))
-            usual = min(float(np.sqrt(tide.mean())), self._most_tide)
+            usual = min(float(np.sqrt(tide.mean())), one.tide_deviation)
             self.scales = replace(self.scales, hours=hours, tide=usual)
         if turn >= 1:
             self.first = self._heavy(begun)
@@ -564,7 +562,9 @@ class CurrentSmoother:
         now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
         self.state = now
         there = self.depths(now[:, at.current], self.factor, slice(None))
-        self.levels = self._levels_at(there)
+        on_line = one.level_point != FREE
+        hung = there[:, one.level_point[on_line]]
+        self.levels[:, on_line] = np.where(np.isfinite(hung), hung, self.levels[:, on_line])
         self.knot_depth = self.knots.at(self.levels)
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
@@ -576,13 +576,6 @@ class CurrentSmoother:
             + np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
         )
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
-
-    def _levels_at(self, there: Floats) -> Floats:
-        levels = self.levels.copy()
-        for k, point in enumerate(self.measured.level_point.tolist()):
-            if point != FREE:
-                levels[:, k] = np.where(np.isfinite(there[:, point]), there[:, point], levels[:, k])
-        return levels
 
     # --- results
 
@@ -599,10 +592,10 @@ class CurrentSmoother:
         """Mooring with the estimated factors."""
         return self.forward(self.factor)
 
-    def way(self, times: slice) -> ReadCurrents:
+    def read(self, times: slice) -> ReadCurrents:
         """Return the estimated currents at the knots."""
-        u, v = self.currents(self.state[times, self.columns.current])
-        return ReadCurrents(self.knot_depth[times], u, v, np.zeros((len(u), 0, 0)))
+        currents = self.currents(self.state[times, self.columns.current])
+        return ReadCurrents(self.knot_depth[times], *currents)
 
     @property
     def offset(self) -> Floats:
@@ -618,12 +611,10 @@ class CurrentSmoother:
     @cached_property
     def lost(self) -> NDArray[np.bool_]:
         """Mask (n,) of times too far from any measured current."""
-        there = (np.isfinite(self.measured.u) & np.isfinite(self.measured.v)).any(axis=1)
-        known = self.hours[there]
-        after = np.clip(np.searchsorted(known, self.hours), 0, len(known) - 1)
-        before = np.maximum(after - 1, 0)
-        near = np.minimum(np.abs(known[after] - self.hours), np.abs(known[before] - self.hours))
-        return np.asarray(near > CURRENT_HOURS)
+        time = self.measured.time
+        known = time[(np.isfinite(self.measured.u) & np.isfinite(self.measured.v)).any(axis=1)]
+        away = np.abs(known[nearest(known, time)] - time) / np.timedelta64(1, "h")
+        return np.asarray(away > CURRENT_HOURS)
 
     @property
     def current_factor(self) -> Floats:
@@ -651,17 +642,13 @@ class CurrentSmoother:
         doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
         return doubt
 
-    def by_meters(
-        self, times: NDArray[np.int64], factor: Floats
-    ) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
+    def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
         """Return the linear law of the pressures at several times, given the meters alone.
 
         The law is linearised at the smoothed currents of the meters. Also return these currents at
-        the knots, and the line response. `factor` holds the logarithms of the factors (f,) on the
-        line.
+        the knots, and the line response.
         """
-        one, at = self.measured, self.columns
-        law = self.meter_law()
+        one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady
         blocks = [*smoothed(replace(law, steady=wide, first=wide))][::-1]
         now = np.concatenate([each.mean for each in blocks])[times]
@@ -680,24 +667,21 @@ class CurrentSmoother:
         expected = by_currents + self.scales.share**2 * bent @ self._stretches[2] @ bent.transpose(
             0, 2, 1
         )
-        sea = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
         noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
-        expected += sea**2 + noise[:, :, None] * np.eye(len(one.label))
+        expected += one.tide_deviation**2 + noise[:, :, None] * np.eye(len(one.label))
         fixed = common_unknowns.fixed_slopes(factors)
         value = np.concatenate([factor, np.median(self.state[:, at.stays], axis=0)])
         raw = part.depth - there[:, one.point] - bend - part.surface[:, None] + factors @ factor
         raw = np.where(known, raw, 0.0)
         left = np.where(known, raw - fixed @ value, 0.0)
-        span = one.time[[0, -1]]
-        share = (part.time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns"))
+        share = one.elapsed(part.time)
         fall = common_unknowns.fall(there, self.still, one.point)
         found = LinearLaw(
             part.time[good], share[good], known[good], raw[good], left[good], expected[good],
             fixed[good], fall[good],
         )  # fmt: skip
-        way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((len(now), 0, 0)))
+        read = ReadCurrents(self.knot_depth[times], *self.currents(now))
         near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
-        common = self.common()
-        named = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
-        forwards = line_response.forwards_of(self.mooring, replace(common, factors=named))
-        return found, way, LineResponse(part, *forwards, group=one.group[near])
+        levels = len(self.places)  # neighbours of many levels share a factor
+        forwards = line_response.forwards_of(self.mooring, self.common())
+        return found, read, LineResponse(part, *forwards, near * min(levels, MOST_LEVELS) // levels)

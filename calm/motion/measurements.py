@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from calm.batch.statuses import implausible
 from calm.errors import UsageError, unknown
-from calm.motion.common_unknowns import NOISE, NORMAL
+from calm.motion.common_unknowns import NOISE, NORMAL, RESIDUAL_TIDE, TIDE
 from calm.physics.line import Floats, Integers
 from calm.records.card import ReadCard
 from calm.records.current_file import open_record
@@ -23,11 +23,10 @@ from calm.records.instrument_series import InstrumentSeries, split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
 
-MOST_GROUPS = 8
-"""Maximum number of level groups with separate errors. Neighbouring levels share a group."""
-
 MOST_TIMES = 500
 """Maximum number of times for the common unknowns, spread evenly over the record."""
+
+Times = NDArray[np.datetime64]
 
 FREE = -1
 """Index for a level without a point or a sensor."""
@@ -84,10 +83,15 @@ class MooringMeasurements:
         return np.array(found, np.int64)
 
     @property
-    def group(self) -> Integers:
-        """Group (k,) of levels with a common error; each level is a group if there are few."""
-        count = len(self.level_point)
-        return np.arange(count) * min(count, MOST_GROUPS) // max(count, 1)
+    def tide_deviation(self) -> float:
+        """Prior deviation of the unmeasured part of tide and air pressure [m]."""
+        return TIDE if self.tide is None else RESIDUAL_TIDE
+
+    def elapsed(self, time: Times) -> Floats:
+        """Return the elapsed share (m,) of the record at times (m,)."""
+        first, last = self.time[[0, -1]]
+        share: Floats = (time - first) / max(last - first, np.timedelta64(1, "ns"))
+        return share
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
         """Return the measurements at several times."""
@@ -116,7 +120,18 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
     return tuple(names)
 
 
-Times = NDArray[np.datetime64]
+def nearest(time: Times, wanted: Times) -> Integers:
+    """Return the index (n,) of the time nearest to each other time, of equals the first.
+
+    Parameters
+    ----------
+    time : (m,) rising
+    wanted : (n,) other times
+    """
+    after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
+    before = np.maximum(after - 1, 0)
+    earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)
+    return np.where(earlier, before, after)
 
 
 def common_times(
@@ -132,9 +147,7 @@ def common_times(
     times = everything[0].time
     for other in everything[1:]:
         step = np.median(np.diff(times)) if len(times) > 1 else np.timedelta64(1, "h")
-        after = np.clip(np.searchsorted(times, other.time), 0, len(times) - 1)
-        before = np.maximum(after - 1, 0)
-        apart = np.minimum(np.abs(times[after] - other.time), np.abs(times[before] - other.time))
+        apart = np.abs(times[nearest(times, other.time)] - other.time)
         times = np.unique(np.concatenate([times, _sparse(other.time[apart > step / 2], step / 4)]))
     return times
 
@@ -174,17 +187,8 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
     return np.where(near, result, np.nan)
 
 
-def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Return depths of a sensor at other times.
-
-    A reading at exactly that time, even a missing one, is returned without interpolation.
-
-    Parameters
-    ----------
-    one : series of the sensor
-    wanted : (n,) other times
-    gap : longest gap over which values are interpolated
-    """
+def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
+    """Interpolate depths to other times, except a reading at that time, even a missing one."""
     result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
@@ -251,7 +255,7 @@ def joined(
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
     sensors, point = [sensors[i] for i in order], np.array([points[i] for i in order], np.int64)
-    depth = np.stack([measured_at(one, time, gap) for one in sensors], axis=1)
+    depth = np.stack([_measured_at(one, time, gap) for one in sensors], axis=1)
     columns: list[tuple[float, int, Floats, Floats, Floats, NDArray[np.int8]]] = []
     for one in currents:
         for k, label in enumerate(one.label):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -20,12 +20,12 @@ from calm.dataset.discovery import hashed, vertical_extent
 from calm.errors import UsageError, not_among, unknown
 from calm.files.mooring_file import refuse_all_but_moorings
 from calm.motion import matching, sensors
+from calm.motion.common_unknowns import FACTORS
 from calm.motion.correction import BLOCK, MeasuredRecord, Task, motion_layout, solve_times
 from calm.motion.diagnosis import diagnosed
-from calm.motion.line_response import FACTORS, instruments_of
+from calm.motion.line_response import instruments_of
 from calm.motion.matching import without
 from calm.motion.measurements import (
-    CurrentMeasurements,
     MooringMeasurements,
     joined,
     read_currents,
@@ -47,14 +47,6 @@ CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
 """Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
 GAP = np.timedelta64(2, "h")
 """Default limit on the gap over which values are interpolated."""
-
-
-def by_clocks(
-    one: CurrentMeasurements, clocks: Mapping[str, matching.Clock]
-) -> CurrentMeasurements:
-    """Correct the times of currents if their file has one clock, and this clock was checked."""
-    found = [clocks[label] for label in one.label if label in clocks]
-    return replace(one, time=found[0].true_times(one.time)) if found else one
 
 
 RARE = 0.1
@@ -86,7 +78,7 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     return [shared]
 
 
-def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
+def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     """Return the factors to estimate: the defaults, and the requested factors.
 
     By default these are the drag factors. Without currents, a factor on all drag is equivalent to
@@ -94,11 +86,11 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
 
     UsageError: a requested factor cannot be estimated.
     """
-    for name in asked:
+    for name in requested:
         if name not in FACTORS:
             raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
     usual = ("cable_drag", "rigid_drag") if currents else ("rigid_drag", "length")
-    return tuple(name for name in FACTORS if name in asked or name in usual)
+    return tuple(name for name in FACTORS if name in requested or name in usual)
 
 
 @dataclass
@@ -170,9 +162,12 @@ class RecoveredMooring:
         wanted = sensors.parse_flags(self.flags)
         given = sensors.read_sensors(self.pressures, wanted, position.latitude, seabed)
         if self.match == "label":
-            points, notes = matching.matched_by_label(given, line)
+            points, notes = matching.points_of(given, line)
         else:
             points, notes = matching.matched_by_place(given, line, instruments_of(mooring))
+        parts = [line.label[at] for at in points.values()]
+        if twice := next((label for label in parts if parts.count(label) > 1), ""):
+            raise UsageError(f"--pressures: two sensors are called `{twice}`")
         of_files = {id(one.card): one.card for one in given if one.card is not None}
         read = read_currents(
             self.currents, seabed, (position.latitude, position.longitude), self.declination,
@@ -187,7 +182,9 @@ class RecoveredMooring:
         points = self._without(points, line.label)
         first = min(time[0] for time in [one.time for one in read] + [one.time for one in given])
         clocks = matching.clocks_of(mooring, first)
-        read = [by_clocks(one, clocks) for one in read]
+        for i, current in enumerate(read):  # a file has one clock
+            for checked in [clocks[label] for label in current.label if label in clocks][:1]:
+                read[i] = replace(current, time=checked.true_times(current.time))
         used, absolute = [], "air" in self.correct
         for i, at in points.items():
             depth = given[i].value - sensors.AIR * absolute
@@ -241,8 +238,8 @@ class RecoveredMooring:
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
         """Return the points of the sensors in use. Labels to ignore must exist."""
         known = [labels[at] for at in points.values()]
-        for option, asked in (("--without", self.without), ("--hold-out", self.hidden)):
-            for label in asked:
+        for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
+            for label in given:
                 if label not in known:
                     what = f"{option}: no sensor is called `{label}`"
                     raise UsageError(unknown(what, label, known))

@@ -191,7 +191,7 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 def no_drag(name: str, value: float) -> bool:
     """Return whether a drag factor is implausible by its prior."""
-    far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name][1]
+    far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name]
     return name.endswith("drag") and far
 
 
@@ -201,7 +201,7 @@ def alone_remarks(common: Common) -> list[str]:
     The pressures cannot identify the cause, because currents exist that agree with most lines.
     """
     length = common.factors.get("length", 1.0)
-    far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"][1]
+    far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"]
     if not far and common.worst < WORST:
         return []
     return [

@@ -80,8 +80,8 @@ def read_sensors(
 def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
     """Add doubts about the sequence of readings to the note of a sensor."""
     doubts = series_doubts(sensor.value[:, np.newaxis, np.newaxis], sensor.time)
-    said = (sensor.note, *(f"{sensor.named}: {doubt}" for doubt in doubts))
-    return replace(sensor, note="; ".join(filter(None, said)))
+    notes = (sensor.note, *(f"{sensor.named}: {doubt}" for doubt in doubts))
+    return replace(sensor, note="; ".join(filter(None, notes)))
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
@@ -275,7 +275,7 @@ def plausible(
             )
         when = np.datetime_as_string(sensor.time[again][0], "s")
         notes.append(
-            f"{sensor.label}: {again.sum()} of its times stand twice, the first {when}: the first "
+            f"{sensor.label}: {again.sum()} of its times appear twice, the first {when}: the first "
             "reading of each counts"
         )
         sensor = replace(sensor, time=sensor.time[~again], value=sensor.value[~again])
@@ -386,9 +386,9 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
                 f"its {doubted} or its label is wrong"
             )
     if exchanged or 2 * len(far_off) >= max(len(labels) - len(reasons), 1):
-        said = [f"`{label}` {reason}" for label, reason in far_off.items()]
-        if exchanged or said:
-            raise UsageError("--pressures: " + "; ".join([*exchanged, *said]))
+        doubts = [*exchanged, *(f"`{label}` {reason}" for label, reason in far_off.items())]
+        if doubts:
+            raise UsageError("--pressures: " + "; ".join(doubts))
     return reasons | {one: f"{reason}; it is left out" for one, reason in far_off.items()}
 
 

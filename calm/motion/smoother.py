@@ -31,7 +31,7 @@ class StateSpace:
     steady : (q, q) covariance of states that decay
     stepped : (n, q) noise variances of persistent states since the previous time
     first : (q, q) covariance at the first time; the mean is 0 throughout
-    seen : (n, m, q) slopes of the readings; constant rows may have the shape (1, m, q)
+    seen : (n, m, q) slopes of the readings
     read, noise : (n, m) readings, NaN if missing, and their variances
     """
 
@@ -39,14 +39,9 @@ class StateSpace:
     steady: Floats
     stepped: Floats
     first: Floats
-    seen: tuple[Floats, ...]
+    seen: Floats
     read: Floats
     noise: Floats
-
-    def slopes(self, times: slice) -> Floats:
-        """Return (b, m, q) slopes of the readings of b successive times."""
-        parts = [np.broadcast_to(each, (len(self.read), *each.shape[1:])) for each in self.seen]
-        return np.concatenate([each[times] for each in parts], axis=1)
 
     def added(self, time: int) -> Floats:
         """Return (q, q) covariance of the state noise since the previous time."""
@@ -91,14 +86,13 @@ def _filter(
     law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
 ) -> Iterator[_Filtered]:
     """Yield the filter results from `start`, given the predicted mean and covariance there."""
-    slopes = law.slopes(slice(start, stop))
     for time in range(start, stop):
         if time > start:
             fade = law.fade[time]
             mean = fade * mean
             spread = fade[:, None] * spread * fade + law.added(time)
         there = np.isfinite(law.read[time])
-        seen = slopes[time - start, there]
+        seen = law.seen[time, there]
         across = spread @ seen.T
         expected = seen @ across
         expected[np.diag_indices_from(expected)] += law.noise[time, there]

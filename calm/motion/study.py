@@ -373,21 +373,15 @@ def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[Sens
     `measured` includes the hidden sensors.
     """
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
-    found = []
-    for j, label in enumerate(measured.label):
-        depth, spread = depths_at(result, int(measured.point[j]))
-        hidden = label not in used
-        plain = None
-        if not hidden and "plain_depth" in result:
+    labels, columns = (
+        labels_of(mooring),
+        dict(zip(measured.point.tolist(), measured.depth.T, strict=True)),
+    )
+    nothing, found = np.full(len(measured.time), np.nan), []
+    for point in dict.fromkeys([*columns, *instruments_of(mooring)]):
+        label, plain = labels[point], None
+        if label in used and "plain_depth" in result:
             plain = np.asarray(result["plain_depth"][:, used.index(label)].values, np.float64)
-        found.append(
-            SensorSeries(label, hidden, measured.time, measured.depth[:, j], depth, spread, plain)
-        )
-    labels, nothing = labels_of(mooring), np.full(len(measured.time), np.nan)
-    for point in instruments_of(mooring):
-        if point not in measured.point:
-            depth, spread = depths_at(result, point)
-            found.append(
-                SensorSeries(labels[point], True, measured.time, nothing, depth, spread, None)
-            )
+        own, estimate = columns.get(point, nothing), depths_at(result, point)
+        found.append(SensorSeries(label, label not in used, measured.time, own, *estimate, plain))
     return found

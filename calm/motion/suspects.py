@@ -17,10 +17,10 @@ import numpy as np
 from calm.case import Design
 from calm.files.pieces import clamps_down
 from calm.motion import line_response
-from calm.motion.common_unknowns import NOISE, NORMAL
+from calm.motion.common_unknowns import FACTORS, NOISE, NORMAL
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.line_response import FACTORS, STEP, Forward, LineResponse
+from calm.motion.line_response import STEP, Forward, LineResponse
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
@@ -50,7 +50,7 @@ class Suspect:
     column : (n, s) change in the measured depths per unit of its size
     wide : prior deviation of its size; 0 for a fixed size
     log : logarithm of its prior probability
-    shift : (n, s) fixed change in the depths [m]
+    shift : (n, s) fixed change in the depths [m]; 0 if the size is fitted
     ahead : (n, s) change in the depths for a size that applies throughout [m]; None if linear
     share : (n, 1) share of the size at each time; None if it is constant
     """
@@ -59,7 +59,7 @@ class Suspect:
     column: Floats
     wide: float
     log: float
-    shift: Floats
+    shift: Floats | float = 0.0
     ahead: Callable[[float], Floats] | None = None
     share: Floats | None = None
 
@@ -79,19 +79,18 @@ class Suspect:
 
 
 def line_suspects(
-    task: Task, moments: LineResponse, way: ReadCurrents, at: Linear
+    task: Task, moments: LineResponse, read: ReadCurrents, at: Linear
 ) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
     Parameters
     ----------
     moments : line response at several times
-    way, at : currents at these times, and the line in them
+    read, at : currents at these times, and the line in them
     """
     one, factors = moments.measured, task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
-    span = task.measured.time[[0, -1]]
-    share = ((one.time[good] - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")))[:, None]
+    share = task.measured.elapsed(one.time[good])[:, None]
 
     def seen(slope: Floats) -> Floats:
         return slope[good][:, one.point]
@@ -101,19 +100,18 @@ def line_suspects(
         ahead: Callable[[float], Floats] | None = None, part: Floats | None = None,
     ) -> Suspect:  # fmt: skip
         wide, chance = CAUSES[kind]
-        fault = Fault(label, kind, value=1.0)
-        log, none = float(np.log(chance / among)), np.zeros_like(column)
-        return Suspect(fault, column, wide, log, none, ahead, part)
+        log = float(np.log(chance / among))
+        return Suspect(Fault(label, kind, value=1.0), column, wide, log, 0.0, ahead, part)
 
     def dragged(size: float) -> Floats:
         grown = {n: v * np.exp(size * n.endswith("drag")) for n, v in factors.items()}
-        there = moments.depths(way, at.logs, Forward(task.mooring, grown))
+        there = moments.depths(read, at.logs, Forward(task.mooring, grown))
         return np.nan_to_num(seen(there - at.depth))
 
     def misread(level: int) -> Callable[[float], Floats]:
         mine = np.arange(moments.groups) == level
         return lambda size: np.nan_to_num(
-            seen(moments.depths(way, at.logs - size * mine) - at.depth)
+            seen(moments.depths(read, at.logs - size * mine) - at.depth)
         )
 
     names = list(factors)
@@ -121,7 +119,7 @@ def line_suspects(
     for name in FACTORS:
         if name not in columns:
             forward = Forward(task.mooring, {**factors, name: float(np.exp(STEP))})
-            ahead = moments.depths(way, at.logs, forward)
+            ahead = moments.depths(read, at.logs, forward)
             columns[name] = np.nan_to_num(seen((ahead - at.depth) / STEP))
     yield suspect(LINE, "length", columns["length"])
     yield suspect(LINE, "buoyancy", columns["buoyancy"])
@@ -164,7 +162,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             return 0j, 0j, 1.0
         return np.vdot(b, a) / (own * his), a @ b / (own * his), float(own / his)
 
-    said = []
+    remarks = []
     for k, name in enumerate(names if len(names) > 2 else []):
         near = sorted((j for j in range(len(names)) if j != k), key=lambda j: abs(j - k))[:2]
         (*straight, agree), (*mirror, _), (*fast, usual) = zip(
@@ -185,17 +183,17 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             count = len(known) * (1.0 - alike) / (1.0 + alike)  # number of independent times
             part = min(min(np.abs(straight)), 1.0) ** 2
             band = BAND * np.degrees(np.sqrt((1.0 - part) / (2.0 * part * count)))
-            way = "clockwise" if mean > 0.0 else "anticlockwise"
+            sense = "clockwise" if mean > 0.0 else "anticlockwise"
             why = "its compass, its declination, or a current that veers there"
             if abs(mean) > 180.0 - least - band:
                 why = "it gives the direction from which the current comes, or both signs are wrong"
-            what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {way}: {why}"
+            what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {sense}: {why}"
         elif max(fast) * UNLIKE < min(1.0, usual) or min(fast) > UNLIKE * max(1.0, usual):
             what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} of theirs: its unit"
         else:
             continue
-        said.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
-    return said
+        remarks.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
+    return remarks
 
 
 STRETCHED, AMISS = 1.25, 20.0

@@ -195,21 +195,21 @@ class _Fit:
     law: SpeedLaw
 
     @property
-    def way(self) -> ReadCurrents:
+    def read(self) -> ReadCurrents:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
         """Return the line in these currents, with its slopes."""
-        return self.moments.linear(self.way, logs)
+        return self.moments.linear(self.read, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
         """Return the line at new speeds with the old slopes, for small changes in law and line."""
-        return replace(at, logs=logs, depth=self.moments.depths(self.way, logs))
+        return replace(at, logs=logs, depth=self.moments.depths(self.read, logs))
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
         """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
-        return posterior(one, at, self.way.spread, common or self.common, still)
+        return posterior(one, at, self.law.covariance, common or self.common, still)
 
     def misfit(self, at: Linear) -> Floats:
         """Return (n,) twice the negative log-posterior of a state."""
@@ -290,18 +290,18 @@ def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
     """Return the best state of each time, starting from the nearest stored fit."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
-    way, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
+    read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
     offset = common.offset + common.datum
     depth = one.depth - one.moved[:, None]
     off = np.nan_to_num(depth[:, None, :] - offset - kept.depth[None, :, one.point])
     near = np.square(off).sum(axis=2).argmin(axis=1) if len(one.label) else 0
     near = np.where(np.isfinite(one.depth).any(axis=1), near, 0)
     at = Linear(*(part[near] for part in vars(kept).values()))
-    found = posterior(one, at, way.spread, common, still)
+    found = posterior(one, at, law.covariance, common, still)
     for _ in range(AGAIN):
         logs = at.logs + np.clip(found.logs - at.logs, -LONGEST, LONGEST)
-        there = moments.depths(way, logs)
+        there = moments.depths(read, logs)
         lost = np.isnan(there).any(axis=1, keepdims=True)
         at = at.moved(np.where(lost, at.logs, logs), np.where(lost, at.depth, there))
-        found = posterior(one, at, way.spread, common, still)
-    return CurrentsState(way, at, found)
+        found = posterior(one, at, law.covariance, common, still)
+    return CurrentsState(read, at, found)

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import Enum
+from functools import cached_property
 from math import copysign, inf, log, pi, sqrt
 
 from calm.physics.compiled import within
@@ -144,7 +145,7 @@ class Friction(Enum):
     HOERNER = "hoerner"
     CONSTANT = "constant"
 
-    @property
+    @cached_property
     def law(self) -> int:
         """Number of the law in `friction_force`."""
         return list(Friction).index(self)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
-from functools import partial, wraps
+from functools import cached_property, partial, wraps
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -480,7 +480,7 @@ class Water(_Arrays):
         if (np.diff(self.level) <= 0).any() or (np.diff(self.viscosity_level) <= 0).any():
             raise ValueError("Water: levels must rise")
 
-    @property
+    @cached_property
     def moving(self) -> bool:
         """Whether there is any current."""
         return bool(self.u.any() or self.v.any() or self.w.any())

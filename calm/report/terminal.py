@@ -86,12 +86,7 @@ class _Printer:
                 rows.append(([self._text(cell.text, "bold") for cell in row], style))
             else:
                 rows.append(([*map(self._cell, row, block.columns)], style))
-        if len(rows) >= MANY:
-            yield LongTable(grid, rows, gap)
-        else:
-            for cells, style in rows:
-                grid.add_row(*cells, style=style)
-            yield grid
+        yield PlainTable(grid, rows, gap)
         if block.note:
             yield self._text(block.note, _QUIET)
 
@@ -190,15 +185,12 @@ class _Words(Text):
 _BREAKS = re.compile("[-_./]")
 
 
-MANY = 100
-"""Number of rows above which a table is printed line by line."""
-
 Row = tuple[Sequence[Text], str]
 """Cells of a table row from the first column on, and the style of the row."""
 
 
-class LongTable:
-    """Table without rules, for many rows.
+class PlainTable:
+    """Table without rules, printed line by line, many times faster than by rich.
 
     Parameters
     ----------
@@ -211,7 +203,9 @@ class LongTable:
         self._table, self._rows, self._gap = table, rows, gap
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render the table as plain lines, or as a rich table if cells need several lines."""
+        """Render the table as plain lines; a rich table does what needs more than one folded
+        column.
+        """
         headings: list[list[Text]] = [
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns
@@ -222,7 +216,14 @@ class LongTable:
             for number, cell in enumerate(cells):
                 widths[number] = max(widths[number], cell_len(cell.plain))
                 simple = simple and "\n" not in cell.plain and not cell.spans
-        if not simple or sum(widths) + self._gap * (len(widths) - 1) > options.max_width:
+        excess = sum(widths) + self._gap * (len(widths) - 1) - options.max_width
+        wrapped = [i for i, column in enumerate(self._table.columns) if not column.no_wrap]
+        folded = wrapped[0] if excess > 0 and len(wrapped) == 1 else -1
+        if folded >= 0:
+            widths[folded] -= excess
+            least = max((cell_len(one.plain) for one in headings[folded]), default=0)
+            simple = simple and widths[folded] >= max(least, 1)
+        if not simple or excess > 0 > folded:
             for cells, style in self._rows:
                 self._table.add_row(*cells, style=style)
             yield self._table
@@ -232,8 +233,15 @@ class LongTable:
             rows = ([Text()] * (height - len(lines)) + list(lines) for lines in headings)
             cells = [lines[number] for lines in rows]
             yield from self._line(console, cells, widths, "table.header")
-        for cells, style in self._rows:
-            yield from self._line(console, cells, widths, style)
+        for row, style in self._rows:
+            if not 0 <= folded < len(row) or cell_len(row[folded].plain) <= widths[folded]:
+                yield from self._line(console, row, widths, style)
+                continue
+            lines = row[folded].wrap(console, widths[folded], overflow="fold")
+            for number, line in enumerate(lines):
+                others = [Text() if number else cell for cell in row]
+                others[folded] = line
+                yield from self._line(console, others, widths, style)
 
     def _line(
         self, console: Console, cells: Sequence[Text], widths: Sequence[int], style: str

@@ -15,7 +15,7 @@ Numbers = NDArray[Any]
 
 CHUNK = 6
 """Number of blocks eliminated together; the block after them stays in the reduced system."""
-DENSE = 10
+DENSE = 16
 """Largest number of blocks of a system that is solved as one dense matrix."""
 
 

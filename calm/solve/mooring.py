@@ -202,8 +202,9 @@ def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
 
 def read_found(values: Sequence[float]) -> FoundShape:
     """Return the found shape from the result array."""
-    whole = [int(values[i]) for i in range(len(values)) if i in WHOLE]
-    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
+    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = (
+        int(values[i]) for i in WHOLE
+    )
     unknown = Unknown(values[GOAL], sought, bool(rides), bool(lands), stages)
     root = Root(True, unknown, values[UNKNOWN_VALUE], values[MISS], values[SLOPE])
     value = float(values[VALUE])

@@ -1,6 +1,7 @@
 """A line prepared for the search: plain numbers and work arrays."""
 
 from collections.abc import Callable, MutableSequence, Sequence
+from itertools import accumulate
 from math import degrees
 from typing import Any, NamedTuple
 
@@ -355,7 +356,8 @@ def reach_of(limits: Limits, step: float) -> float:
 def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[BuoyantPiece]:
     """Return the rigid buoyant pieces of a line, from the top down."""
     at_surface = surface_lift(line, water).tolist()
-    upto, carried = np.cumsum(line.length).tolist(), np.cumsum(lift)
+    upto, carried = np.cumsum(line.length).tolist(), np.cumsum(lift).tolist()
+    lowest = list(accumulate(reversed(carried), min))[::-1]
     found = []
     for number, (kind, first, size, _) in enumerate(track.stages):
         if kind != ROD:
@@ -374,7 +376,7 @@ def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Buo
                     rigid_above=load.at - 0.5 * load.length,
                     upto=upto[piece],
                     surface_lift=at_surface[piece],
-                    least=1.0 - float(carried[piece:].min()) / at_surface[piece]
+                    least=1.0 - lowest[piece] / at_surface[piece]
                     if at_surface[piece] > 0.0
                     else 1.0,
                 )

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
+from itertools import accumulate
 from math import nan, radians
 from typing import NamedTuple
 
@@ -292,17 +293,18 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
     at_rest : whether there is no current or wind; then each part down to the lowest float must be
         held up
     """
-    above = np.cumsum(lift)
-    if not (above > 0.0).any():
+    lifts = lift.tolist()
+    above = list(accumulate(lifts))
+    supported = [piece for piece, pull in enumerate(above) if pull > 0.0]
+    if not supported:
         return TOO_HEAVY, -1, 0.0
     if not at_rest:
         return SUPPORTED, -1, 0.0
-    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(lift > 0.0)[-1])
-    short = np.flatnonzero(above[first:last] <= 0.0)
-    if not len(short):
-        return SUPPORTED, -1, 0.0
-    piece = first + int(short[0])
-    return (TOO_HEAVY if above[-1] <= 0.0 else FOLDS), piece, -float(above[piece])
+    last = max(piece for piece, pull in enumerate(lifts) if pull > 0.0)
+    for piece in range(supported[0], last):
+        if above[piece] <= 0.0:
+            return (TOO_HEAVY if above[-1] <= 0.0 else FOLDS), piece, -above[piece]
+    return SUPPORTED, -1, 0.0
 
 
 def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:

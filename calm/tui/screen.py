@@ -28,6 +28,11 @@ class DraftScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         """Yield the title, the parts and the keys."""
+        for at_least, of_width in sorted(self.HORIZONTAL_BREAKPOINTS or (), reverse=True):
+            if self.app.size.width >= at_least:
+                # after the mount it would style every widget again
+                self.set_class(True, of_width, update=False)
+                break
         yield TitleBar()
         yield from self.parts()
         yield KeyBar()

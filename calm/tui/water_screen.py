@@ -47,6 +47,8 @@ _ELSEWHERE = (
     "environment; values of {0} override it."
 )
 _INHERITED = "as in the default environment"
+_FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
+"""Input form that a part belongs to; "" for all forms."""
 
 
 class WaterScreen(screen.DraftScreen):
@@ -83,7 +85,9 @@ class WaterScreen(screen.DraftScreen):
                 yield Static(id="environment-names", markup=False)
                 yield Static(id="water-notes")
                 grid = partial(ProfileGrid, self.workspace.tell, self._take_rows, self._preview)
-                yield from fields_of_water(self.session.draft.is_tow, grid)
+                for part in fields_of_water(self.session.draft.is_tow, grid):
+                    part.set_class(self._is_gone(part), "gone", update=False)
+                    yield part
             with Vertical(id="water-profile"):
                 yield pictures.ProfilePicture()
 
@@ -139,12 +143,11 @@ class WaterScreen(screen.DraftScreen):
             f"Environment     {listing}", layout=False
         )
         for choice in self.query(FormChoice):
-            place = _place(choice)
-            choice.set_class(not self._is_shown(place), "gone")
-            choice.show(water.form(*place))
+            choice.set_class(self._is_gone(choice), "gone")
+            choice.show(water.form(*_place(choice)))
         for field in self.query(Field):
             place = _place(field)
-            field.set_class(not self._is_shown(place, "constant"), "gone")
+            field.set_class(self._is_gone(field), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
             is_lacking = field.form_field.is_needed and len(place) > 1 and water.value(*place[:-1])
@@ -152,20 +155,22 @@ class WaterScreen(screen.DraftScreen):
             note = f"is needed: {field.form_field.takes}" if lacks else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
         for grid in self.query(ProfileGrid):
-            place = _place(grid)
-            grid.set_class(not self._is_shown(place, "table"), "gone")
-            grid.show_profile(*water.table(*place), water.depth)
+            grid.set_class(self._is_gone(grid), "gone")
+            grid.show_profile(*water.table(*_place(grid)), water.depth)
 
-    def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Return whether a part of the form applies to the current input forms."""
-        water, key = self.water, place[0]
-        if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
+    def _is_gone(self, part: Widget) -> bool:
+        """Return whether a part of the form does not apply to the current input forms."""
+        form = _FORMS.get(type(part))
+        if form is None:
             return False
+        water, place = self.water, _place(part)
+        key = place[0]
+        if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
+            return True
         if key == "current" and place[1:]:
-            return water.form(key) == (
-                "file" if place[1] in CurrentFile.model_fields else "uniform"
-            )
-        return not form or key not in ("density", "current") or water.form(*place) == form
+            is_of_file = place[1] in CurrentFile.model_fields
+            return water.form(key) != ("file" if is_of_file else "uniform")
+        return bool(form) and key in ("density", "current") and water.form(*place) != form
 
     def replaced(self) -> None:
         """Show another draft; discard typed text and values of replaced forms."""

@@ -34,7 +34,7 @@ def calm_prints(*arguments: str) -> str:
     finished = subprocess.run(
         [sys.executable, "-m", "calm", *arguments],
         cwd=ROOT,
-        env={**os.environ, "COLUMNS": "100", "NO_COLOR": "1"},
+        env={**os.environ, "COLUMNS": "100", "NO_COLOR": "1", "CALM_COMPILED": "never"},
         capture_output=True,
         encoding="utf-8",
         check=True,

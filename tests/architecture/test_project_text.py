@@ -17,6 +17,7 @@ def text_files() -> list[Path]:
         for path in [*ROOT.glob("*"), *found]
         if path.is_file()
         and path.suffix in TEXT
+        and path.name != ".git"  # of a work tree of its own
         and "__pycache__" not in path.parts
         and not any(part.startswith(".") for part in path.relative_to(ROOT).parts[1:])
     )

@@ -89,8 +89,8 @@ def calm(capsys):
 
 
 @pytest.fixture
-def calm_process():
-    """Runs a command in a process of its own."""
+def calm_process(march_as_it_stands):
+    """Runs a command in a process of its own, which need not load what is compiled."""
 
     def run(*words, **options):
         command = [sys.executable, "-m", "calm", *map(str, words)]

@@ -86,7 +86,7 @@ def outcomes(missing, commands):
 
 
 @pytest.fixture
-def designs(folder, write_mooring):
+def designs(folder, write_mooring, march_as_it_stands):
     """What the commands read."""
     import xlsxwriter
 

@@ -192,7 +192,7 @@ def test_export_writes_and_tells_what_is_lost(calm, folder, write_mooring):
     ("words", "message"),
     [
         (["m.yaml", "--to", "orca", "-o", "m.out"], "`orca` is not a program"),
-        (["m.yaml", "--to", "mdd", "-o", "m.yaml"], "would overwrite"),
+        (["m.yaml", "--to", "mdd", "-o", "m.yaml"], "m.yaml is the input file"),
         (["m.yaml", "--to", "mdd", "-o", "m.txt"], "cannot write m.txt: its name must end in .mat"),
         (["m.yaml", "--to", "moordyn", "-o", "m.cbl"], "must end in .txt or .dat"),
         (["none.yaml", "--to", "mdd", "-o", "m.mat"], "none.yaml"),

@@ -99,7 +99,7 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert "this is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
-    assert "latitude and longitude are exchanged" in done.err
+    assert "latitude and longitude appear to be exchanged" in done.err
     assert "deployed" not in (folder / "m.yaml").read_text()
 
 

@@ -134,6 +134,7 @@ def test_process_hands_on_the_exit_code(calm_process, broken):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.usefixtures("march_as_it_stands")
 def test_reader_that_stops_early_is_no_error(write_mooring):
     done = subprocess.run(
         f"set -o pipefail; {sys.executable} -m calm run {write_mooring()} | true",

@@ -200,11 +200,12 @@ def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, trut
     later = [time.replace("2026", "2027") for time in stamps()]
     cases = {
         "needs a unit": given("a.csv", unit=""),
-        "no sensor is a part of the line": given("b.csv", labels=("x", "y", "z")),
+        "no instrument is a part of the line": given("b.csv", labels=("x", "y", "z")),
         "no time has both": given("c2.csv", times=later),
         "its unit (bar, kPa?)": given("d.csv", factor=0.1),
         "is a speed; a pressure": given("e.csv", unit="knot"),
         "two sensors are called": given("f.csv", labels=("upper", "upper", "lower")),
+        "two sensors are called `upper`": given("h.csv", labels=("upper", "UPPER", "lower")),
         "no sensor is left": given("g.csv", values=0.0 * depth + 100.0),
         "no such file": "missing.csv",
     }
@@ -316,7 +317,7 @@ def test_a_clamp_that_slipped_is_named(calm, given, truth):
     values[HOURS // 2 :, 1] += 6.0
     given("s.csv", values=values)
     done = calm(*COMMAND, "--pressures", "s.csv", "-o", "d.nc", "--json", "-")
-    assert any("middle: hangs" in one for one in json.loads(done.out)["doubts"])
+    assert any("clamp has probably slipped" in one for one in json.loads(done.out)["doubts"])
 
 
 @pytest.mark.thorough

@@ -39,7 +39,8 @@ def test_an_environment_that_another_program_takes_out(drive, stormy):
         stormy.write_text(without)
         driver.app.saving.check_external_change()
         await driver.settle()
-        assert "[default]" in driver.screen and "no environment storm now" in driver.screen
+        assert "[default]" in driver.screen
+        assert "Environment storm no longer exists" in driver.screen
         assert driver.view.environment is None and not driver.view.problems
 
     drive(story, stormy, environment="storm")

@@ -11,7 +11,7 @@ from calm.assemble import with_axial_clamps
 from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
-from calm.drop.fall_record import rest_difference
+from calm.drop.fall_record import depths_of, rest_difference
 from calm.drop.launch import CHECK_FINENESS, launch_of
 from calm.drop.motion import ChainState, FallingAnchor
 from calm.errors import UsageError
@@ -308,6 +308,18 @@ def test_what_floats_cannot_be_streamed_less_far(loaded):
     mooring = loaded(SHORT.replace("weight: 0.2 N/m", "buoyancy: 0.2 N/m"))
     with pytest.raises(UsageError, match="a distance of 30 m is not possible"):
         drop_plan(mooring, ship_speed=2.0, streamed=30.0, fineness=FEW)
+
+
+def test_rounding_at_rest_does_not_move_the_time_of_the_greatest_depth(loaded):
+    mooring = loaded(SHORT)
+    _, drop, rest = dropped(mooring, fineness=FEW)
+    last = rest.states[-1]
+    later = replace(last, time=2.0 * last.time, node=last.node - [0.0, 0.0, 1e-11])
+    longer = replace(rest, states=(*rest.states, later))
+    pieces = mooring.file.pieces
+    first, again = (depths_of(pieces, drop, each) for each in (rest, longer))
+    assert len(first) > 0
+    assert [one.time for one in again] == [one.time for one in first]
 
 
 @pytest.mark.thorough

@@ -32,12 +32,17 @@ def read(path: Path | str, text: str | None = None) -> Design:
     ("name", "node", "slack"),
     [
         ("net9_current", (-240.5013, 567.0598, -77.9770), {"a4": 132.74}),
-        ("net14_current", (-121.6698, -212.6569, -75.7025), {"a0": 422.39}),
-        ("net23_current", (6.3538, 45.3311, -10.1430), {"a2": 20.02}),
         ("net25_still", (-0.2862, -0.8978, -4.1304), {}),
-        ("net28_current", (-50.3526, 68.2040, -90.5099), {"a1": 81.13}),
-        ("net44_current", (6.3852, 2.4176, -4.6598), {"a1": 6.83}),
         ("net44_still", (5.6021, -1.2761, -4.8100), {"a5": 2.96}),
+        *(
+            pytest.param(*each, marks=pytest.mark.thorough)
+            for each in (
+                ("net14_current", (-121.6698, -212.6569, -75.7025), {"a0": 422.39}),
+                ("net23_current", (6.3538, 45.3311, -10.1430), {"a2": 20.02}),
+                ("net28_current", (-50.3526, 68.2040, -90.5099), {"a1": 81.13}),
+                ("net44_current", (6.3852, 2.4176, -4.6598), {"a1": 6.83}),
+            )
+        ),
     ],
 )
 def test_nets_that_were_refused(
@@ -113,7 +118,13 @@ def farthest(way: np.ndarray, reach: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("speed", "toward"), [(0.1, 17.0), (0.05, 77.0), (0.015, 17.0), (0.015, 200.0)]
+    ("speed", "toward"),
+    [
+        (0.1, 17.0),
+        pytest.param(0.05, 77.0, marks=pytest.mark.thorough),
+        pytest.param(0.015, 17.0, marks=pytest.mark.thorough),
+        (0.015, 200.0),
+    ],
 )
 def test_a_weak_current_carries_a_buoy_on_slack_chains_as_far_as_they_reach(
     speed: float, toward: float
@@ -159,7 +170,9 @@ def test_nets_are_the_same_in_every_frame_and_order(number: int) -> None:
     found_alike(surface_net(number))
 
 
-@pytest.mark.parametrize("name", ["net9_current", "net44_current"])
+@pytest.mark.parametrize(
+    "name", ["net9_current", pytest.param("net44_current", marks=pytest.mark.thorough)]
+)
 def test_a_batch_solves_slack_legs_as_a_run_does(name: str) -> None:
     from calm.batch.net_profiles import NetProfiles
 

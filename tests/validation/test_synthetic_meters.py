@@ -72,10 +72,10 @@ def measured(mooring, per, share, noise, seed):
     )  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("per", "share", "noise", "seeds", "limit"), [
-    (1, 0.0, 0.005, (1,), 0.65),
-    pytest.param(1, 0.0, 0.005, (1, 2), 0.62, marks=pytest.mark.thorough),
-    pytest.param(6, 0.03, 0.01, (1, 2), 0.65, marks=pytest.mark.thorough),
+    (1, 0.0, 0.005, (1, 2), 0.62),
+    (6, 0.03, 0.01, (1, 2), 0.65),
 ])  # fmt: skip
 def test_withheld_depths_and_the_drag_are_found(per, share, noise, seeds, limit):
     mooring = calm.load(FIELD / "mooring.yaml")

@@ -65,7 +65,7 @@ def test_what_a_single_leg_has_is_that_of_the_design() -> None:
 
 
 def test_several_legs_are_asked_one_by_one(net: calm.Design) -> None:
-    with pytest.raises(calm.UsageError, match=r"^net.yaml: .*this takes a single line"):
+    with pytest.raises(calm.UsageError, match=r"^net.yaml: .*a single line with one free end"):
         _ = net.line
     result = net.solve()
     for name in ("top", "anchor", "shape", "strumming", "body"):

@@ -9,9 +9,9 @@ from calm.errors import UsageError
 from calm.motion.matching import (
     CERTAIN,
     LinePlaces,
-    matched_by_label,
     matched_by_place,
     named_point,
+    points_of,
 )
 from calm.records.instrument_series import Identity
 
@@ -63,22 +63,24 @@ def test_what_place_cannot_tell_is_refused():
 
 def test_labels_are_matched_and_others_listed_with_the_nearest():
     given = [*sensors(np.nan, label="adcp"), *sensors(np.nan, label="metre")]
-    points, lost = matched_by_label(given, line())
+    points, lost = points_of(given, line())
     assert points == {0: 2}
     assert lost == ["`metre` of p.nc is not in m.yaml; did you mean `meter`?"]
 
 
 @pytest.mark.parametrize(
-    ("labels", "said"),
-    [
-        (("",), "does not say what its sensors are called"),
-        (("ctd", "CTD"), "two sensors are called `ctd`"),
-        (("x",), "no sensor is a part of the line"),
-    ],
+    ("label", "reason"), [("", "neither label, serial number nor nominal depth"), ("x", "`x` of")]
 )
-def test_labels_that_match_nothing_or_a_part_twice_are_refused(labels, said):
-    with pytest.raises(UsageError, match=said):
-        matched_by_label([one for label in labels for one in sensors(np.nan, label=label)], line())
+def test_sensors_that_match_nothing_are_refused(label, reason):
+    with pytest.raises(UsageError, match=f"no instrument is a part of the line: .*{reason}"):
+        points_of(sensors(np.nan, label=label), line())
+
+
+def test_sensors_without_a_label_are_matched_by_nominal_depth_beside_labelled_ones():
+    given = [*sensors(310.0), *sensors(np.nan, label="meter"), *sensors(125.0)]
+    points, notes = points_of(given, line())
+    assert points == {0: 2, 1: 1, 2: 0}
+    assert notes[0].startswith("by nominal depths, in their order: ")
 
 
 def test_a_sensor_without_a_label_is_that_of_its_serial_number():

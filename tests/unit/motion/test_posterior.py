@@ -115,7 +115,7 @@ def test_slopes_are_those_of_the_line():
         return SimpleNamespace(depths=lambda level, u, v: 100.0 + factor * (u + 2.0 * v) @ gain.T)
 
     moments = LineResponse(one, line(1.0), {"cable_drag": line(np.exp(0.05))})
-    way = ReadCurrents(np.array([[10.0, 90.0]]), one.u, one.v, np.zeros((1, 2, 2)))
+    way = ReadCurrents(np.array([[10.0, 90.0]]), one.u, one.v)
     logs = np.array([[0.1, -0.1]])
     at = moments.linear(way, logs)
     assert at.depth[0] == pytest.approx(100.0 + gain @ (np.exp([0.1, -0.1]) * [1.3, 0.4]))

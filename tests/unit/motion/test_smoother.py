@@ -19,7 +19,8 @@ def law():
     stepped = np.zeros((TIMES, STATES))
     stepped[:, 2] = 0.1
     first = steady + np.diag([0.0, 0.0, 4.0])
-    seen = random.normal(size=(1, 1, STATES)), random.normal(size=(TIMES, 1, STATES))
+    seen = np.tile(random.normal(size=(1, 1, STATES)), (TIMES, 1, 1))
+    seen = np.concatenate([seen, random.normal(size=(TIMES, 1, STATES))], axis=1)
     read = random.normal(size=(TIMES, READINGS))
     read[3], read[5, 0] = np.nan, np.nan
     noise = random.uniform(0.1, 1.0, (TIMES, READINGS))
@@ -41,9 +42,8 @@ def test_mean_covariance_and_steps_are_those_of_the_whole_law(monkeypatch, block
             whole[t * q : t * q + q, later * q : later * q + q] = part
             whole[later * q : later * q + q, t * q : t * q + q] = part.T
     seen = np.zeros((TIMES * READINGS, TIMES * q))
-    slopes = given.slopes(slice(0, TIMES))
     for t in range(TIMES):
-        seen[t * READINGS : (t + 1) * READINGS, t * q : t * q + q] = slopes[t]
+        seen[t * READINGS : (t + 1) * READINGS, t * q : t * q + q] = given.seen[t]
     there = np.isfinite(given.read.ravel())
     seen, noise = seen[there], np.diag(given.noise.ravel()[there])
     gain = whole @ seen.T @ np.linalg.inv(seen @ whole @ seen.T + noise)

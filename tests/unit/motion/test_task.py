@@ -73,7 +73,7 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
     speeds[0, 0] = 40.0
     smoother = SimpleNamespace(
         best=Line(), offset=offset, depth=depth, deviation=0.1 * depth, surface=surface,
-        way=lambda times: ReadCurrents(np.full((4, 2), 7.0), speeds, V, np.zeros((4, 0, 0))),
+        read=lambda times: ReadCurrents(np.full((4, 2), 7.0), speeds, V),
         lost=np.array([False, False, True, False]), doubt=np.full((4, 2), 0.01),
         current_factor=np.array([1.1, 0.9, np.nan, 1.2]),
     )  # fmt: skip

@@ -39,7 +39,7 @@ def test_several_depths_at_one_time_are_those_of_several_instruments():
         plausible(sensor(60.0, 95.0, 60.0, 95.0, again=(1, 3)), 60.0, SEABED)
     found, said = plausible(sensor(60.0, 60.5, 61.0, 61.5, again=(1, 3)), 60.0, SEABED)
     assert found.value.tolist() == [60.0, 61.0]
-    assert "2 of its times stand twice" in said[0]
+    assert "2 of its times appear twice" in said[0]
 
 
 def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
@@ -53,7 +53,7 @@ def test_of_readings_at_one_time_the_first_counts():
     found, said = plausible(sensor(60.0, 61.0, 99.0, 62.0, again=(2,)), 60.0, SEABED)
     assert found.value.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
     assert said == [
-        "a: 1 of its times stand twice, the first 2026-03-01T01:00:00: the first reading of each "
+        "a: 1 of its times appear twice, the first 2026-03-01T01:00:00: the first reading of each "
         "counts"
     ]
 

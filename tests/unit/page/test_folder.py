@@ -7,6 +7,7 @@ import re
 import sys
 import tomllib
 import zipfile
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 
@@ -21,10 +22,18 @@ ROOT = Path(__file__).resolve().parents[3]
 SELF = f"{sys.version_info[0]}.{sys.version_info[1]}"
 
 
-@pytest.fixture(scope="module")
-def packed():
-    with zipfile.ZipFile(BytesIO(archive.packed("3.1"))) as content:
-        yield content
+packed = cache(archive.packed)
+"""The archive for a version of Python, made once."""
+
+
+@pytest.fixture(autouse=True)
+def packed_once(monkeypatch):
+    """A page has the archive that was made before."""
+    monkeypatch.setattr(folder, "packed", packed)
+
+
+def opened(python):
+    return zipfile.ZipFile(BytesIO(packed(python)))
 
 
 @pytest.fixture
@@ -50,8 +59,9 @@ def runtime(tmp_path):
     return tmp_path / "rt"
 
 
-def test_the_archive_has_what_the_builder_needs_and_no_compiled_code(packed):
-    names = packed.namelist()
+def test_the_archive_has_what_the_builder_needs_and_no_compiled_code():
+    with opened("3.1") as content:
+        names = content.namelist()
     assert {"calm/tui/app.py", "calm/page/driver.py", "textual/app.py", "rich/console.py"} <= {
         *names
     }
@@ -61,13 +71,13 @@ def test_the_archive_has_what_the_builder_needs_and_no_compiled_code(packed):
     assert len(names) == len({*names})
 
 
-def test_the_archive_of_the_same_files_is_the_same(packed):
-    assert archive.packed("3.1") == archive.packed("3.1")
+def test_the_archive_of_the_same_files_is_the_same():
+    assert archive.packed("3.1") == packed("3.1")
 
 
 def test_modules_are_compiled_for_a_runtime_of_this_version():
     name = f"calm/__pycache__/errors.{sys.implementation.cache_tag}.pyc"
-    with zipfile.ZipFile(BytesIO(archive.packed(SELF))) as content:
+    with opened(SELF) as content:
         code = content.read(name)
     assert code[:4] == importlib.util.MAGIC_NUMBER
     flags = int.from_bytes(code[4:8], "little")

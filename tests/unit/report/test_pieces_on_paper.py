@@ -257,7 +257,7 @@ def test_shares_among_the_limits_are_in_percent(signed):
 
 def test_the_counts_of_findings_name_the_open_items_of_page_one(signed):
     note = table(checks_page(signed), "Checks in full").note
-    assert "51 not judged (open items: 2)" in note and "(open items: 4)" in note
+    assert "51 not judged (2 open items)" in note and "(4 open items)" in note
     told = verdict_sentence(signed.assessment)
     assert "four estimated" in told and "two checks" in told
 

@@ -1,12 +1,10 @@
-"""Block-tridiagonal systems and bracketed roots against LAPACK and SciPy."""
+"""Block-tridiagonal systems against LAPACK."""
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_banded
-from scipy.optimize import brentq
 
 from calm.solve.block_tridiagonal import solve_blocks
-from calm.solve.bracketed_root import bracketed_root
 
 
 def banded(diagonal, upper, lower):
@@ -56,25 +54,3 @@ def test_a_singular_matrix_gives_nan():
     diagonal = np.zeros((30, 2, 2))
     found = solve_blocks(diagonal, diagonal[1:], diagonal[1:], np.ones((30, 2, 1)))
     assert np.isnan(found).all()
-
-
-@pytest.mark.parametrize(
-    ("function", "low", "high"),
-    [
-        (lambda x: x**3 - 2.0, 0.0, 2.0),
-        (lambda x: np.cos(x) - x, 0.0, 1.0),
-        (lambda x: np.exp(-50.0 * x) - 1e-3, 0.0, 1.0),
-        (lambda x: -1.0 if x < 0.3 else 1.0, 0.0, 1.0),  # a jump
-        (lambda x: x - 1.0, 1.0, 3.0),
-    ],
-)
-def test_bracketed_roots_are_those_of_brentq(function, low, high):
-    calls = []
-    found = bracketed_root(lambda x: calls.append(x) or function(x), low, high)
-    assert found == pytest.approx(brentq(function, low, high, rtol=1e-14), rel=1e-11)
-    assert len(calls) < 50 and low <= min(calls) and max(calls) <= high
-
-
-def test_a_bracket_without_a_change_of_sign_is_refused():
-    with pytest.raises(ValueError, match="same sign"):
-        bracketed_root(lambda x: x * x + 1.0, -1.0, 1.0)

@@ -132,7 +132,7 @@ def test_corrosion_shortens_the_life():
     assert worn.life == pytest.approx(new.life * (7.0 / 8.0) ** (2.0 * 4.09), rel=1e-9)
     gone = fatigue_of(chain(fatigue={"corrosion": "13 mm"}), 1, "c", seas)
     assert gone.life is None
-    assert "leaves nothing" in gone.unknown
+    assert "consume its whole diameter" in gone.unknown
 
 
 def test_wire_bears_fewer_cycles_about_a_greater_mean():

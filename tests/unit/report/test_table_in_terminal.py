@@ -1,7 +1,8 @@
-"""Tables of many rows look as rich would print them."""
+"""Tables in a terminal look as rich would print them."""
 
 import io
 import re
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
@@ -19,7 +20,10 @@ COLUMNS = (
 )
 
 
-def table(rows, label="rope"):
+ONE_FOLDED = (COLUMNS[0], *(replace(each, share=0.0) for each in COLUMNS[1:]))
+
+
+def table(columns, rows=40, label="hyphened-rope of a long name"):
     made = [(Cell("a head of what is below it", strong=True),)]
     for i in range(rows):
         state = State.FAIL if i % 7 == 3 else None
@@ -28,7 +32,7 @@ def table(rows, label="rope"):
             Cell(f"{label} {i}", indented=i % 3 == 1), Cell(f"{i * 1.5:.1f}"),
             Cell(f"{i}", mark=mark, state=state), Cell("never"), Cell("[bold]海 ok", state=state),
         ))  # fmt: skip
-    return ReportPart("title", (Table("over it", COLUMNS, tuple(made), "below it", totals=1),))
+    return ReportPart("title", (Table("over it", columns, tuple(made), "below it", totals=1),))
 
 
 def printed(part, width):
@@ -43,11 +47,18 @@ def printed(part, width):
     )
 
 
-@pytest.mark.parametrize("width", [80, 30])  # it fits, or its names are folded
-def test_it_is_what_rich_prints(monkeypatch, width):
-    part = table(150)
+def as_rich(made, console, options):
+    for cells, style in made._rows:
+        made._table.add_row(*cells, style=style)
+    yield made._table
+
+
+@pytest.mark.parametrize("columns", [COLUMNS, ONE_FOLDED])
+@pytest.mark.parametrize("width", [80, 60, 50, 40, 34, 20])  # it fits, or its names are folded
+def test_it_is_what_rich_prints(monkeypatch, columns, width):
+    part = table(columns)
     ours, coloured = printed(part, width)
-    monkeypatch.setattr(terminal, "MANY", 10**6)
+    monkeypatch.setattr(terminal.PlainTable, "__rich_console__", as_rich)
     theirs, expected = printed(part, width)
     assert ours == theirs
     assert [one for one in coloured if "m[bold]" in one or "!" in one] == [
