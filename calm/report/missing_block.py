@@ -88,6 +88,8 @@ def _optional_values(findings: Sequence[Finding], inventory: Sequence[InventoryI
     judged without one, and masses in air; "" if there are none.
     """
     use = {one.label: one.use for one in inventory}
+    figures = [one.missing for one in findings if one.missing is not None]
+    missing = {(one.component_id, one.quantity) for one in figures}
     found: list[tuple[str, str, str, str]] = []
     for one in findings:
         label = one.component or ""
@@ -106,6 +108,7 @@ def _optional_values(findings: Sequence[Finding], inventory: Sequence[InventoryI
         for one in weighed
         if one.dry_mass is None
     ]
+    found = [one for one in found if one[:2] not in missing]
     if not found:
         return ""
     lines = []

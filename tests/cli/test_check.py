@@ -35,8 +35,10 @@ def test_what_a_person_reads(calm, write_mooring):
     lines = done.out.splitlines()
     assert lines[0].split() == ["Test", "sub-surface,", "100", "m", "of", "water"]
     assert lines[1].split()[:3] == ["INCOMPLETE", "6", "unknown,"]
-    order = ["load case", "1  default environment", "0  still water", "case, where", "all other checks",
-             "Open items", "Not covered: waves"]  # fmt: skip
+    order = [
+        "load case", "1  default environment", "0  still water", "case, where", "all other checks",
+        "Open items", "Not covered: waves",
+    ]  # fmt: skip
     places = [next(at for at, line in enumerate(lines) if text in line) for text in order]
     assert places == sorted(places)
     told = " ".join(done.out.split())

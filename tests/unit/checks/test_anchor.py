@@ -4,6 +4,7 @@ import pytest
 
 import calm
 from calm.checks.design_check import check
+from calm.report.open_items import limit_text, open_items
 
 FILE = """
 name: By hand
@@ -78,3 +79,14 @@ def test_an_anchor_slides_below_the_weight_that_holds_both_pulls(load, share, st
     in_environments = check(load(f", weight: {share * needed} N")).in_environments[0]
     found = {one.rule: one for one in in_environments.findings if one.situation == "as given"}
     assert found["anchor-sliding"].state == found["anchor-weight"].state == state
+
+
+def test_an_anchor_without_holding_is_described_without_a_negative_limit(load):
+    assessment = check(load(", weight: 3000 N"))
+    findings = assessment.in_environments[0].findings
+    (slides,) = (one for one in findings if one.rule == "anchor-sliding")
+    assert slides.limit is not None and slides.limit < 0.0
+    assert "the vertical load lifts the anchor, with its factor: no holding" in slides.message
+    assert limit_text(slides) == "none left"
+    (item,) = (one for one in open_items(assessment) if one.head.startswith("Anchor sliding"))
+    assert "no holding" in item.text and "−" not in item.text

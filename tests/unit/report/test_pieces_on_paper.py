@@ -255,6 +255,17 @@ def test_shares_among_the_limits_are_in_percent(signed):
     assert values["Anchor friction"] == "0.6"
 
 
+def test_low_and_high_water_are_stated_with_the_environment(signed, tmp_path):
+    assert "Water depth at" not in table(basis_page(signed), "Environment").note
+    path = tmp_path / "tidal.yaml"
+    tidal = _SLOPE.replace(
+        "  depth: 1200 m\n", "  depth: 1200 m\n  depth_range: [1196 m, 1204 m]\n"
+    )
+    path.write_text(tidal, encoding="utf-8")
+    note = table(basis_page(signed_mooring(judged(path))), "Environment").note
+    assert "Water depth at low and high water 1196.0 m to 1204.0 m. Density" in note
+
+
 def test_the_counts_of_findings_name_the_open_items_of_page_one(signed):
     note = table(checks_page(signed), "Checks in full").note
     assert "51 not judged (2 open items)" in note and "(4 open items)" in note
