@@ -171,8 +171,8 @@ def explain(result: Result, label: str | None = None) -> Explanation:
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
         if miss > attribution.LARGEST_MISS:
             notes.append(
-                "The shares are approximate, because they do not increase steadily with the "
-                f"drag ({miss:.0%} were distributed in proportion)."
+                "The shares are approximate, because the effect is not proportional to the drag: "
+                f"{miss:.0%} of it was divided in proportion to the shares."
             )
     return Explanation(
         label=part.label,

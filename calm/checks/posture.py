@@ -237,7 +237,7 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
 
 @criteria("knockdown")
 def knockdown(leg: Leg) -> Iterator[Criterion]:
-    """Limit the knockdown of the top, if the design sets `maximum_knockdown`."""
+    """Compare the knockdown of the top with `maximum_knockdown`, if the design sets it."""
 
     def words(sunk: float, allowed: str) -> tuple[str, str]:
         if isnan(sunk):
@@ -255,7 +255,7 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("excursion")
 def excursion(leg: Leg) -> Iterator[Criterion]:
-    """Limit the horizontal offset of the top, if the design sets `maximum_excursion`."""
+    """Compare the horizontal offset of the top with `maximum_excursion`, if the design sets it."""
 
     def words(offset: float, allowed: str) -> tuple[str, str]:
         return (

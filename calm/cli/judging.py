@@ -25,7 +25,8 @@ class Drawing(NamedTuple):
 
     Attributes
     ----------
-    alone : whether the report contains all pages of a mooring, instead of one after the summary
+    alone : whether the report is of one mooring, with all its pages; otherwise it has a summary and
+        one page for each mooring
     full : whether each of several moorings also gets all its pages as a separate PDF
     page_size : page size
     """

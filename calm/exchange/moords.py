@@ -32,7 +32,9 @@ def read_moords(path: Path) -> model.ImportedDesign:
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is not a design of moords: its headings are others")
     if len(rows) > model.MOST_PIECES:
-        raise refused(path, f"has {len(rows)} rows; more than {model.MOST_PIECES} are not read")
+        raise refused(
+            path, f"has {len(rows)} rows; a file with more than {model.MOST_PIECES} cannot be read"
+        )
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":

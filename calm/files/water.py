@@ -213,7 +213,7 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
 
 
 def check_density(section: SourceMapping) -> None:
-    """Report mistakes in the tables of `density:` even if it has other mistakes."""
+    """Report mistakes in the tables of `density:`, also if another key of `density:` is wrong."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)

@@ -79,7 +79,9 @@ class WaveKeys(Model):
         if named and height is None and (self.scatter is None or period is not None):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
         if self.swell is not None and height is None:
-            raise ValueError("`swell` is added to a sea, which needs its `significant_height`, too")
+            raise ValueError(
+                "`swell` is added to a wind sea: set the `significant_height` of that sea, too"
+            )
         if height is not None and period is None and self.spectrum not in OF_HEIGHT:
             raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")
         return self

@@ -346,10 +346,12 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Leave-one-out residual (n, s) of each sensor, measured minus predicted, and its deviation.
+    """Return the leave-one-out residual (n, s) of each sensor, measured minus predicted, and the
+    standard deviation of this residual.
 
-    The sensor is omitted at the neighbouring times, too, by means of its block of the inverse
-    (Rasmussen and Williams, eq. 5.12, extended to blocks). NaN if the sensor has no value.
+    The readings of the sensor at the neighbouring times are left out as well. The prediction
+    follows from the sensor's block of the inverse covariance matrix (Rasmussen and Williams,
+    eq. 5.12, extended to blocks). NaN if the sensor has no value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]

@@ -184,7 +184,7 @@ class Columns:
 
     @property
     def stays(self) -> slice:
-        """Slice of the datum and offsets, which persist and may step."""
+        """Columns of the unknowns that are constant but for steps: the datum and the offsets."""
         return slice(self.datum.start, self.offset.stop)
 
 

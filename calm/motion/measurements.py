@@ -121,12 +121,12 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each other time, of equals the first.
+    """Return the index (n,) of the time nearest to each wanted time, the earlier in a tie.
 
     Parameters
     ----------
-    time : (m,) rising
-    wanted : (n,) other times
+    time : (m,) increasing
+    wanted : (n,) wanted times
     """
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)

@@ -275,8 +275,8 @@ def plausible(
             )
         when = np.datetime_as_string(sensor.time[again][0], "s")
         notes.append(
-            f"{sensor.label}: {again.sum()} of its times appear twice, the first {when}: the first "
-            "reading of each counts"
+            f"{sensor.label}: {again.sum()} of its times appear twice, the earliest at {when}; "
+            "only the first reading at each is used"
         )
         sensor = replace(sensor, time=sensor.time[~again], value=sensor.value[~again])
     least = min(0.5 * place, place - MISPLACED)

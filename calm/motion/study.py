@@ -296,7 +296,7 @@ def judge_hidden(
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
-    """Return the sensors that can be hidden in turn.
+    """Return the sensors that a cross-validation withholds in turn.
 
     UsageError: only one sensor is available.
     """
@@ -314,7 +314,7 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Hide each used sensor in turn, besides the hidden sensors, and judge the estimate.
+    """Withhold each used sensor in turn, besides the hidden ones, and judge the estimate.
 
     Parameters
     ----------

@@ -472,11 +472,11 @@ def until_switch(
 
 
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
-    """Return the quantity whose sign changes at the switch of a drag law.
+    """Return the quantity whose sign changes where a drag law switches.
 
-    For friction, which jumps if its size is constant: the flow along the cable times the tension,
-    positive down the line [N m/s]. For strumming: the margin between the factor on Cn and its
-    maximum.
+    Friction of constant size changes its direction with the flow along the cable; the quantity is
+    this flow, positive down the line, times the tension [N m/s]. For
+    strumming, whose factor on Cn has a maximum, it is the maximum less the factor.
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)

@@ -145,8 +145,8 @@ def _record_setter() -> Law:
 
 
 def clone(law: Law) -> Law:
-    """Copy a function with compiled laws in place of its callees, and arrays in place of its
-    tables.
+    """Copy a function: the copy calls the compiled versions of CALM's functions, and its tables
+    are arrays.
     """
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}

@@ -184,7 +184,10 @@ Vector = tuple[float, float, float]
 
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
-    """Solve c |A + c V| = k |V × A| for the smallest root c ≥ 0.
+    """Return the factor c that gives the axis of a freely rotating element: parallel to A + c V.
+
+    A is the other force that rotates it, and V the current. c is the smallest root c ≥ 0 of
+    c |A + c V| = k |V × A|.
 
     Parameters
     ----------
@@ -194,9 +197,8 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
     Returns
     -------
-    c [N/(m/s)], such that the axis is parallel to A + c V. It is between 0 and k|V|. If A is
-    opposite to V to within 19.5° there may be three roots; the smallest is the one reached when the
-    current grows from rest.
+    c [N/(m/s)], between 0 and k|V|. If A is opposite to V to within 19.5° there may be three roots;
+    the smallest is the one reached when the current increases from rest.
     """
     vv = vx * vx + vy * vy + vz * vz
     if k == 0.0 or vv == 0.0:

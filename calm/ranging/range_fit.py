@@ -48,7 +48,8 @@ class SecondPlace:
     ----------
     latitude, longitude : WGS 84 [degrees]
     distance : distance from the chosen position [m]
-    rms : rms residual for the degrees of freedom [m]; NaN without a degree of freedom
+    rms : root of the sum of squared residuals over the number of degrees of freedom [m]; NaN if
+        there are none
     """
 
     latitude: float

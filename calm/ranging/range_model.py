@@ -315,7 +315,7 @@ def widest_gap(away: Floats) -> float:
 
 
 def mirrored(ships: Floats, place: Floats) -> Floats:
-    """Mirror a place (3,) at the line that fits the ships (n, 3) best."""
+    """Reflect a position (3,) across the line that best fits the ship's positions (n, 3)."""
     middle = ships.mean(axis=0)
     _, _, axes = np.linalg.svd((ships - middle)[:, :2], full_matrices=True)
     other = place.copy()

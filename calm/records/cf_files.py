@@ -312,7 +312,7 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Return the nominal depths of the instruments along a dimension [m], or of a single one.
+    """Return the nominal depths of the instruments along a dimension, or of one instrument [m].
 
     Heights above the seabed are converted with `seabed`.
 

@@ -66,7 +66,9 @@ def missing_block(
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
     if not figures and any(one.rule == "equilibrium" for one in found):
-        return "# The mooring has no equilibrium, so its missing values are unknown.\n"
+        return (
+            "# The mooring has no equilibrium, so the values that its check lacks are not known.\n"
+        )
     optional = _optional_values(found, [*inventory])
     if not figures:
         return f"# No value is missing that a verdict waits for.\n{optional}"

@@ -201,6 +201,8 @@ class PlainTable:
 
     def __init__(self, table: table.Table, rows: Sequence[Row], gap: int) -> None:
         self._table, self._rows, self._gap = table, rows, gap
+        for cells, style in rows:
+            table.add_row(*cells, style=style)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Render the table as plain lines; a rich table does what needs more than one folded
@@ -210,7 +212,8 @@ class PlainTable:
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns
         ]
-        widths = [max((cell_len(one.plain) for one in lines), default=0) for lines in headings]
+        # an empty column of a rich table has a width of 1
+        widths = [max([1, *(cell_len(one.plain) for one in lines)]) for lines in headings]
         simple = True
         for cells, _ in self._rows:
             for number, cell in enumerate(cells):
@@ -224,8 +227,6 @@ class PlainTable:
             least = max((cell_len(one.plain) for one in headings[folded]), default=0)
             simple = simple and widths[folded] >= max(least, 1)
         if not simple or excess > 0 > folded:
-            for cells, style in self._rows:
-                self._table.add_row(*cells, style=style)
             yield self._table
             return
         height = max(map(len, headings), default=0)

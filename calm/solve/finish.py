@@ -129,8 +129,10 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 
 
 def carried_by(line: Line, problem: LineProblem) -> Line:
-    """Return the line with the loads of the solution: pieces at the surface count with their
-    submerged part only.
+    """Return the line with the buoyancy and drag that its pieces have in the solution.
+
+    They differ from those of the given line for pieces at the surface, of which only the submerged
+    part counts.
     """
     if not problem.work.left[CHANGED]:
         return line

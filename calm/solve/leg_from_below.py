@@ -90,7 +90,7 @@ def course_from_below(course: Course) -> Course:
 
 
 def weight_of(course: Course, stage: Stage, excess: float) -> float:
-    """Return the submerged weight of a stage in the water near the seabed [N]."""
+    """Return the weight [N] of a cable, or of successive rigid pieces, in water near the seabed."""
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
         return -(cable.buoyancy + excess * cable.volume) * cable.length

@@ -222,11 +222,11 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
 
 
 def growth_below(sea: Sea, depth: float) -> float:
-    """Return the largest growth of the current with depth below a given depth, relative to the
-    maximum speed [1/m].
+    """Return the largest rate at which the current increases with depth, below a given depth,
+    relative to the maximum speed [1/m].
 
-    A current that only weakens does not grow. For a current that turns, the part that is not
-    parallel to the current above counts as growth.
+    The rate is 0 for a current that only weakens. For a current that turns, the part that is not
+    parallel to the current above counts as an increase.
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1

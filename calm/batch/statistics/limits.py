@@ -39,7 +39,8 @@ class CountedLimit:
     ----------
     rule : rule of the design check
     criterion : criterion of the rule
-    leg : leg that it applies to, with the lower bounds of estimates for missing figures
+    leg : leg that it applies to; where the catalogue lacks a value, the lower bound of its estimate
+        takes its place
     seats : columns of the leg, if there are several legs
     on_estimate : whether the limit is the lower bound of an estimate, beyond which a failure is not
         certain

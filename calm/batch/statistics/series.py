@@ -45,7 +45,13 @@ class Seat(NamedTuple):
 
 
 class LegSeats(NamedTuple):
-    """Positions of the columns for one leg of a net: components, clamps, and number of the leg."""
+    """Columns of a batch result that belong to one leg of a net.
+
+    Attributes
+    ----------
+    components, clamps : ranges of columns
+    number : number of the leg, from 0
+    """
 
     components: slice
     clamps: slice

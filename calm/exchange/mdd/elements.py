@@ -191,7 +191,7 @@ def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement
             problems.append(str(error))
     if count > model.MOST_PIECES:
         problems.append(
-            f"`H{suffix}` has {count} elements; more than {model.MOST_PIECES} are not read"
+            f"`H{suffix}` has {count} elements; more than {model.MOST_PIECES} cannot be read"
         )
     if problems or not count:
         return [], problems

@@ -126,7 +126,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     if not points or not lines:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
     if len(lines) > model.MOST_PIECES:
-        raise refused(path, f"has {len(lines)} lines; more than {model.MOST_PIECES} are not read")
+        raise refused(path, f"has {len(lines)} lines; more than {model.MOST_PIECES} cannot be read")
     at: dict[str, list[_Row]] = {}
     for line in lines:
         for name in line.ends:

@@ -406,7 +406,7 @@ def test_sizes_of_no_piece_are_refused(size, tmp_path):
 def test_a_million_elements_are_refused_at_once(tmp_path):
     many = np.ones((1, 1_000_000))
     data = mooring(H=np.ones((4, 1_000_000)), B=many, Cd=many, ME=many)
-    assert "`H` has 1000000 elements; more than 2000 are not read" in refusal(tmp_path, data)
+    assert "`H` has 1000000 elements; more than 2000 cannot be read" in refusal(tmp_path, data)
     water = {name: np.linspace(100.0, 0.0, 5000) for name in ("z", "U", "V", "W", "rho")}
     assert "has 5000 levels of current" in refusal(tmp_path, mooring(**water))
 

@@ -53,8 +53,8 @@ def test_of_readings_at_one_time_the_first_counts():
     found, said = plausible(sensor(60.0, 61.0, 99.0, 62.0, again=(2,)), 60.0, SEABED)
     assert found.value.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
     assert said == [
-        "a: 1 of its times appear twice, the first 2026-03-01T01:00:00: the first reading of each "
-        "counts"
+        "a: 1 of its times appear twice, the earliest at 2026-03-01T01:00:00; only the "
+        "first reading at each is used"
     ]
 
 

@@ -48,8 +48,6 @@ def printed(part, width):
 
 
 def as_rich(made, console, options):
-    for cells, style in made._rows:
-        made._table.add_row(*cells, style=style)
     yield made._table
 
 
@@ -64,3 +62,14 @@ def test_it_is_what_rich_prints(monkeypatch, columns, width):
     assert [one for one in coloured if "m[bold]" in one or "!" in one] == [
         one for one in expected if "m[bold]" in one or "!" in one
     ]
+
+
+@pytest.mark.parametrize("width", [80, 40, 20])
+def test_it_may_be_printed_many_times(width):
+    """A window prints a table whenever it measures it."""
+    file = io.StringIO()
+    console, shown = Console(file=file, width=width), terminal.shown(table(COLUMNS))
+    console.print(shown)
+    once = file.getvalue()
+    console.print(shown)
+    assert file.getvalue() == 2 * once
