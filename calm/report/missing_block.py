@@ -19,8 +19,8 @@ _HEAD = """\
 # colon; a key without a value stays unknown. calm build FILE, key f, asks for the same values.
 """
 _OPTIONAL = """\
-# Optional values, which no verdict waits for. To set one, uncomment its key and its component below
-# `components:`. A published value replaces the estimate.
+# Optional values: no check is unknown without them. To set one, uncomment its key and its component
+# below `components:`. A published value replaces the estimate.
 """
 _WIDTH = 100
 
@@ -55,8 +55,8 @@ def missing_block(
 
     Comments name the pieces, give the place of a definition in the file, and for each key an
     example, its meaning, the checks that need it, and its class estimate if there is one. If a file
-    has a section `components:`, the block is made for it and has no heading of its own. Keys that
-    no verdict waits for follow as comments: see `_optional_values`. If nothing is missing, or
+    has a section `components:`, the block is made for it and has no heading of its own. Optional
+    keys follow as comments: see `_optional_values`. If nothing is missing, or
     nothing can be checked, the text consists of comments only.
 
     Parameters
@@ -71,7 +71,7 @@ def missing_block(
         )
     optional = _optional_values(found, [*inventory])
     if not figures:
-        return f"# No value is missing that a verdict waits for.\n{optional}"
+        return f"# No check is unknown for lack of a value.\n{optional}"
     ids = grouped_by(figures, lambda one: one.component_id)
     lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
     lines += [] if "" in places else ["components:"]

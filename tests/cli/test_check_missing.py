@@ -125,7 +125,7 @@ def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
     assert block["link"] == {"working_load": None}
 
 
-def test_values_that_no_verdict_waits_for_are_listed_as_comments(calm, folder):
+def test_optional_values_are_listed_as_comments(calm, folder):
     line = LINE.replace("  - {use: link, count: 2}\n", "  - {use: swivel-13}\n  - {use: spacer}\n")
     (folder / "m.yaml").write_text(
         f"{line.replace('sbe56-uwa', 'sbe37')}components:\n{SPACER}", encoding="utf-8"
@@ -133,7 +133,7 @@ def test_values_that_no_verdict_waits_for_are_listed_as_comments(calm, folder):
     done = calm("check", "m.yaml", "--missing", "-o", "block.yaml")
     assert done.err.rstrip().endswith("block.yaml written; it has only comments")
     block = (folder / "block.yaml").read_text(encoding="utf-8")
-    assert block.startswith("# No value is missing that a verdict waits for.\n")
+    assert block.startswith("# No check is unknown for lack of a value.\n")
     assert "#   swivel-13:\n#     working_load:  # estimated: at least 9.81 kN\n" in block
     assert "#   spacer:\n#     mass:  # in air; the total mass is a lower bound" in block
     assert "#   sbe37:  # sbe37 1 and 2\n#     grip:  # without it, clamp grip is not" in block
