@@ -100,6 +100,7 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
+    from calm.drop import DropPlan
     from calm.report.folder import write_report
     from calm.report.open_items import assessment_verdict
 
@@ -109,6 +110,11 @@ def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
     notes = _missing_characters(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
+    if isinstance(deck.plan, DropPlan) and deck.plan.start is None:
+        narrate(
+            f"{path}: the start of the run is not computed; set `deck_time` (handling time per "
+            "piece, by role) in the `document` of the file"
+        )
     write_report(folder, _contents(deck, page_size, notes))
     narrate(f"Deck sheets written to {folder}")
 

@@ -13,6 +13,7 @@ from calm.checks.finding import Finding, State, governing_of_each_rule
 from calm.files import Clamp, Flexible, Piece
 from calm.files.logbook import DeployedItem
 from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import holds_instrument
 from calm.quantities import QUANTITIES
 
 _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
@@ -96,9 +97,14 @@ class DeckItem:
         return self.part.component.role
 
     @property
+    def holds_instrument(self) -> bool:
+        """Whether the item is an instrument or a release, or holds one."""
+        return holds_instrument(self.part)
+
+    @property
     def is_joint(self) -> bool:
         """Whether the item only connects pieces and has no data of its own."""
-        return self.is_connector and not self._has_own_data
+        return self.is_connector and not self._has_own_data and not self.holds_instrument
 
     @property
     def is_connector(self) -> bool:
@@ -125,10 +131,10 @@ class DeckItem:
     def kind(self) -> tuple[object, ...]:
         """Key that is equal for consecutive items which may share a row.
 
-        Floats and clamps of one component share a row. Cut pieces, instruments, releases, anchors,
-        and all items with a serial number or a remark have separate rows.
+        Floats and clamps of one component share a row. Cut pieces, items that hold an instrument,
+        releases, anchors, and all items with a serial number or a remark have separate rows.
         """
-        alone = not self.is_rigid or self.role in ("instrument", "release", "anchor")
+        alone = not self.is_rigid or self.holds_instrument or self.role == "anchor"
         return (self.label,) if alone or self._has_own_data else (self.name, self.on)
 
 
@@ -157,6 +163,11 @@ class DeckRow:
     def ends(self) -> bool:
         """Whether a swivel follows and ends the row."""
         return any(one.is_swivel for one in self.after)
+
+    @property
+    def is_followed_by_clamps(self) -> bool:
+        """Whether the rows of the clamps on its piece follow."""
+        return bool(getattr(self.first.part, "clamps", ())) and not self.floats
 
     @property
     def first(self) -> DeckItem:
@@ -201,7 +212,8 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
 def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
     """Group successive items into the rows in which they are listed or drawn, in line order.
 
-    In a drawing, hardware marked as `apart` has a separate row.
+    Hardware is in the row of the piece before it, not in that of a clamp on this piece. In a
+    drawing it follows the clamps, and hardware marked as `apart` has a separate row.
     """
 
     def is_joint(one: DeckItem) -> bool:
@@ -214,7 +226,10 @@ def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[Dec
         if last is None:
             rows.append(DeckRow(run))
         elif is_joint(run[0]):
-            rows[-1] = replace(last, after=(*last.after, *run))
+            at = len(rows) - 1
+            while not drawn and at > 0 and rows[at].first.on is not None:
+                at -= 1
+            rows[at] = replace(rows[at], after=(*rows[at].after, *run))
         elif last.first.kind == run[0].kind and not last.ends:
             rows[-1] = DeckRow((*last.items, *run), last.floats, last.joints)
         elif _lies_on(run, last, items):
@@ -336,7 +351,7 @@ class Extreme:
 
 @dataclass(frozen=True)
 class DeckInstrument:
-    """An instrument or a release.
+    """An instrument, a float or frame that holds one, or a release.
 
     Attributes
     ----------
@@ -356,11 +371,13 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
 ) -> tuple[DeckInstrument, ...]:
-    """List the instruments and releases, down the line; the first result is that of the sheets."""
+    """List the instruments, the floats and frames that hold one, and the releases, down the line;
+    the first result is that of the sheets.
+    """
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
     for one in parts:
-        if one.role not in ("instrument", "release"):
+        if not one.holds_instrument:
             continue
         there = [(name, places[one.part.place]) for name, places in rows]
         depths = [Extreme(row.upper[0], name) for name, row in there]

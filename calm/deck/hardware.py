@@ -38,7 +38,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Cut:
-    """A wire, a rope, or a chain with clamps.
+    """A wire, a rope or a chain.
 
     Attributes
     ----------
@@ -50,7 +50,8 @@ class Cut:
     tolerance : tolerance of the length [m]
     effect : increase in depth of the top of its line or leg if the piece is longer by
         `LENGTH_ERROR` [m]; None if that line has no equilibrium
-    over, onto : sequence number over the side, and onto the drum in reverse order
+    over, onto : sequence number of a wire or rope over the side, and onto the drum in reverse
+        order; None for a chain
     """
 
     item: DeckItem
@@ -61,8 +62,13 @@ class Cut:
     termination: str | None
     tolerance: float
     effect: float | None
-    over: int
-    onto: int
+    over: int | None
+    onto: int | None
+
+    @property
+    def is_chain(self) -> bool:
+        """Whether the piece is a chain, which is not spooled onto a drum."""
+        return isinstance(self.item.part.component, Chain)
 
     @property
     def marks_text(self) -> str:
@@ -79,24 +85,16 @@ def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cu
     parts : every piece and clamp down the line
     order : deployment order
     """
-    cables = [
-        one
-        for one in parts
-        if isinstance(one.part, Piece)
-        and (
-            isinstance(one.part.component, Cable)
-            or (isinstance(one.part.component, Chain) and one.part.clamps)
-        )
-    ]
-    count = len(cables)
-    expect_many(count * max(1.0, len(result.components) / ORDINARY))
-    return tuple(
-        _cut(result, one, number if order is Order.ANCHOR_LAST else count + 1 - number, count)
-        for number, one in enumerate(cables, 1)
-    )
+    lengths = [one for one in parts if isinstance(one.part, Piece) and not one.is_rigid]
+    spooled = [one for one in lengths if isinstance(one.part.component, Cable)]
+    count = len(spooled)
+    numbers = range(1, count + 1) if order is Order.ANCHOR_LAST else range(count, 0, -1)
+    over = {one.index: number for one, number in zip(spooled, numbers, strict=True)}
+    expect_many(len(lengths) * max(1.0, len(result.components) / ORDINARY))
+    return tuple(_cut(result, one, over.get(one.index), count) for one in lengths)
 
 
-def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
+def _cut(result: Result, one: DeckItem, over: int | None, count: int) -> Cut:
     piece = one.part
     assert isinstance(piece, Piece) and isinstance(piece.component, Flexible)
     assert one.cut_length is not None
@@ -116,7 +114,7 @@ def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
         tolerance=max(LENGTH_ERROR * length, LEAST_TOLERANCE),
         effect=_effect(result, piece.index, one.cut_length),
         over=over,
-        onto=count + 1 - over,
+        onto=None if over is None else count + 1 - over,
     )
 
 
@@ -278,6 +276,8 @@ class ShippedComponent:
     Attributes
     ----------
     use, name, count : id, name and number of the component
+    units : number of units; larger than `count` if a component consists of several, such as a pair
+        of releases
     length : total length of cable or chain [m]
     mass : total of the known masses in air [kg]
     volume : total of the known volumes, without packing [m³]
@@ -287,6 +287,7 @@ class ShippedComponent:
     use: str
     name: str
     count: int
+    units: int
     length: float | None
     mass: float
     volume: float
@@ -319,7 +320,7 @@ def shipped_of(
 
 def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
     """Return the total of the shipping list."""
-    names = ("count", "mass", "volume", "missing_masses", "missing_volumes")
+    names = ("count", "units", "mass", "volume", "missing_masses", "missing_volumes")
     sums = {name: sum(getattr(one, name) for one in shipped) for name in names}
     return ShippedComponent(use="", name="Total", length=None, **sums)
 
@@ -341,11 +342,6 @@ def volume_of(component: Component, length: float | None) -> float | None:
     return component.displaced_volume
 
 
-def _missing(group: Sequence[InventoryItem], values: Sequence[float | None]) -> int:
-    """Count the items without a value."""
-    return sum(one.items for one, value in zip(group, values, strict=True) if value is None)
-
-
 def _shipped_component(
     use: str, group: Sequence[InventoryItem], components: dict[tuple[int, str], Component]
 ) -> ShippedComponent:
@@ -355,10 +351,11 @@ def _shipped_component(
     return ShippedComponent(
         use=use,
         name=group[0].name or use,
-        count=sum(one.items for one in group),
+        count=len(group),
+        units=sum(one.items for one in group),
         length=sum(one for one in lengths if one is not None) if lengths else None,
         mass=sum(one for one in masses if one is not None),
         volume=sum(one for one in volumes if one is not None),
-        missing_masses=_missing(group, masses),
-        missing_volumes=_missing(group, volumes),
+        missing_masses=masses.count(None),
+        missing_volumes=volumes.count(None),
     )

@@ -9,14 +9,14 @@ import numpy as np
 
 from calm.case.leg_result import LegResult
 from calm.drop.chain import BarChain
-from calm.drop.fall import UNMOVED, Motion
+from calm.drop.fall import Motion
 from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
-from calm.files.pieces import clamps_in
+from calm.files.pieces import clamps_in, holds_instrument
 from calm.physics.line import Floats, Integers
 
-REPORTED_ROLES = ("float", "instrument", "release")
-"""Roles of pieces and clamps for which the depth during the drop is reported."""
+OVERSHOOT = 0.05
+"""Depth below the final position [m] from which a part is reported to go deeper during the drop."""
 MOMENTS = 5
 """Number of shapes from release to touchdown; the shape at rest is additional."""
 
@@ -25,30 +25,31 @@ MOMENTS = 5
 class DepthReached:
     """Largest depth of a piece or clamp while the line falls and settles.
 
+    Depths are at the upper end of a piece, as in all tables. The rating is compared with the depth
+    of the deeper end, as in the design check.
+
     Attributes
     ----------
     part : the piece or clamp
-    rest : depth of its lower end at rest [m]
-    greatest : the largest depth of its lower end [m]
-    time : time at which it is reached, after the release of the anchor [s]
+    rest : depth of its upper end at rest [m]
+    greatest : the largest depth of its upper end [m]
+    time : time at which it is reached, after the release of the anchor [s]; None if it exceeds the
+        depth at rest by no more than `OVERSHOOT`
     rating : its depth rating [m]; None if unknown
+    beyond : whether its deeper end exceeds the rating
     """
 
     part: Piece | Clamp
     rest: float
     greatest: float
-    time: float
+    time: float | None
     rating: float | None
+    beyond: bool
 
     @property
     def label(self) -> str:
         """Label of the piece or clamp."""
         return self.part.label
-
-    @property
-    def beyond(self) -> bool:
-        """Whether the piece or clamp exceeds its depth rating."""
-        return self.rating is not None and self.greatest > self.rating
 
 
 @dataclass(frozen=True)
@@ -168,31 +169,35 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """Return the largest depths of floats, instruments and releases, from release to rest."""
+    """Return the largest depths of floats, and of parts that hold an instrument, from release to
+    rest.
+    """
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
-    depth = np.array([_depths(chain, state) for state in states])
-    greatest = depth.max(axis=0)
-    # at rest, depths differ by rounding only: the first of them counts
-    deepest = (depth >= greatest - UNMOVED * drop.mover.sea.water.depth).argmax(axis=0)
+    upper, deeper = np.array([_depths(chain, state) for state in states]).swapaxes(0, 1)
+    greatest, deepest_of_all = upper.max(axis=0), deeper.max(axis=0)
+    when = upper.argmax(axis=0)
     return tuple(
         DepthReached(
             part=part,
-            rest=float(depth[-1, i]),
+            rest=float(upper[-1, i]),
             greatest=float(greatest[i]),
-            time=states[deepest[i]].time,
-            rating=part.component.depth_rating,
+            time=states[when[i]].time if greatest[i] > upper[-1, i] + OVERSHOOT else None,
+            rating=(rating := part.component.depth_rating),
+            beyond=rating is not None and float(deepest_of_all[i]) > rating,
         )
         for i, part in enumerate(parts)
-        if part.component.role in REPORTED_ROLES
+        if part.component.role == "float" or holds_instrument(part)
     )
 
 
-def _depths(chain: BarChain, state: ChainState) -> Floats:
-    """Return the depths of the deeper end of every piece, and of every clamp [m]."""
-    upper, lower = piece_ends(chain, state)
-    clamps = place_of(state, chain.clamp_bar, chain.clamp_place)
-    return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
+def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
+    """Return the depths of the upper and of the deeper end of every piece; both of a clamp are its
+    depth [m].
+    """
+    upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
+    clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
+    return np.append(upper, clamps), np.append(np.maximum(upper, lower), clamps)
 
 
 def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:

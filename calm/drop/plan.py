@@ -75,8 +75,8 @@ class DropPlan:
     start : start of the run, with the float deployed first; None without a deck time
     anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False if it is that of a cube,
         since the file has no value
-    path, moments, depths, pulls : time series; shapes; depths of floats, instruments and releases,
-        empty if the line settles away from its equilibrium; tensions of pieces
+    path, moments, depths, pulls : time series; shapes; depths of floats and of parts that hold an
+        instrument, empty if the line settles away from its equilibrium; tensions of pieces
     rest_difference : largest distance of a piece at rest from its equilibrium position; None
         if the line is slack in still water and has no unique equilibrium
     """
@@ -176,6 +176,7 @@ class DropPlan:
                     "greatest": each.greatest,
                     "time": each.time,
                     "depth_rating": each.rating,
+                    "beyond_rating": each.beyond,
                 }
                 for each in self.depths
             ],

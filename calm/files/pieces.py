@@ -157,6 +157,24 @@ class Piece:
         return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
 
 
+def holds_instrument(part: Piece | Clamp) -> bool:
+    """Return whether a part is an instrument or a release, or holds one, such as a float with an
+    ADCP.
+
+    A part of another role holds an instrument if it has a limit of tilt, a calibration, a sampling
+    scheme or a battery. So does a float with a serial number; those of cables, chains, connecting
+    hardware and anchors identify the part itself.
+    """
+    component, own = part.component, part.equipment
+    data = (component.max_tilt, component.warn_tilt, own.calibrated, own.sampling,
+            own.battery_until)  # fmt: skip
+    return (
+        component.role in ("instrument", "release")
+        or any(one is not None for one in data)
+        or (component.role == "float" and bool(part.serials))
+    )
+
+
 def _serial(equipment: Equipment) -> str | None:
     return ", ".join(equipment.serials) or None
 

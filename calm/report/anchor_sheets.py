@@ -17,6 +17,7 @@ from calm.checks.finding import State, grouped_by
 from calm.drawing.graph import Axes, Graph, LegendEntry, Scale, Stroke, covering, to_one_scale
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
+from calm.files.pieces import holds_instrument
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report import blocks
@@ -31,7 +32,10 @@ if TYPE_CHECKING:
 _ROWS = 6
 """Number of rows in the table of the anchor's descent."""
 _DEEPER = 0.5
-"""Extra depth during the descent, relative to equilibrium, above which a float is listed [m]."""
+"""Extra depth during the descent, relative to equilibrium, above which a mere float is listed [m].
+"""
+_REPRESENTED = 0.02
+"""Share of the fall time from which the fall speed is drawn: before, inertia limits it."""
 
 
 def drop_part(plan: DropPlan) -> ReportPart:
@@ -58,12 +62,7 @@ def _instructions(plan: DropPlan) -> Prose:
         f"Steam towards {bearing_text(plan.course)} true at {speed} over the ground, and pay out "
         "the line, float first."
     ]
-    if plan.start is None:
-        sentences.append(
-            "Set `deck_time` (handling time per piece) in the `document` of the file to compute "
-            "where the run starts."
-        )
-    else:
+    if plan.start is not None:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
         start = _distance(abs(plan.start.distance))
         sentences.append(
@@ -138,7 +137,7 @@ def _depths_table(plan: DropPlan) -> list[Table]:
     listed = [
         each
         for each in plan.depths
-        if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
+        if holds_instrument(each.part) or each.beyond or each.greatest > each.rest + _DEEPER
     ]
     # components of equal rating share a row; those that sink below their rating are separate
     runs = grouped_by(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
@@ -146,20 +145,25 @@ def _depths_table(plan: DropPlan) -> list[Table]:
     depth = QUANTITIES["depth"]
 
     def label(row: tuple[DepthReached, Sequence[DepthReached]]) -> str:
-        return row[0].label + (f", of {len(row[1])}" if len(row[1]) > 1 else "")
+        return row[0].label + (f" (deepest of {len(row[1])})" if len(row[1]) > 1 else "")
 
     def greatest(row: tuple[DepthReached, Sequence[DepthReached]]) -> Cell:
         beyond = any(one.beyond for one in row[1])
-        return Cell(depth.format(row[0].greatest), state=State.FAIL if beyond else None)
+        deepest = row[0].rest if row[0].time is None else row[0].greatest
+        return Cell(depth.format(deepest), state=State.FAIL if beyond else None)
+
+    def after(row: tuple[DepthReached, Sequence[DepthReached]]) -> str:
+        return "at rest" if row[0].time is None else f"after {row[0].time:.0f} s"
 
     table = table_of(
         "Depths during the drop",
         rows,
-        blocks.words("piece or clamp (deepest of each component)", label),
+        blocks.words("piece or clamp", label),
         number("maximum depth", greatest, depth.display_unit),
-        number("after", lambda row: f"{row[0].time:.0f}", "s"),
+        number("reached", after),
         quantity("depth", lambda row: row[0].rest, "at rest"),
         quantity("depth", lambda row: row[1][0].rating, "rated to"),
+        note="Depths are at the upper end of a part; a rating is exceeded if the deeper end does.",
     )
     return [table] if listed else []
 
@@ -246,11 +250,12 @@ def _draw_speed(
     page: Graph, place: tuple[float, float, float, float], plan: DropPlan, down: Scale
 ) -> None:
     path = plan.path
-    fastest = float(np.max(path.anchor_speed[path.time > 0.02 * path.time[-1]]))
+    drawn = path.time > _REPRESENTED * path.time[-1]
+    fastest = float(np.max(path.anchor_speed[drawn]))
     axes = page.axes(*place, Scale(0.0, 1.1 * fastest), down, clipped=True)
-    axes.line(path.anchor_speed[1:], path.anchor_depth[1:], Stroke("#111111", 1.2))
-    for share in (0.25, 0.5, 0.75):
-        time = share * path.time[-1]
+    axes.line(path.anchor_speed[drawn], path.anchor_depth[drawn], Stroke("#111111", 1.2))
+    falling = [one.time for one in plan.moments if 0.0 < one.time < path.time[-1]]
+    for time in falling:
         at = float(np.interp(time, path.time, path.anchor_depth))
         value = float(np.interp(time, path.time, path.anchor_speed))
         axes.mark(value, at, "o", 3.0, "#111111")

@@ -40,6 +40,7 @@ from calm.report.blocks import (
     table_of,
     words,
 )
+from calm.report.check_tables import component_text
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
     FIGURE_FIELDS,
@@ -310,12 +311,14 @@ def _inventory(signed: SignedMooring) -> Table:
         return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
-        return "Total" if group is items else group[0].name or group[0].use
+        if group is items:
+            return "Total"
+        return component_text(group[0].name or group[0].use, group[0].items)
 
     return table_of(
         "Inventory",
         grouped_by(items, lambda one: one.use).values(),
-        number("Pieces", lambda group: sum(one.items for one in group)),
+        number("Pieces", len),
         words("Component", name, 1.6),
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9

@@ -112,6 +112,13 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
     )
 
 
+def component_text(name: str, units: int) -> str:
+    """Format the name of a component, with its number of units if it has several, such as a pair of
+    releases.
+    """
+    return f"{name}, {units} units each" if units > 1 else name
+
+
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """Tabulate number and quantity of each component, with an empty column for spares."""
     note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
@@ -125,10 +132,15 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
         "Inventory",
         grouped_by(items, lambda item: item.use).values(),
         words(
-            "component", lambda group: "Total" if group is items else group[0].name or group[0].use
+            "component",
+            lambda group: (
+                "Total"
+                if group is items
+                else component_text(group[0].name or group[0].use, group[0].items)
+            ),
         ),
         words("id", lambda each: None if each is items else each[0].use),
-        number("pieces", lambda group: sum(item.items for item in group)),
+        number("pieces", len),
         *map(summed, ("cut_length", "dry_mass", "wet_weight")),
         blocks.blank("spares"),
         note=note,

@@ -108,7 +108,7 @@ _COLUMNS = {
     """,
     "hardware": "kind use name count length[m] spares total basis",
     "shipping": """
-        use name count length[m] mass[kg]=known_mass volume[m^3]=known_volume missing_masses
+        use name count units length[m] mass[kg]=known_mass volume[m^3]=known_volume missing_masses
         missing_volumes
     """,
     "lifts": "stage= index label lift_mass[kg]=mass lift_weight[N]=weight hanging[N]",

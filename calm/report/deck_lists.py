@@ -7,11 +7,11 @@ from typing import Any
 from calm.checks.finding import OWN, environment_text
 from calm.deck import Deck
 from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, printed_rows
-from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
+from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, ShippedComponent, all_shipped
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Note, ReportPart, number, quantity, table_of, words
-from calm.report.check_tables import named
+from calm.report.check_tables import component_text, named
 from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
@@ -30,11 +30,31 @@ _BOX = "☐"
 
 def cutting_part(deck: Deck) -> ReportPart:
     """Build the cutting list: lengths, marks, and their tolerances."""
+    note = (
+        "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
+        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: that"
+        f"{' of the leg' if deck.result.several else ''} if only this piece is {_SHARE} longer, "
+        f"in the {environment_text(deck.environment)}; + is deeper."
+    )
+    cables = [one for one in deck.cuts if not one.is_chain]
+    chains = [one for one in deck.cuts if one.is_chain]
+    drum = " Over side, onto drum: sequence numbers; the last piece deployed is spooled first."
+    tables = [
+        *([_cut_table("Wires and ropes", "wire or rope", deck, cables)] if cables else []),
+        *([_cut_table("Chains", "chain", deck, chains)] if chains else []),
+    ]
+    note += drum if cables else ""
+    return ReportPart("Cutting and marking list", (*tables, Note((note,))))
+
+
+def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blocks.Table:
+    """Tabulate pieces to cut, with their marks; only wires and ropes have columns for the drum."""
+    spooled = not listed[0].is_chain
     rows: list[Any] = []
     kinds = {one.label: one for one in deck.parts}
     clusters = {one.label: row.cluster for row in printed_rows(deck.parts) for one in row.items}
     legs, above = leg_titles(deck.result), ""
-    for _, alike in groupby(deck.cuts, lambda one: clusters.get(one.item.label) or id(one)):
+    for _, alike in groupby(listed, lambda one: clusters.get(one.item.label) or id(one)):
         cuts = [*alike]
         leg = deck.leg(cuts[0].item.index)
         rows += [Cell(legs[leg], strong=True)] if leg != above else []
@@ -43,29 +63,22 @@ def cutting_part(deck: Deck) -> ReportPart:
         for _, marks in groupby(cuts[0].marks, lambda one: kinds[one.label].kind):
             rows.append((Cell(_marked(marks, kinds), indented=True), *[""] * 7, _BOX))
     unit = QUANTITIES["length"].display_unit
-    note = (
-        "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
-        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: change in the top "
-        f"depth{' of the leg' if deck.result.several else ''} if only this piece is {_SHARE} "
-        f"longer, in the {environment_text(deck.environment)}. Over side, onto drum: "
-        "sequence numbers; the last piece deployed is spooled first."
-    )
-    table = table_of(
-        "Wires and ropes",
+    return table_of(
+        title,
         rows,
-        words("wire or rope, marks below", 0, 2.4),
+        words(f"{piece}, marks below", 0, 2.4),
         number("length", 1, unit),
         number("tolerance", 2, unit),
-        number("top deeper", 3, unit),
+        number("change in\ntop depth", 3, unit),
         words("terminations", 4, 0.9),
-        number("over side", 5),
-        number("onto drum", 6),
-        words("drum", 7, 0.5),
+        *(
+            (number("over side", 5), number("onto drum", 6), words("drum", 7, 0.5))
+            if spooled
+            else ()
+        ),
         words("done", 8, 0.0),
-        note=note,
         by_hand=True,
     )
-    return ReportPart("Cutting and marking list", (table,))
 
 
 def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
@@ -73,9 +86,9 @@ def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
     cut, last, length = cuts[0], cuts[-1], QUANTITIES["length"]
     many = f"{len(cuts)} × " if len(cuts) > 1 else ""
     load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
-    effect = "-" if cut.effect is None else f"{cut.effect * length.scale:+.2f}"
+    effect = "-" if cut.effect is None else f"{round(cut.effect * length.scale, 2) + 0.0:+.2f}"
     over, onto = (
-        "–".join(dict.fromkeys((str(one), str(other))))
+        "" if one is None else "–".join(dict.fromkeys((str(one), str(other))))
         for one, other in ((cut.over, last.over), (cut.onto, last.onto))
     )
     label = label_of_run([one.item for one in cuts])
@@ -144,10 +157,13 @@ def shipping_part(deck: Deck) -> ReportPart:
 
         return number(heading, cell, shown.display_unit)
 
+    def name(one: ShippedComponent) -> str:
+        return component_text(one.name, one.units // one.count) if one.use else one.name
+
     table = table_of(
         "",
         deck.shipped,
-        words("component", "name", 1.6),
+        words("component", name, 1.6),
         words("id", "use"),
         number("pieces", "count"),
         _length(),
@@ -168,19 +184,21 @@ def lifts_part(deck: Deck) -> ReportPart:
     """Build the table of lifts, the stages of deployment and recovery."""
     sentences, heaviest, unknown = [], deck.lifts.heaviest, deck.lifts.unknown
     if heaviest is not None:
+        of_known = " of known mass" if unknown else ""
         sentences.append(
-            f"Heaviest single lift: {heaviest.label}, {say('lift_mass', heaviest.mass)} in air, "
+            f"Heaviest single lift{of_known}: {heaviest.label}, "
+            f"{say('lift_mass', heaviest.mass)} in air, "
             f"{say('wet_weight', heaviest.weight)} in water."
         )
-    if unknown:
-        labels = named(unknown, len(unknown))
-        sentences.append(f"This is a lower bound: the mass in air of {labels} is unknown.")
     greatest = max(deck.lifts.deployment, key=lambda one: one.hanging or 0.0, default=None)
     if greatest is not None and (greatest.hanging or 0.0) > 0.0:
         sentences.append(
             f"Maximum suspended load: {say('wet_weight', greatest.hanging)} in water, with "
             f"{greatest.label} over the side."
         )
+    if unknown:
+        labels = named(unknown, len(unknown))
+        sentences.append(f"Unknown mass in air, so lifts in air without a value: {labels}.")
     note = (
         "In air: crane load of the piece with its clamps; cables are paid out instead. Suspended: "
         "weight in water of all pieces over the side, hanging vertically; in a net, of the leg "
@@ -208,8 +226,8 @@ def _stages(deck: Deck) -> blocks.Table:
 
 
 def instruments_part(deck: Deck) -> ReportPart:
-    """Build the instrument sheet: every instrument and release, its depth, and its data from the
-    file.
+    """Build the instrument sheet: every instrument, float or frame that holds one, and release, its
+    depth, and its data from the file.
     """
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
     planned = any(one.item.planned_depth is not None for one in deck.instruments)

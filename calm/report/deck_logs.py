@@ -177,9 +177,15 @@ def _numbers(row: DeckRow, deck: Deck) -> str:
     return run_of([deck.numbers[one.label] for one in (*row.items, *row.floats, *row.joints)])
 
 
-def _piece(row: DeckRow) -> Cell:
+def _piece(row: DeckRow, order: Order = Order.ANCHOR_LAST) -> Cell:
+    """Format label and name of a row, with its connecting hardware.
+
+    Hardware follows the item; the end of a piece is stated if clamps are listed in between.
+    """
     joints = hardware_text(row.joints)
     detail = f"{row.name}; with {joints}" if joints else row.name
+    if joints and row.is_followed_by_clamps:
+        detail += f" at the {'lower' if order is Order.ANCHOR_LAST else 'upper'} end"
     return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
@@ -224,7 +230,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
     unit, deep = QUANTITIES["length"].display_unit, QUANTITIES["depth"].display_unit
     fields = (
         number("no.", lambda row: _numbers(row, deck)),
-        words("piece", _piece, 3.8),
+        words("piece", lambda row: _piece(row, deck.order), 3.8),
         words("length,\nor position", length, 1.3, unit=unit),
         *([quantity("depth", "first.depth"), number("planned", plan, deep)] if planned else []),
         words("serial\nnumber", "first.serial", 0.7),

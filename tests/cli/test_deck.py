@@ -169,9 +169,13 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
     roles = ", ".join(f"{role}: 3 min" for role in ("float", "instrument", "release", "line"))
     timed = text.replace("author: A. Nobody", f"author: A. Nobody, deck_time: {{{roles}}}")
     for written, words in ((text, ()), (timed, given)):
-        out, _ = deck(written, *words)
+        out, said = deck(written, *words)
         plans.append(json.loads((out / "plan.json").read_text()))
-        assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
+        sheets = "".join(pages_of((out / "deck.pdf").read_bytes())[0])
+        assert packed("Anchor drop plan") in sheets
+        # how to use the program is for the screen, not for the bridge
+        assert "deck_time" not in sheets
+        assert ("set `deck_time`" in said) == (written is text)
     assert [plan["ship_speed"] for plan in plans] == [1.0, 1.5]
     assert [plan["course"] for plan in plans] == [270.0, 90.0]
     # eastward from the west; degrees at 48° on WGS 84: 74 625 and 111 190 m

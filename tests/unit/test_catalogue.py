@@ -148,6 +148,14 @@ def test_tilt_limits_of_the_families(
     }
 
 
+def test_floats_with_an_adcp_have_the_tilt_limits_of_one(catalogue: Catalogue) -> None:
+    # the limits also make them instruments on the sheets of the deck
+    for id, found in catalogue.all().items():
+        name = found.name or ""
+        if found.role == "float" and "ADCP" in name and not name.endswith("bracket"):
+            assert (found.warn_tilt, found.max_tilt) == (15.0, 20.0), id
+
+
 def test_the_rules_of_catalog_check_find_nothing(catalogue: Catalogue) -> None:
     assert check_catalogue(catalogue.all(), catalogue.ids()) == []
 

@@ -310,16 +310,34 @@ def test_what_floats_cannot_be_streamed_less_far(loaded):
         drop_plan(mooring, ship_speed=2.0, streamed=30.0, fineness=FEW)
 
 
-def test_rounding_at_rest_does_not_move_the_time_of_the_greatest_depth(loaded):
-    mooring = loaded(SHORT)
-    _, drop, rest = dropped(mooring, fineness=FEW)
-    last = rest.states[-1]
-    later = replace(last, time=2.0 * last.time, node=last.node - [0.0, 0.0, 1e-11])
-    longer = replace(rest, states=(*rest.states, later))
-    pieces = mooring.file.pieces
-    first, again = (depths_of(pieces, drop, each) for each in (rest, longer))
-    assert len(first) > 0
-    assert [one.time for one in again] == [one.time for one in first]
+def test_a_greatest_depth_has_a_time_only_if_it_exceeds_the_depth_at_rest(loaded):
+    for length, lower in ((60.0, False), (90.0, True)):
+        mooring = loaded(SHORT.replace("60 m", f"{length} m"))
+        _, drop, rest = dropped(mooring, fineness=FEW)
+        last = rest.states[-1]
+        # the depths of a line at rest differ by rounding, which must not look like a maximum
+        later = replace(last, time=2.0 * last.time, node=last.node - [0.0, 0.0, 1e-11])
+        longer = replace(rest, states=(*rest.states, later))
+        for each in (rest, longer):
+            (ball,) = depths_of(mooring.file.pieces, drop, each)
+            # at the upper end: the ball is 0.8 m long
+            assert ball.rest == pytest.approx(100.0 - length - 0.8, abs=1e-6)
+            if lower:
+                assert ball.greatest > ball.rest + 1.0
+                assert ball.time is not None and 0.0 < ball.time < last.time
+            else:
+                assert ball.rest <= ball.greatest < ball.rest + 0.05
+                assert ball.time is None
+
+
+def test_a_rating_is_compared_with_the_deeper_end(loaded):
+    for rating, beyond in (("39.5 m", True), ("40.5 m", False)):
+        mooring = loaded(
+            SHORT.replace("{kind: sphere,", f"{{kind: sphere, depth_rating: {rating},")
+        )
+        _, drop, rest = dropped(mooring, fineness=FEW)
+        (ball,) = depths_of(mooring.file.pieces, drop, rest)
+        assert ball.beyond is beyond
 
 
 @pytest.mark.thorough

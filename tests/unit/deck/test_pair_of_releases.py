@@ -7,6 +7,7 @@ from calm.checks.design_check import check
 from calm.deck import deck_of
 from calm.drawing.schematic.deck_parts import parts_of_deck
 from calm.report.check_tables import inventory_table
+from calm.report.deck_lists import shipping_part
 from calm.report.deck_logs import deployment_part, recovery_part
 
 MOORING = """\
@@ -58,10 +59,13 @@ def test_without_numbers_each_release_has_a_row_to_fill_in(deck_with):
     assert releases(deployment_part(deck_with(""))) == [("", "releases pair", "")] * 2
 
 
-def test_the_inventory_counts_two_pieces(deck_with):
+def test_a_pair_is_one_piece_of_two_units(deck_with):
     deck = deck_with(", serial: [1729, 1730]")
     (shipped,) = [one for one in deck.shipped if one.use == "release-ar861-double"]
-    assert shipped.count == 2 and shipped.mass == 60.0
+    assert (shipped.count, shipped.units, shipped.mass) == (1, 2, 60.0)
+    (table,) = shipping_part(deck).blocks
+    (packed,) = [row for row in table.rows if row[1].text == "release-ar861-double"]
+    assert packed[0].text == "Paired Oceano AR861, 2 units each" and packed[2].text == "1"
     rows = inventory_table(check(deck.result.design).inventory).rows
     (row,) = [row for row in rows if row[1].text == "release-ar861-double"]
-    assert row[2].text == "2"
+    assert row[0].text == packed[0].text and row[2].text == "1"

@@ -9,11 +9,14 @@ import calm
 from calm.deck import Deck, deck_of
 from calm.deck.deck_items import Order, hardware_text, printed_rows
 from calm.deck.hardware import Stock, all_shipped
-from calm.drop import drop_plan
+from calm.drop import DropPlan, drop_plan
 from calm.drop.fall import Fineness
+from calm.files.pieces import holds_instrument
 from calm.quantities import show_in
+from calm.report.anchor_sheets import drop_part
 from calm.report.deck_lists import cutting_part, hardware_part, lifts_part, shipping_part
 from calm.report.deck_logs import deployment_part
+from calm.shipped import shipped_folder
 
 MOORING = """\
 name: Sheets
@@ -253,7 +256,84 @@ def test_instruments_in_all_environments(moorings, deck):
     # still water leaves the line upright: the clamp is as far below the top as its lengths say
     above = 1.0 + sum(one.stretched for one in deck.parts[1:4]) + 20.0
     assert high.still == pytest.approx(top + above, abs=0.1)
-    assert [one.item.label for one in deck.instruments] == ["high", "low", "release"]
+    # the floats have serial numbers; so has a shackle, which is hardware all the same
+    floats = [f"glass {n}" for n in (1, 2, 3)]
+    assert [one.item.label for one in deck.instruments] == [
+        "top float", "high", "low", *floats, "release",
+    ]  # fmt: skip
+
+
+def test_parts_that_hold_an_instrument_are_instruments(tmp_path):
+    own = {
+        "ball, label: top float, serial: T1": "ball, label: top float",
+        "pack, count: 3, serial: [a, b, c], label: glass": "float-45in-lr75, label: ADCP",
+        "use: rope, length: 50 m": "use: rope, serial: R1, length: 50 m",
+        "{use: ring-22-102}": "{use: ring-22-102, sampling: every 10 s, label: load cell}",
+    }
+    text = MOORING.replace("mass: 800 kg}\nenv", "mass: 800 kg, serial: W1}\nenv")
+    for old, new in own.items():
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    text = text.replace("800 kg", "3000 kg")
+    (tmp_path / "m.yaml").write_text(text)
+    sheets = deck_of([calm.load(tmp_path / "m.yaml")])
+    held = ["load cell", "high", "low", "ADCP", "release"]
+    assert [one.item.label for one in sheets.instruments] == held
+    assert [row.label for row in printed_rows(sheets.deployment)][:3] == [
+        "top float", "load cell", "shackle-16",
+    ]  # fmt: skip
+    # the drop reports the same parts, and the float
+    assert isinstance(sheets.plan, DropPlan)
+    assert {one.label for one in sheets.plan.depths} == {*held, "top float"}
+    listed = [row[0].text for row in drop_part(sheets.plan).blocks[-1].rows]
+    assert {"load cell", "ADCP", "release", "low (deepest of 2)"} <= {*listed}
+
+
+def test_the_float_of_an_adcp_is_an_instrument():
+    line = calm.load(shipped_folder("lines") / "upward-adcp-300m.yaml")
+    held = [part.label for part in line.file.pieces if holds_instrument(part)]
+    assert held[:2] == ["ADCP float", "meter 500 m"]
+    assert not {"four wheels", "swivel", "wire 1"} & {*held}
+
+
+def test_hardware_below_a_wire_is_in_the_row_of_the_wire(tmp_path):
+    text = MOORING.replace("  - {use: pack,", "  - {use: shackle-13}\n  - {use: pack,")
+    (tmp_path / "m.yaml").write_text(text)
+    line = calm.load(tmp_path / "m.yaml")
+    for order, end, joint in (
+        (Order.ANCHOR_LAST, "lower", "13 mm shackle"),
+        (Order.ANCHOR_FIRST, "upper", ""),
+    ):
+        sheets = deck_of([line], order)
+        rows = {row.label: row for row in printed_rows(sheets.deployment)}
+        assert hardware_text(rows["wire"].joints) == joint
+        assert not rows["high"].joints and not rows["low"].joints
+        log = repr(deployment_part(sheets))
+        assert (f"wire; with 13 mm shackle at the {end} end" in log) == bool(joint)
+    # without its serial number, the shackle above the wire is hardware of the wire, anchor first
+    (tmp_path / "m.yaml").write_text(text.replace("shackle-16, serial: 4", "shackle-16"))
+    sheets = deck_of([calm.load(tmp_path / "m.yaml")], Order.ANCHOR_FIRST)
+    log = repr(deployment_part(sheets))
+    assert "wire; with 16 mm shackle, 7/8 in ring, 13 mm shackle at the upper end" in log
+    # the diagram draws it where it is, below the clamps
+    drawn = [row.label for row in printed_rows(sheets.parts, drawn=True) if row.joints]
+    assert "low" in drawn
+
+
+def test_every_chain_is_cut_and_none_is_spooled(tmp_path):
+    chain = "  - {use: chain-short-g30-13, length: 5 m, label: chain}\n  - {use: weight"
+    text = MOORING.replace("  - {use: weight", chain)
+    (tmp_path / "m.yaml").write_text(text)
+    sheets = deck_of([calm.load(tmp_path / "m.yaml")])
+    assert [(one.item.label, one.over, one.onto) for one in sheets.cuts] == [
+        ("wire", 1, 2), ("rope", 2, 1), ("chain", None, None),
+    ]  # fmt: skip
+    assert sheets.cuts[-1].length == 5.0 and sheets.cuts[-1].effect is not None
+    tables = cutting_part(sheets).blocks[:2]
+    assert [table.title for table in tables] == ["Wires and ropes", "Chains"]
+    assert [row[0].text for row in tables[1].rows] == ["chain"]
+    heads = [[column.heading for column in table.columns] for table in tables]
+    assert "onto drum" in heads[0] and "onto drum" not in heads[1]
 
 
 def test_lists_and_logs_are_in_the_units_chosen(deck):

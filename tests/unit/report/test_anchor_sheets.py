@@ -24,3 +24,7 @@ def test_the_drop_is_drawn_to_one_scale_with_every_moment_named():
         (path.anchor_x[-1] - path.anchor_x[0]) / (path.anchor_depth[-1] - path.anchor_depth[0]),
         abs=2e-3,
     )
+    # the first moments, in which inertia limits the speed, are not drawn; nothing runs off the axis
+    ((speeds, _),) = curves_of(svg, "#111111")
+    assert len(speeds) > 50
+    assert speeds[:, 0].max() < 502.0  # the right edge of the axes [pt]
