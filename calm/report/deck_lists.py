@@ -32,8 +32,8 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Build the cutting list: lengths, marks, and their tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
-        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: that"
-        f"{' of the leg' if deck.result.several else ''} if only this piece is {_SHARE} longer, "
+        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: effect "
+        f"{'on the leg ' if deck.result.several else ''}if only this piece is {_SHARE} longer, "
         f"in the {environment_text(deck.environment)}; + is deeper."
     )
     cables = [one for one in deck.cuts if not one.is_chain]
