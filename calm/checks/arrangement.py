@@ -16,7 +16,7 @@ from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
 from calm.checks.assessment import Handling
 from calm.checks.criterion import JudgedPart, parts_of
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
+from calm.checks.finding import Lack, State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
@@ -411,4 +411,6 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{load}; its breaking load is {say('load', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return verdict_on(part, State.NOT_JUDGED, f"{load}; its `grip` is unknown.", value=pull)
+    message = f"{load}; its `grip` is unknown."
+    not_judged = verdict_on(part, State.NOT_JUDGED, message, value=pull)
+    return replace(not_judged, lacks=Lack(part.label, "grip"))

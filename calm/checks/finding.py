@@ -206,6 +206,11 @@ class Verdict:
         return -self.state.severity, inf if used is None else -used
 
 
+def no_capacity(verdict: Verdict) -> bool:
+    """Return whether the maximum of a verdict is below zero: other loads use up the capacity."""
+    return verdict.sense == "<=" and verdict.limit is not None and verdict.limit < 0.0
+
+
 def percent_used(utilisation: float) -> float:
     """Return a utilisation in whole percent, rounded up, so that any value above the limit exceeds
     100 %; may be infinite.

@@ -77,7 +77,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     else:
         part = handling.leg.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
-        where = "between that break and the release"
+        where = f"between a break below {worst.label} and the release"
     if not breaks and len(handling.losses) == 1:
         message = f"{handling.losses[0].label} provides all the buoyancy, so there is no back-up."
         remedy = "Use several floats if the line must surface after the loss of one."

@@ -349,11 +349,11 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         load = f"The horizontal anchor load is {say('load', result.anchor_load.horizontal)}"
         if weight is None:
             return f"{load}; {_UNKNOWN_WEIGHT}.", _SET_WEIGHT
-        return (
-            f"{load}; a friction coefficient of {friction:.4g}{down} holds "
-            f"{say('load', max(held(result), 0.0))}.",
-            _heavier(leg, result.anchor_load.required_weight),
-        )
+        holding = held(result)
+        holds = f"a friction coefficient of {friction:.4g}{down} holds {say('load', holding)}"
+        if holding < 0.0:
+            holds = "the vertical load lifts the anchor, with its factor: no holding"
+        return f"{load}; {holds}.", _heavier(leg, result.anchor_load.required_weight)
 
     yield Criterion(
         pieces_of(leg)[-1],

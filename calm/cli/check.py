@@ -71,7 +71,8 @@ def check(
         Write every finding into the JSON and checks.csv, for every piece and situation.
     missing
         Instead of the findings, print a block of YAML to complete: the missing values
-        of each component, with the rules that need them.
+        of each component, with the rules that need them. Estimated values, and masses in air, are
+        listed as comments.
     output
         Write the block of --missing to this file.
     allow_unknown
@@ -218,11 +219,13 @@ def _write_missing(
     found = [one for each in assessments for one in each.all_findings()]
     for message in dict.fromkeys(one.message for one in found if one.rule == "equilibrium"):
         narrate(message)
-    block = missing_block(found, definition_places(paths))
+    parts = [one for each in assessments for one in each.inventory]
+    block = missing_block(found, definition_places(paths), parts)
     if output is None:
         show(block)
     else:
-        save(output, block.encode())
+        only_comments = all(line.startswith("#") for line in block.splitlines())
+        save(output, block.encode(), "; it has only comments" * only_comments)
 
 
 def _answer(

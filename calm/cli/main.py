@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import gc
 import os
+import re
 import sys
 import traceback
 import warnings
@@ -180,7 +181,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         narrate(f"calm: {complaint(error)}")
         return ExitCode.BAD_INPUT
     except CalmError as error:
-        narrate(f"calm: {error}")
+        # lines of a message after its first are indented
+        narrate(re.sub(r"^(?! )", "calm: ", str(error), flags=re.MULTILINE))
         return ExitCode.BAD_INPUT
     except KeyboardInterrupt:
         narrate("calm: interrupted")

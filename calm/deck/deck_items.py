@@ -17,6 +17,7 @@ from calm.files.pieces import holds_instrument
 from calm.quantities import QUANTITIES
 
 _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
+_SIZE = re.compile(r"\d[\d/.-]* (?:mm|in)\b")
 
 
 @dataclass(frozen=True)
@@ -78,9 +79,12 @@ class DeckItem:
 
     @property
     def hardware(self) -> str:
-        """Short name of a connector, such as `13 shackle`."""
+        """Short name of a connector, such as `13 mm shackle`, with the size of its full name."""
         sized = _SIZED.fullmatch(self.part.use)
-        return f"{sized[2]} {sized[1]}" if sized else self.name
+        if sized is None:
+            return self.name
+        named = _SIZE.match(self.name)
+        return f"{named[0] if named else f'{sized[2]} mm'} {sized[1]}"
 
     @property
     def is_rigid(self) -> bool:
@@ -200,7 +204,7 @@ class DeckRow:
 
 
 def hardware_text(joints: Iterable[DeckItem]) -> str:
-    """Describe connecting hardware, such as `2 × 13 shackle`; empty without hardware."""
+    """Describe connecting hardware, such as `2 × 13 mm shackle`; empty without hardware."""
     counts = Counter(one.hardware for one in joints)
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 

@@ -367,7 +367,14 @@ def choose_environment(
         return overlays[chosen].over(own), chosen
     if isinstance(chosen, str) and not _is_file_name(chosen):
         message = unknown(f"no environment is called `{chosen}`", chosen, overlays)
-        top.refuse(("environments",), message, key=True)
+        if variants is None and "environments" not in top.data:
+            message = (
+                f"the file has no named environments, so there is no `{chosen}`: add it under "
+                "`environments:`, or choose an environment file, such as storm.yaml"
+            )
+            top.refuse_at(0, 0, message)
+        else:
+            top.refuse(("environments",), message, key=True)
         return None
     path = Path(chosen)
     try:

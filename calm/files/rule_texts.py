@@ -142,7 +142,7 @@ RULES = {
         "`fishbite_depth`, 1000 m: a warning",
         "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more, far "
         "from the shores; the limits of water depth and latitude are defaults of CALM",
-        "ropes are bitten over months, not during one profile"),
+        "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
         "`maximum_knockdown`, if given",

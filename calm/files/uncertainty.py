@@ -14,7 +14,7 @@ MOST_DEVIATION = 0.25
 values.
 """
 _SHARE = QuantityField("number", at_least=0.0)
-_TOO_WIDE = "is above 25 %, the largest standard deviation; give a pair, the 5 and 95 % points"
+_TOO_WIDE = "above 25 %, the largest standard deviation; give a pair, the 5 and 95 % points"
 
 
 @dataclass(frozen=True)
@@ -56,18 +56,28 @@ class SpreadOf:
         return Spread(between=(low, high))
 
     def _deviation(self, value: object) -> float:
-        deviation = self.one.read(value)
+        deviation = self._read(self.one, value)
         if self.one is _SHARE and deviation > MOST_DEVIATION:
-            bare = isinstance(value, int | float) or "%" not in str(value)
-            suggestion = f"{value} %" if bare and deviation <= 100.0 * MOST_DEVIATION else None
-            raise QuantityError(_TOO_WIDE, suggestion)
+            if isinstance(value, str) and "%" in value:
+                raise QuantityError(f"is {_TOO_WIDE}")
+            suggestion = f"{value} %" if deviation <= 100.0 * MOST_DEVIATION else None
+            raise QuantityError(f"is a share of {100.0 * deviation:g} %, {_TOO_WIDE}", suggestion)
         return deviation
 
     def _end(self, value: object) -> float:
         try:
-            return self.end.read(value)
+            return self._read(self.end, value)
         except QuantityError as error:
             raise QuantityError(f"has an end, `{value}`, which {error}") from None
+
+    def _read(self, field: QuantityField, value: object) -> float:
+        try:
+            return field.read(value)
+        except QuantityError as error:
+            if self.one is not _SHARE or not error.is_other:
+                raise
+            needed = "a share of the value is needed, such as 0.4 % (5 m of 1250 m)"
+            raise QuantityError(str(error).replace("a plain number is needed", needed)) from None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)

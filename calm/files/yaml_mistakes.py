@@ -78,8 +78,12 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
         alike = above is not None and _indent(lines[above]) == _indent(lines[mark.line])
         if above is not None and alike and re.match(r"\s*[A-Za-z]\w*(?!.*: )", lines[above]):
             return _without_colon(lines, above)
-        where = f"the lines above it, which begin in line {begun.line + 1}"
-        return _at(mark, f"is indented neither like nor below {where}")
+        begin = f"line {begun.line + 1}, which begins this block"
+        others = f"{begin}, in column {begun.column + 1}"
+        if above is not None and above != begun.line:
+            others = f"line {above + 1} above in column {_indent(lines[above]) + 1}, and {others}"
+        message = f"starts in column {mark.column + 1}, but {others}"
+        return _at(mark, message)
     return None
 
 

@@ -34,8 +34,8 @@ from calm.report.page_one import (
     verdict_box,
 )
 
-_OTHER_KIND = ("fish-bite", "slack")
-"""Rules omitted from the matrix, since their limits are not loads, depths or angles."""
+_OTHER_KIND = ("slack",)
+"""Rules omitted from the matrix, since their utilisation is no share of a strength or a range."""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 

@@ -340,12 +340,14 @@ def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
         for one in assessment.in_environments
     }
+    every = (one.leg.file.environment.depth_range for one in assessment.in_environments)
+    tides = [*dict.fromkeys(one for one in every if one is not None)]
     waves = all(one.leg.file.environment.waves for one in assessment.in_environments)
     unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
     unseen = f"{plain('; '.join(unjudged))}.", "No utilisation in this report includes them."
     text = provenance.source_text(assessment.file)
     name = provenance.file_name(assessment.file)
-    limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters)
+    limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters, tides)
     beside = environment, blocks.Heading("Not covered"), Prose(unseen)
     yield Beside((limits,), beside, 0.62)
     yield from (history := [*_history(assessment.file)])
@@ -426,7 +428,7 @@ def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
 _MOST_LEVELS = 12
 
 
-def _environment(waters: dict[str, Water]) -> Table:
+def _environment(waters: dict[str, Water], tides: Sequence[tuple[float, float]]) -> Table:
     """Tabulate the current by level or, for several environments, the strongest current of each."""
     if len(waters) > 1:
         rows = []
@@ -441,7 +443,7 @@ def _environment(waters: dict[str, Water]) -> Table:
             quantity("speed", 1, "strongest current"),
             quantity("depth", 2, "at depth"),
             ruled=False,
-            note=_water_note(next(iter(waters.values()))),
+            note=_water_note(next(iter(waters.values())), tides),
         )
     (water,) = waters.values()
     count = len(water.level)
@@ -459,14 +461,17 @@ def _environment(waters: dict[str, Water]) -> Table:
         quantity("speed", 1),
         number("towards", 2, "°"),
         ruled=False,
-        note=note + _water_note(water),
+        note=note + _water_note(water, tides),
     )
 
 
-def _water_note(water: Water) -> str:
+def _water_note(water: Water, tides: Sequence[tuple[float, float]]) -> str:
     low, high = float(water.density.min()), float(water.density.max())
     density = f"{low:.1f}" if high - low < 0.05 else f"{low:.1f} to {high:.1f}"
-    return f"Density {density} kg/m³. Launch, rise and breaks are checked in environment 1."
+    levels = "; ".join(f"{say('depth', low)} to {say('depth', high)}" for low, high in tides)
+    depth = f"Water depth at low and high water {levels}. " if tides else ""
+    rest = "Launch, rise and breaks are checked in environment 1."
+    return f"{depth}Density {density} kg/m³. {rest}"
 
 
 def _history(file: MooringFile) -> Iterator[Table]:

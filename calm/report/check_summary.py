@@ -12,6 +12,8 @@ from textwrap import wrap
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import (
+    DEFAULT_ENVIRONMENT,
+    OWN,
     Conclusion,
     Finding,
     State,
@@ -121,12 +123,14 @@ def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
     """Describe a case in brief; later cases of the same environment do not repeat its name."""
     if case.situation in (STILL, STILL_LOW):
         return case.situation
-    own = "design current" if case.environment == "own" else case.environment
+    own = brief = case.environment
+    if own == OWN:
+        own, brief = DEFAULT_ENVIRONMENT, "default"
     if case.as_given:
         return short(own, 24)
     changed = {STRUMMING: "strumming", FOULED: "growth"}.get(case.situation, case.situation)
     named = any(one.as_given and one.environment == case.environment for one in cases)
-    return short(f"same, {changed}" if named else f"{own}, {changed}", 32)
+    return short(f"same, {changed}" if named else f"{brief}, {changed}", 32)
 
 
 def _checks(assessment: Assessment) -> Iterator[blocks.Block]:

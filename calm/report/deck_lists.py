@@ -32,9 +32,9 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Build the cutting list: lengths, marks, and their tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
-        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: change in the top "
-        f"depth{' of the leg' if deck.result.several else ''} if only this piece is {_SHARE} "
-        f"longer, in the {environment_text(deck.environment)}."
+        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: effect "
+        f"{'on the leg ' if deck.result.several else ''}if only this piece is {_SHARE} longer, "
+        f"in the {environment_text(deck.environment)}; + is deeper."
     )
     cables = [one for one in deck.cuts if not one.is_chain]
     chains = [one for one in deck.cuts if one.is_chain]
@@ -69,7 +69,7 @@ def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blo
         words(f"{piece}, marks below", 0, 2.4),
         number("length", 1, unit),
         number("tolerance", 2, unit),
-        number("top deeper", 3, unit),
+        number("change in\ntop depth", 3, unit),
         words("terminations", 4, 0.9),
         *(
             (number("over side", 5), number("onto drum", 6), words("drum", 7, 0.5))

@@ -14,7 +14,15 @@ import numpy as np
 from calm.case.leg_result import LegResult
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.checks.assessment import Assessment, estimated
-from calm.checks.finding import AS_GIVEN, OWN, Finding, State, governing, grouped_by
+from calm.checks.finding import (
+    AS_GIVEN,
+    DEFAULT_ENVIRONMENT,
+    OWN,
+    Finding,
+    State,
+    governing,
+    grouped_by,
+)
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING, case_of
 from calm.checks.strength import allowable_load
@@ -64,7 +72,7 @@ class LoadCase:
     @property
     def words(self) -> str:
         """Description of the load case."""
-        name = "Design current" if self.environment == OWN else self.environment
+        name = DEFAULT_ENVIRONMENT.capitalize() if self.environment == OWN else self.environment
         if self.situation in (STILL, STILL_LOW):
             return self.situation.capitalize()
         changed = {STRUMMING: "strumming, drag × 1.5", FOULED: "growth"}

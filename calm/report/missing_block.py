@@ -7,7 +7,8 @@ from pathlib import Path
 from textwrap import wrap
 
 from calm.checks.assess import RULES
-from calm.checks.finding import Finding, MissingFigure, grouped_by
+from calm.checks.finding import Finding, MissingFigure, State, grouped_by
+from calm.checks.inventory import InventoryItem
 from calm.checks.missing import alternatives
 from calm.files.components import KINDS
 from calm.files.yaml_document import read_document
@@ -16,6 +17,10 @@ from calm.report.check_tables import named
 _HEAD = """\
 # Values that calm check needs and the components lack. Write each value with its unit after its
 # colon; a key without a value stays unknown. calm build FILE, key f, asks for the same values.
+"""
+_OPTIONAL = """\
+# Optional values: no check is unknown without them. To set one, uncomment its key and its component
+# below `components:`. A published value replaces the estimate.
 """
 _WIDTH = 100
 
@@ -43,13 +48,20 @@ def definition_places(paths: Iterable[Path]) -> Places:
     return found
 
 
-def missing_block(findings: Iterable[Finding], places: Places) -> str:
+def missing_block(
+    findings: Iterable[Finding], places: Places, inventory: Iterable[InventoryItem] = ()
+) -> str:
     """Create the `components:` section of a mooring file, with the missing keys of each component.
 
     Comments name the pieces, give the place of a definition in the file, and for each key an
     example, its meaning, the checks that need it, and its class estimate if there is one. If a file
-    has a section `components:`, the block is made for it and has no heading of its own. If nothing
-    is missing, or nothing can be checked, the text is a comment only.
+    has a section `components:`, the block is made for it and has no heading of its own. Optional
+    keys follow as comments: see `_optional_values`. If nothing is missing, or
+    nothing can be checked, the text consists of comments only.
+
+    Parameters
+    ----------
+    inventory : pieces and clamps whose masses in air are also listed if unknown
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
@@ -57,20 +69,61 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
         return (
             "# The mooring has no equilibrium, so the values that its check lacks are not known.\n"
         )
+    optional = _optional_values(found, [*inventory])
     if not figures:
-        return "# No component lacks a value.\n"
+        return f"# No check is unknown for lack of a value.\n{optional}"
     ids = grouped_by(figures, lambda one: one.component_id)
     lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
     lines += [] if "" in places else ["components:"]
     for id, of_component in ids.items():
         labels = named(label for one in of_component for label in one.pieces)
-        plain = id if re.fullmatch(r"[A-Za-z][\w.-]*", id) else json.dumps(id, ensure_ascii=False)
         own = f"defined in {' and '.join(places[id])}" if id in places else ""
         comment = "; ".join(filter(None, (labels if labels != id else "", own)))
-        lines.append(f"  {plain}:{f'  # {comment}' if comment else ''}")
+        lines.append(f"  {_as_key(id)}:{f'  # {comment}' if comment else ''}")
         for same in grouped_by(of_component, lambda one: one.quantity).values():
             lines += _key(same)
-    return _HEAD + "\n".join(lines) + "\n"
+    return _HEAD + "\n".join(lines) + f"\n{optional}"
+
+
+def _optional_values(findings: Sequence[Finding], inventory: Sequence[InventoryItem]) -> str:
+    """List keys as comments: published values in place of estimates, values of checks that are not
+    judged without one, and masses in air; "" if there are none.
+    """
+    use = {one.label: one.use for one in inventory}
+    figures = [one.missing for one in findings if one.missing is not None]
+    missing = {(one.component_id, one.quantity) for one in figures}
+    found: list[tuple[str, str, str, str]] = []
+    for one in findings:
+        label = one.component or ""
+        id = use.get(label, label)
+        if one.state is State.ESTIMATED:
+            found += [
+                (id, each.quantity, f"estimated: {each.bounds_text}", label)
+                for each in one.estimates
+            ]
+        elif one.state is State.NOT_JUDGED and one.lacks is not None:
+            title = RULES[one.rule].title.lower()
+            found.append((id, one.lacks.quantity, f"without it, {title} is not judged", label))
+    weighed = (one for one in inventory if one.role != "anchor")
+    found += [
+        (one.use, "mass", "in air; the total mass is a lower bound without it", one.label)
+        for one in weighed
+        if one.dry_mass is None
+    ]
+    found = [one for one in found if one[:2] not in missing]
+    if not found:
+        return ""
+    lines = []
+    for id, of_component in grouped_by(found, lambda one: one[0]).items():
+        labels = named(dict.fromkeys(label for *_, label in of_component))
+        lines.append(f"#   {_as_key(id)}:{f'  # {labels}' if labels != id else ''}")
+        reasons = {key: reason for _, key, reason, _ in of_component}
+        lines += [f"#     {key}:  # {reason}" for key, reason in reasons.items()]
+    return f"#\n{_OPTIONAL}" + "\n".join(lines) + "\n"
+
+
+def _as_key(id: str) -> str:
+    return id if re.fullmatch(r"[A-Za-z][\w.-]*", id) else json.dumps(id, ensure_ascii=False)
 
 
 def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:

@@ -18,6 +18,7 @@ from calm.checks.finding import (
     conclusion_of,
     governing,
     grouped_by,
+    no_capacity,
     percent_used,
     worst_of,
 )
@@ -70,7 +71,9 @@ def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> 
 
 
 def limit_text(finding: Finding) -> str:
-    """Format the limit of a finding with ≤ or ≥."""
+    """Format the limit of a finding with ≤ or ≥; a maximum below zero as ``none left``."""
+    if no_capacity(finding):
+        return "none left"
     sign = {"<=": "≤\u00a0", ">=": "≥\u00a0"}.get(finding.sense or "", "")
     text = figure_text(finding, "limit")
     return sign + text if text else ""
@@ -102,8 +105,9 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
     Failures, unknowns and warnings have a common cause if they differ only in component and values;
-    estimates, if they concern the same component; acceptances, if they also have the same reason;
-    findings that are not judged, if they belong to the same rule.
+    estimates, if they concern the same component, unless a missing value of this component is an
+    item already; acceptances, if they also have the same reason; findings that are not judged, if
+    they belong to the same rule.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
@@ -122,6 +126,15 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
 
     found: list[list[Finding]] = []
     every = [*findings]
+    figures = [one.missing for one in every if one.missing is not None]
+    lacking = {(label, one.quantity) for one in figures for label in one.pieces}
+
+    def is_covered(finding: Finding) -> bool:
+        """Whether the item on the missing values of its component covers an estimated pass."""
+        own = {(finding.component, one.quantity) for one in finding.estimates}
+        return finding.state is State.ESTIMATED and own <= lacking
+
+    every = [one for one in every if not is_covered(one)]
     for state in OPEN:
         those = [one for one in every if one.state is state]
         if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
@@ -187,12 +200,18 @@ def open_items(assessment: Assessment, *, keys: bool = False) -> list[OpenItem]:
 
 def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
     worst = governing(group)
-    if worst.utilisation is None:  # the greatest value of its quantity
+    if worst.utilisation is None:  # the greatest value of its quantity, or the least of a minimum
         quantity = RULES[worst.rule].quantity
         alike = [one for one in group if RULES[one.rule].quantity == quantity]
-        worst = max(alike, key=lambda one: (one.state.severity, abs(one.value or 0.0)))
+        worst = max(alike, key=_extreme)
     text = plain(_item_text(group, worst), keys=keys)
     return OpenItem(worst.state, number, f"{_head(group, worst)}.", text)
+
+
+def _extreme(finding: Finding) -> tuple[int, float]:
+    """Return the sort key of a finding without a utilisation: state, then size of its value."""
+    size = abs(finding.value or 0.0)
+    return finding.state.severity, -size if finding.sense == ">=" else size
 
 
 def _head(group: Sequence[Finding], worst: Finding) -> str:
@@ -235,7 +254,7 @@ def _item_text(group: Sequence[Finding], worst: Finding) -> str:
             f"{one.quantity.replace('_', ' ')} is {one.bounds_text}" for one in worst.estimates
         )
         return f"{figures} Estimate: {'; '.join(titles)}. Obtain the manufacturer’s value."
-    if figures and worst.rule not in _EXPLAINED:
+    if figures and worst.rule not in _EXPLAINED and not no_capacity(worst):
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
 

@@ -212,7 +212,8 @@ class PlainTable:
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns
         ]
-        widths = [max((cell_len(one.plain) for one in lines), default=0) for lines in headings]
+        # an empty column of a rich table has a width of 1
+        widths = [max([1, *(cell_len(one.plain) for one in lines)]) for lines in headings]
         simple = True
         for cells, _ in self._rows:
             for number, cell in enumerate(cells):

@@ -296,13 +296,15 @@ def why(view: View, row: Place) -> list[VerdictLine]:
 
 def _finding_line(finding: Finding) -> VerdictLine:
     from calm.checks.assess import RULES
+    from calm.checks.finding import no_capacity
     from calm.report.open_items import percent_text
 
     text = f"{finding.message} {finding.remedy or ''}".rstrip()
     if finding.utilisation is not None:
         sign = "≤" if finding.sense == "<=" else "≥"
-        limit = say(RULES[finding.rule].quantity, finding.limit)
-        text = f"{percent_text(finding.utilisation)} % of {sign} {limit}. {text}"
+        of = f" of {sign} {say(RULES[finding.rule].quantity, finding.limit)}"
+        of = "; no capacity is left" if no_capacity(finding) else of
+        text = f"{percent_text(finding.utilisation)} %{of}. {text}"
     heading = f"{_title(finding)}{_situation(finding)}"
     return VerdictLine(text, heading, finding.state, places=_places([finding]))
 

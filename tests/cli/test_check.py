@@ -35,8 +35,10 @@ def test_what_a_person_reads(calm, write_mooring):
     lines = done.out.splitlines()
     assert lines[0].split() == ["Test", "sub-surface,", "100", "m", "of", "water"]
     assert lines[1].split()[:3] == ["INCOMPLETE", "6", "unknown,"]
-    order = ["load case", "1  design current", "0  still water", "case, where", "all other checks",
-             "Open items", "Not covered: waves"]  # fmt: skip
+    order = [
+        "load case", "1  default environment", "0  still water", "case, where", "all other checks",
+        "Open items", "Not covered: waves",
+    ]  # fmt: skip
     places = [next(at for at, line in enumerate(lines) if text in line) for text in order]
     assert places == sorted(places)
     told = " ".join(done.out.split())
@@ -266,7 +268,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
     [
         (("m.yaml", "m.yaml"), "given twice: m.yaml"),
         (("m.yaml", "--workers", "0"), "--workers: 0 is below 1"),
-        (("m.yaml", "--environment", "strom"), "no environment is called `strom`"),
+        (("m.yaml", "--environment", "strom"), "m.yaml: the file has no named environments"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "named storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),

@@ -29,6 +29,10 @@ OWN = """\
          inclination: insensitive, estimate: {quantity: working_load, value: 9 kN, low: 10 N,
          source: its chain}}
 """
+SPACER = """\
+  spacer: {kind: body, role: connector, length: 0.1 m, buoyancy: -5 N, kn: 1 N/(m/s)^2,
+           inclination: insensitive, working_load: 30 kN}
+"""
 CABLE = "{}: {{kind: cable, diameter: 8 mm, cn: 1.3, weight: 1.5 N/m, stiffness: 4 MN}}"
 CATALOGUE = """\
 sbe56-uwa: {kind: body, role: instrument, length: 0.2 m, buoyancy: -2 N, kn: 1 N/(m/s)^2,
@@ -119,6 +123,36 @@ def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
     block = yaml.safe_load(calm("check", *unknowns, "--missing").out)
     assert block["sbe56-uwa"] == {"depth_rating": None}
     assert block["link"] == {"working_load": None}
+
+
+def test_optional_values_are_listed_as_comments(calm, folder):
+    line = LINE.replace("  - {use: link, count: 2}\n", "  - {use: swivel-13}\n  - {use: spacer}\n")
+    (folder / "m.yaml").write_text(
+        f"{line.replace('sbe56-uwa', 'sbe37')}components:\n{SPACER}", encoding="utf-8"
+    )
+    done = calm("check", "m.yaml", "--missing", "-o", "block.yaml")
+    assert done.err.rstrip().endswith("block.yaml written; it has only comments")
+    block = (folder / "block.yaml").read_text(encoding="utf-8")
+    assert block.startswith("# No check is unknown for lack of a value.\n")
+    assert "#   swivel-13:\n#     working_load:  # estimated: at least 9.81 kN\n" in block
+    assert "#   spacer:\n#     mass:  # in air; the total mass is a lower bound" in block
+    assert "#   sbe37:  # sbe37 1 and 2\n#     grip:  # without it, clamp grip is not" in block
+    assert yaml.safe_load(block) is None
+    uncommented = "".join(f"{line[2:]}\n" for line in block.splitlines() if line.startswith("#   "))
+    assert yaml.safe_load(uncommented)["spacer"] == {"mass": None}
+
+
+def test_a_missing_value_is_not_also_optional(calm, folder):
+    """An estimate that suffices for the strength, but not in the launch."""
+    text = LINE.replace("  - {use: link, count: 2}\n", "  - {use: rcm11, label: meter}\n")
+    (folder / "m.yaml").write_text(text.replace("sbe56-uwa", "sbe37"), encoding="utf-8")
+    block = calm("check", "m.yaml", "--missing").out
+    assert yaml.safe_load(block) == {"components": {"rcm11": {"working_load": None}}}
+    assert block.count("working_load:") == 1
+    assert "#   rcm11:  # meter\n#     mass:" in block
+    shown = calm("check", "m.yaml").out
+    assert "? rcm11: working load estimate too low" in shown
+    assert "Meter: passes on an estimated value" not in shown
 
 
 @pytest.mark.parametrize(

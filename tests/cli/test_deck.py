@@ -237,7 +237,7 @@ def test_like_pieces_that_follow_one_another_are_one_row(deck):
     out, _ = deck(text)
     pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
     log = next(page for page in pages if "Orderovertheside" in page)
-    assert packed("1–5 float 1 – float 4 4 × ball; with 13 shackle") in log
+    assert packed("1–5 float 1 – float 4 4 × ball; with 13 mm shackle") in log
     assert packed("float 2") not in log
     over = [*csv.DictReader(io.StringIO((out / "deployment.csv").read_text()))]
     assert [row["label"] for row in over][:4] == ["float 1", "float 2", "float 3", "float 4"]

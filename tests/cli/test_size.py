@@ -85,7 +85,7 @@ def test_all_mistakes_at_once(calm, write_mooring, folder):
         "calm: --target: `2 m` is a length; an angle (deg, rad) is needed",
         "  tilt(rope) <= 2 m",
         "                ^",
-        "--change: no part of the line has the label `rop`; did you mean `rope`?",
+        "calm: --change: no part of the line has the label `rop`; did you mean `rope`?",
         "  rop.length",
         "  ^",
     ]

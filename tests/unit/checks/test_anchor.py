@@ -6,6 +6,7 @@ import calm
 from calm.checks.design_check import check
 from calm.checks.finding import State
 from calm.quantities import say
+from calm.report.open_items import limit_text, open_items
 
 FILE = """
 name: By hand
@@ -103,3 +104,14 @@ def test_every_rule_asks_for_the_one_weight_that_satisfies_all(tmp_path):
     assert f"at least {say('load', needed)} in water" in remedy
     heavier = judged(text.replace("weight: 2500 N", f"weight: {needed + 1.0:.0f} N"))
     assert {each.state for each in heavier} == {State.PASS}
+
+
+def test_an_anchor_without_holding_is_described_without_a_negative_limit(load):
+    assessment = check(load(", weight: 3000 N"))
+    findings = assessment.in_environments[0].findings
+    (slides,) = (one for one in findings if one.rule == "anchor-sliding")
+    assert slides.limit is not None and slides.limit < 0.0
+    assert "the vertical load lifts the anchor, with its factor: no holding" in slides.message
+    assert limit_text(slides) == "none left"
+    (item,) = (one for one in open_items(assessment) if one.head.startswith("Anchor sliding"))
+    assert "no holding" in item.text and "−" not in item.text

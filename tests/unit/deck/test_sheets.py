@@ -90,7 +90,7 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     ]
     assert told[:3] == [
         # the shackle with a serial number is a row of its own
-        ("top float", "ball", "13 shackle, 22 ring"),
+        ("top float", "ball", "13 mm shackle, 7/8 in ring"),
         ("shackle-16", deck.parts[3].name, ""),
         ("wire", "wire", ""),
     ]
@@ -105,10 +105,13 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     sheets = deck_of([calm.load(tmp_path / "m.yaml")])
     rows = {row.label: row for row in printed_rows(sheets.deployment)}
     cluster = rows["cluster"]
-    assert (cluster.name, hardware_text(cluster.joints)) == ("2 × pack", "13 shackle")
+    assert (cluster.name, hardware_text(cluster.joints)) == ("2 × pack", "13 mm shackle")
     assert len(_parts_of(rows["cluster"])) == 4
     (shared,) = (row for row in rows.values() if len(row.items) == 3)
-    assert (shared.name, hardware_text(shared.joints)) == ("3 × pack", "2 × 13 shackle, 16 shackle")
+    assert (shared.name, hardware_text(shared.joints)) == (
+        "3 × pack",
+        "2 × 13 mm shackle, 16 mm shackle",
+    )
     # nothing is lost, nothing counted twice; the other way round the same clusters
     for order in Order:
         listed = deck_of([sheets.result.design], order).deployment
@@ -298,7 +301,7 @@ def test_hardware_below_a_wire_is_in_the_row_of_the_wire(tmp_path):
     (tmp_path / "m.yaml").write_text(text)
     line = calm.load(tmp_path / "m.yaml")
     for order, end, joint in (
-        (Order.ANCHOR_LAST, "lower", "13 shackle"),
+        (Order.ANCHOR_LAST, "lower", "13 mm shackle"),
         (Order.ANCHOR_FIRST, "upper", ""),
     ):
         sheets = deck_of([line], order)
@@ -306,12 +309,12 @@ def test_hardware_below_a_wire_is_in_the_row_of_the_wire(tmp_path):
         assert hardware_text(rows["wire"].joints) == joint
         assert not rows["high"].joints and not rows["low"].joints
         log = repr(deployment_part(sheets))
-        assert (f"wire; with 13 shackle at the {end} end" in log) == bool(joint)
+        assert (f"wire; with 13 mm shackle at the {end} end" in log) == bool(joint)
     # without its serial number, the shackle above the wire is hardware of the wire, anchor first
     (tmp_path / "m.yaml").write_text(text.replace("shackle-16, serial: 4", "shackle-16"))
     sheets = deck_of([calm.load(tmp_path / "m.yaml")], Order.ANCHOR_FIRST)
     log = repr(deployment_part(sheets))
-    assert "wire; with 16 shackle, 22 ring, 13 shackle at the upper end" in log
+    assert "wire; with 16 mm shackle, 7/8 in ring, 13 mm shackle at the upper end" in log
     # the diagram draws it where it is, below the clamps
     drawn = [row.label for row in printed_rows(sheets.parts, drawn=True) if row.joints]
     assert "low" in drawn

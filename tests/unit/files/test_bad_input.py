@@ -397,13 +397,22 @@ ONE_MISTAKE = {
             "the 5 and 95 % points",
         ),
     ),
+    "deviation with a unit": (
+        GOOD + "uncertainty: {depth: 5 m}\n",
+        (
+            14,
+            22,
+            "`depth: 5 m` is a length; a share of the value is needed, such as 0.4 % (5 m of "
+            "1250 m)",
+        ),
+    ),
     "deviation without percent": (
         GOOD + "uncertainty: {length: 5}\n",
         (
             14,
             23,
-            "`length: 5` is above 25 %, the largest standard deviation; give a pair, "
-            "the 5 and 95 % points; did you mean `length: 5 %`?",
+            "`length: 5` is a share of 500 %, above 25 %, the largest standard deviation; give a "
+            "pair, the 5 and 95 % points; did you mean `length: 5 %`?",
         ),
     ),
     "deviation below nothing": (

@@ -195,7 +195,11 @@ REFUSED = {
     "a:\n  - {b: c}}": [(2, 11, "`}` closes nothing")],
     "a: 1\n  b: 2": [(2, 3, "is indented further than line 1, which has a value already")],
     "a:\n    b: 1\n  c: 2": [
-        (3, 3, "is indented neither like nor below the lines above it, which begin in line 1")
+        (
+            *(3, 3),
+            "starts in column 3, but line 2 above in column 5, and line 1, which begins this "
+            "block, in column 1",
+        )
     ],
     "-{use: a}": [(1, 1, "the dash of a list needs a blank behind it")],
     "a:\n\t- b\n\t- c": [(2, 1, TAB), (3, 1, TAB)],

@@ -277,7 +277,9 @@ def test_an_environment_that_is_not_there(mistakes: Mistakes) -> None:
     assert mistakes(VARIANTS, "calm") == [
         (14, 1, "no environment is called `calm`; allowed: shallow, storm")
     ]
-    assert mistakes(GOOD, "storm") == [(1, 1, "no environment is called `storm`")]
+    (without,) = mistakes(GOOD, "storm")
+    assert without[:2] == (0, 0)
+    assert without[2].startswith("the file has no named environments, so there is no `storm`: add")
 
 
 def test_an_environment_file(read: Read, tmp_path: Path) -> None:

@@ -202,7 +202,7 @@ def test_a_mooring_without_equilibrium_is_reported(assessment):
         findings=(),
     )
     text = Page(calm.report.html.page(check_report([mooring_section(failed)]))).text
-    assert "Design current: no equilibrium" in text
+    assert "Default environment: no equilibrium" in text
     assert "The mooring has no equilibrium" in text
     assert "Launch and recovery have no solution" in text
 
@@ -215,7 +215,7 @@ def test_one_environment_without_equilibrium_leaves_the_others(assessment):
             check_report([mooring_section(replace(assessment, in_environments=(fallen, *others)))])
         )
     ).text
-    assert "Design current: no equilibrium" in text and "Solid: case 2" in text
+    assert "Default environment: no equilibrium" in text and "Solid: case 2" in text
 
 
 def test_a_section_passes_between_processes(section):

@@ -184,7 +184,7 @@ def test_page_one_holds_what_is_signed(paper):
     first = paper("upward-adcp-300m")[0].text
     for words in (
         "Document M-2026-17", "Rev. B", "52° 18.000′ N, 014° 54.000′ W", "1800 m", "sub-surface",
-        "Passes by acceptance: No check fails", "Load cases", "1s Design current, strumming",
+        "Passes by acceptance: No check fails", "Load cases", "1s Default environment, strumming",
         "to scale, 1 :", "Open items", "Replace before signing", "Governing checks",
         "Drawn: A. Martin", "Checked: B. Li", "Approved", "waves, snap loads, fatigue",
         "wire 20 m longer (A. Martin)", "first issue (A. Martin)",
@@ -238,7 +238,7 @@ def test_the_sentence_names_what_is_beyond_its_limit_without_failing(assessments
     said = verdict_sentence(assessments("upward-adcp-300m"))
     assert said.startswith("No check fails, one warning (fish bite), one accepted exception")
     assert "strength in the launch of lower swivel 126\u00a0%" in said
-    assert "fish bite of parafil 1 112\u00a0%" in said
+    assert "fish bite of" not in said  # a rule with two states
 
 
 def test_keys_of_a_file_are_quoted_words_in_print_and_keys_on_a_terminal():

@@ -201,7 +201,7 @@ def test_what_governs_or_is_open_is_drawn_and_marked_in_a_row_of_its_own(signed)
     rows = {cell.text: (number.text, cell.detail) for _, number, cell, *_ in drawing.rows}
     assert rows["lower swivel"] == ("27", "Miller swivel C212")
     number, words = rows["back-up glass chain 1–3"]
-    assert number == "19–25" and "swivel" not in words and "with 4 × 13 shackle" in words
+    assert number == "19–25" and "swivel" not in words and "with 4 × 13 mm shackle" in words
     labels = re.findall(r">([^<>]+)</text>", mooring_picture(signed))
     assert "lower swivel ≈1" in labels and "back-up glass chain 1–3" in labels
 
@@ -253,6 +253,17 @@ def test_shares_among_the_limits_are_in_percent(signed):
     values = {row[0].text: row[1].text.replace("\u00a0", " ") for row in limits.rows}
     assert values["Planned depth limit"] == values["Backup margin"] == "10 %"
     assert values["Anchor friction"] == "0.6"
+
+
+def test_low_and_high_water_are_stated_with_the_environment(signed, tmp_path):
+    assert "Water depth at" not in table(basis_page(signed), "Environment").note
+    path = tmp_path / "tidal.yaml"
+    tidal = _SLOPE.replace(
+        "  depth: 1200 m\n", "  depth: 1200 m\n  depth_range: [1196 m, 1204 m]\n"
+    )
+    path.write_text(tidal, encoding="utf-8")
+    note = table(basis_page(signed_mooring(judged(path))), "Environment").note
+    assert "Water depth at low and high water 1196.0 m to 1204.0 m. Density" in note
 
 
 def test_the_counts_of_findings_name_the_open_items_of_page_one(signed):
