@@ -318,7 +318,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
     def field(name: str) -> str:
         return (getattr(given, name) if given else None) or ""
 
-    own = (field("revision"), field("date"), field("author"), "")
+    own = (field("revision"), field("date"), "", "")  # its author is named under "Drawn"
     history = [
         (one.revision or "", one.date or "", one.by or "", one.change or "")
         for one in (given.history if given else ())
