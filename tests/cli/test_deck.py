@@ -130,7 +130,7 @@ def test_everything_is_on_the_pages(deck, pieces, paper, size):
             assert words in text
         # two ends of one line carry the same mark
         goes_on = re.findall(r"continuesat([A-Z])", text)
-        assert goes_on == re.findall(r"from([A-Z])(?=\d\dshackle|pack|rope|joint)", text)
+        assert goes_on == re.findall(r"from([A-Z])(?=\d\dmmshackle|pack|rope|joint)", text)
         assert len(set(goes_on)) == len(goes_on) >= pieces // 40
     if blocks:
         assert packed("joint 1 swivel of a long name · no. J-0") in text
