@@ -118,6 +118,11 @@ def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
     }
 
 
+def mooring_in(title: str) -> str:
+    """Return the name of the mooring from the title of a file, NAME: CONTENTS."""
+    return title.rpartition(": ")[0] or title
+
+
 def archive_id(name: str, start: np.datetime64, product: str) -> str:
     """Return an `id` in the form of OceanSITES: site, month of the first time, product."""
     site = "".join(letter if letter.isalnum() else "-" for letter in name)

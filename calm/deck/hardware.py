@@ -247,10 +247,8 @@ def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
     ]
     names = Counter(tuple(sorted((base.use, noble.use))) for base, noble in contacts)
     for (one, other), count in names.items():
-        name, basis = (
-            f"isolator between {one} and {other}",
-            ("one for each contact of dissimilar metals"),
-        )
+        name = f"isolator between {one} and {other}"
+        basis = "one for each contact of dissimilar metals"
         yield Stock("isolators", "", name, count, basis=basis)
     for use, count in Counter({base.label: base.use for base, _ in contacts}.values()).items():
         basis = "one for each piece of the less noble metal"

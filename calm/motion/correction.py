@@ -21,6 +21,7 @@ from calm.dataset.discovery import (
     GCMD,
     archive_id,
     coverage,
+    mooring_in,
     with_flags,
     written,
 )
@@ -129,7 +130,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     if deployed is not None and deployed.position is not None:
         position = deployed.position
     place = () if position is None else (position.latitude, position.longitude)
-    name = str(layout.attributes["title"]).partition(": ")[0]
+    name = mooring_in(str(layout.attributes["title"]))
     made, *read = str(layout.attributes["history"]).split("\n")
     sources = "; ".join(filter(None, record.source.values()))
     made = f"{made.replace(' batch', ' motion')}: {sources}"

@@ -18,6 +18,7 @@ from calm.dataset.discovery import (
     archive_id,
     coverage,
     kept,
+    mooring_in,
     vertical_extent,
     written,
 )
@@ -354,8 +355,7 @@ def _archived(copy: Dataset, instruments: Instruments, result: Dataset) -> None:
 
 
 def _mooring(result: Dataset) -> str:
-    """Return the name of the mooring of a result."""
-    return str(result.attrs.get("title", "mooring")).partition(": ")[0]
+    return mooring_in(str(result.attrs.get("title", "mooring")))
 
 
 def _at_depths(copy: Dataset, depth: str, instruments: Instruments) -> None:

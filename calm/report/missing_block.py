@@ -56,8 +56,8 @@ def missing_block(
     Comments name the pieces, give the place of a definition in the file, and for each key an
     example, its meaning, the checks that need it, and its class estimate if there is one. If a file
     has a section `components:`, the block is made for it and has no heading of its own. Optional
-    keys follow as comments: see `_optional_values`. If nothing is missing, or
-    nothing can be checked, the text consists of comments only.
+    keys follow as comments. If nothing is missing, or nothing can be checked, the text consists of
+    comments only.
 
     Parameters
     ----------

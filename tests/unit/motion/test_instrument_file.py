@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray
 
+from calm.dataset.discovery import mooring_in
 from calm.errors import InputError, UsageError
 from calm.motion.instrument_file import read_instruments, write_depths
 from calm.motion.matching import LinePlaces
@@ -265,3 +266,8 @@ def test_a_folder_is_matched_as_a_whole(tmp_path):
     read, said = read_instruments(tmp_path, LINE)
     assert [one.point for one in read] == [(0,), (1,)]
     assert said == ["by nominal depths, in their order: a.nc is `upper`; b.nc is `middle`"]
+
+
+@pytest.mark.parametrize("name", ["North", "Strait: north", ""])
+def test_a_name_may_hold_a_colon(name):
+    assert mooring_in(f"{name}: where its parts were" if name else "record") == (name or "record")
