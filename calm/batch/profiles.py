@@ -26,7 +26,7 @@ from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
 from calm.files import Clamp, CurrentTable, Piece
 from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
-from calm.physics.line import Floats, Integers, Water
+from calm.physics.line import Floats, Integers, Line, Water
 from calm.records.given import as_file, is_record
 from calm.solve import Status
 from calm.solve.audit import referee_of
@@ -241,8 +241,19 @@ class Batch:
         if self.mooring.several:
             measured = self._solve_together(current, workers)
         else:
-            measured = self._solve_alone(self.mooring.moored, current, workers)
+            measured, _ = self._solve_alone(self.mooring.moored, current, workers)
         return measured if shape == measured.status.shape else _shaped(measured, shape)
+
+    def slopes(self, u: Floats, v: Floats, depth: Floats) -> tuple[Profiles, Floats]:
+        """Solve profiles (n, k) of a moored line on one thread, with derivatives by the current.
+
+        Returns
+        -------
+        The profiles, and (n, m + p, 2 k) derivatives of the depths of clamps and components by u
+        and by v of every level [s], NaN without an equilibrium.
+        """
+        _, current = _checked(u, v, depth, None)
+        return self._solve_alone(self.mooring.moored, current, 1, 2 * current[1].shape[1])
 
     def _solve_together(self, current: tuple[Floats, ...], workers: int | None) -> Profiles:
         status = np.zeros(len(current[1]), np.int8)
@@ -250,13 +261,12 @@ class Batch:
         columns: dict[str, Any] = self._net.solve(current, status, workers or processors())
         return Profiles.made(self.mooring.file.pieces, status, columns)
 
-    def _solve_alone(self, leg: Leg, current: tuple[Floats, ...], workers: int | None) -> Profiles:
-        line, count = leg.line, len(current[1])
-        rows = Results(
-            np.full((count, len(OF_PIECE), len(line.length)), np.nan),
-            np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
-            np.full((count, len(OF_ENDS)), np.nan),
-        )
+    def _solve_alone(
+        self, leg: Leg, current: tuple[Floats, ...], workers: int | None, columns: int = 0
+    ) -> tuple[Profiles, Floats]:
+        """Return the profiles, and the derivatives of the depths by so many current components."""
+        count = len(current[1])
+        rows = unsolved(leg.line, count, columns)
         status = np.zeros(count, np.int8)
 
         def solve(block: slice) -> None:
@@ -270,7 +280,17 @@ class Batch:
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
-        return _measured(leg, rows, status)
+        anchored = len(clamps_down(leg.file.pieces[-1:]))
+        clamps = rows.clamps.shape[2]
+        return _measured(leg, rows, status), np.concatenate(
+            [
+                rows.slopes[:, :clamps],
+                np.zeros((count, anchored, columns)),
+                rows.slopes[:, clamps:],
+                np.zeros((count, 1, columns)),
+            ],
+            axis=1,
+        )
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
         """Return whether each profile (n,) has a level with an impossible speed, or deeper than any
@@ -302,13 +322,9 @@ class Batch:
     def _starts(self) -> Floats:
         """Return the start values of the search for every profile of a line."""
         leg = self.mooring.moored
-        line, none = leg.line, np.zeros((0, 1))
-        rows = Results(
-            np.zeros((0, len(OF_PIECE), len(line.length))),
-            np.zeros((0, len(OF_CLAMP), len(line.clamp_piece))),
-            np.zeros((0, len(OF_ENDS))),
-        )
+        none = np.zeros((0, 1))
         current = np.zeros((1, 1)), none, none, none
+        rows = unsolved(leg.line, 0)
         return self._march(leg, current, rows, np.zeros(0, np.intp), MANY_ROOM, None)
 
     def _solve_rows(
@@ -361,11 +377,24 @@ class Batch:
         arrays = ProfileArrays(
             on=on,
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.intp),
+            depths=np.zeros((3, len(line.clamp_piece) + len(line.length))),
         )
         find = by_address(run_search, SearchTask(search, referee))
         given = (find, search, referee, arrays, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
         return np.asarray(found)
+
+
+def unsolved(line: Line, count: int, columns: int = 0) -> Results:
+    """Return empty rows of results for a line, with slopes by so many current components."""
+    pieces, clamps = len(line.length), len(line.clamp_piece)
+    shapes = [
+        (count, len(OF_PIECE), pieces),
+        (count, len(OF_CLAMP), clamps),
+        (count, len(OF_ENDS)),
+        (count, clamps + pieces if columns else 0, columns),
+    ]
+    return Results(*(np.full(shape, np.nan) for shape in shapes))
 
 
 def processors() -> int:
@@ -423,7 +452,7 @@ def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
     """Build the results of the profiles, with the anchor, and with the knockdown relative to the
     shape in still water.
     """
-    pieces, clamps, ends = rows
+    pieces, clamps, ends, _ = rows
     above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)
     clamp_depth = np.full(clamps.shape[-1], np.nan)

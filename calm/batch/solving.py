@@ -13,10 +13,23 @@ import numpy as np
 from calm.physics.compiled import record_type, set_row
 from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
+from calm.physics.passing import NODES as MARCHED
 from calm.physics.profile import Interval, Sea, find_bends
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.mooring import FIRST_OTHER, HANGING, NODES, SHARE_IN_USE, SOUGHT, SearchTask
-from calm.solve.problem import BELOW, FINE, Limits, LineProblem, Search
+from calm.solve.mooring import (
+    FIRST_OTHER,
+    GOAL,
+    HANGING,
+    LANDS,
+    NODES,
+    RIDES,
+    SHARE_IN_USE,
+    SOUGHT,
+    STAGES,
+    UNKNOWN_VALUE,
+    SearchTask,
+)
+from calm.solve.problem import BELOW, CHOSEN, FINE, About, Limits, LineProblem, Search, Unknown
 from calm.solve.search import Referee
 from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
 
@@ -35,12 +48,23 @@ segments for the work arrays.
 """
 
 
+SLOPE_STEP = 0.001
+"""Change in a current component for its slopes [m/s]."""
+NUDGE = 1e-4
+"""Change in the unknown of a line for its slopes, as a share of its range."""
+
+
 class Results(NamedTuple):
-    """Rows of results, one per profile: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6)."""
+    """Rows of results, one per profile: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6).
+
+    `slopes` (n, m + p, 2 k) are derivatives of the depths of clamps and pieces by u and v of the
+    levels [s], or (n, 0, 0) if not required.
+    """
 
     pieces: Floats
     clamps: Floats
     ends: Floats
+    slopes: Floats
 
 
 class ProfileLevels(NamedTuple):
@@ -82,10 +106,13 @@ class ProfileArrays(NamedTuple):
     Attributes
     ----------
     may_lie : whether a piece of a sub-surface line may lie on the seabed
+    depths : (3, m + p) depths of clamps and pieces, their derivatives by the unknown, and depths in
+        a changed current
     """
 
     on: ProfileLevels
     may_lie: Integers
+    depths: Floats
 
 
 def solve_rows(
@@ -127,6 +154,9 @@ def solve_rows(
             if lies_on_seabed(problem, arrays):
                 endings[case] = LIES_ON_SEABED
             measure(problem, referee, arrays, results, case)
+            if results.slopes.size > 0:
+                own = Search(search.miss, problem)
+                measure_slopes(find, own, referee, arrays, depth, u, v, w, results.slopes, case)
 
 
 def sea_of(
@@ -203,7 +233,7 @@ def measure(
     found, record = problem.work.found, problem.work.records[FINE]
     nodes = int(found[NODES])
     find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
-    pieces, _, ends = results
+    pieces, _, ends, _ = results
     head = referee.moored.head
     for p in range(len(referee.first)):
         x, y, z, fx, fy, fz = node_of(record, nodes, referee.first[p])
@@ -238,6 +268,78 @@ def lean_of_head(
         return
     for p in range(head):
         results.pieces[case, TILT, p] = tilt_of(dx, dy, dz)
+
+
+def measure_slopes(
+    find: Callable[[SearchTask, float], float],
+    search: Search,
+    referee: Referee,
+    arrays: ProfileArrays,
+    depth: Floats,
+    u: Floats,
+    v: Floats,
+    w: Floats,
+    slopes: Floats,
+    case: int,
+) -> None:
+    """Write the derivatives of the depths by the current components to the row of a solved profile.
+
+    For a step of each component the line is marched once, on the same segments and from the same
+    unknown. By the implicit function theorem, the unknown then moves by the change in the miss over
+    the slope of the miss. With several floats at the surface, the search is repeated instead.
+    """
+    problem, found, row = search.problem, search.problem.work.found, slopes[case]
+    unknown = Unknown(
+        found[GOAL], int(found[SOUGHT]), found[RIDES] > 0.0, found[LANDS] > 0.0, int(found[STAGES])
+    )
+    at_once, step, x = unknown.sought <= 0, problem.limits.angle_step, found[UNKNOWN_VALUE]
+    base, moved, ahead = arrays.depths[0], arrays.depths[1], arrays.depths[2]
+    missed, slope = 0.0, -1.0
+    if at_once:
+        nudge = NUDGE * (problem.limits.span if unknown.sought == BELOW else 1.0)
+        about = About(problem, unknown, step, CHOSEN, True, FINE)
+        above = search.miss(about, x - nudge)
+        depths_of(problem, referee, True, moved)
+        missed = search.miss(about, x)
+        depths_of(problem, referee, True, base)
+        slope = (missed - above) / nudge
+        for n in range(base.size):
+            moved[n] = (base[n] - moved[n]) / nudge
+    else:
+        depths_of(problem, referee, False, base)
+    levels = u.shape[1]
+    for column in range(2 * levels):
+        flow, k = (u, column) if column < levels else (v, column - levels)
+        kept = flow[case, k]
+        flow[case, k] = kept + SLOPE_STEP
+        ending, sea = sea_of(arrays.on, depth, u, v, w, case, problem.sea)
+        flow[case, k] = kept
+        near, change = in_current(problem, arrays.on, sea), nan
+        if ending == FOUND and at_once:
+            about = About(near, unknown, step, CHOSEN, True, FINE)
+            change = (missed - search.miss(about, x)) / slope
+        elif ending == FOUND:
+            again = int(find(SearchTask(Search(search.miss, near), referee), 0.0))
+            change = 0.0 if again == FOUND else nan
+        depths_of(near, referee, at_once, ahead)
+        for n in range(base.size):
+            shift = change * moved[n] if at_once else change
+            row[n, column] = (ahead[n] + shift - base[n]) / SLOPE_STEP
+
+
+def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Floats) -> None:
+    """Write the depths of clamps and pieces (m + p,), as marched last, or extrapolated."""
+    record, work = problem.work.records[FINE], problem.work
+    nodes = int(work.left[MARCHED] if marched else work.found[NODES])
+    height, row = (2 if marched else BETTER + 2), 0
+    for n in range(1, nodes):
+        if record[7][n] >= 0.0:
+            depths[row] = -record[height][n - 1]
+            row += 1
+    find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
+    for p in range(len(referee.first)):
+        depths[row] = -record[height][referee.first[p]]
+        row += 1
 
 
 def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:

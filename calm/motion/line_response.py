@@ -52,10 +52,14 @@ class LineResponse:
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
         """Return depths and slopes for factors of the currents, given as logarithms (n, g)."""
-        there = self.depths(read, logs)
-        own = [self.depths(read, logs + ahead) for ahead in STEP * np.eye(self.groups)]
+        factor = np.exp(logs[:, self.group])
+        u, v = read.u * factor, read.v * factor
+        there, slopes = self.forward.slopes(read.level, u, v)
+        by_u, by_v = np.split(slopes, 2, axis=2)
+        each = by_u * u[:, None] + by_v * v[:, None]  # by the logarithm of the speed of each level
+        own = np.nan_to_num(each) @ np.eye(self.groups)[self.group]
         common = [self.depths(read, logs, forward) for forward in self.shifted.values()]
-        return Linear(logs, there, _slopes(own, there), _slopes(common, there))
+        return Linear(logs, there, own, _slopes(common, there))
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
@@ -120,6 +124,16 @@ class Forward:
         depth, u, v : see `solve`
         """
         return points(self.solve(depth, u, v))
+
+    def slopes(self, depth: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return (n, p) depths of the points [m], and (n, p, 2 k) derivatives by u, then v [s].
+
+        Parameters
+        ----------
+        depth, u, v : see `solve`
+        """
+        profiles, slopes = self._batch.slopes(u, v, depth)
+        return points(profiles), slopes
 
 
 def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:

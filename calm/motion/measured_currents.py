@@ -33,8 +33,8 @@ TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
 """Maximum number of Gauss-Newton steps, the change in depth that ends them [m], and the steps after
 which the factors are updated.
 """
-SLOPE_STEP = 0.05
-"""Step for numerical slopes: of a current [m/s], and of the logarithm of a factor."""
+FACTOR_STEP = 0.05
+"""Step of the logarithm of a factor for its slopes, and change above which slopes are renewed."""
 STALE = 0.03
 """Change in a current above which its slopes are renewed [m/s]."""
 LONGEST = 0.5
@@ -294,28 +294,30 @@ class CurrentSmoother:
     def linear(self) -> Floats:
         """Return (n, p) depths at the state, and renew the slopes at times with a large change."""
         now, factor = self.state[:, self.columns.current], self.factor
-        there = self.depths(now, factor, slice(None))
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
-        far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
+        far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
+        if self._there is None:
+            self._there = np.empty((len(now), len(self.still)))
+            near = np.flatnonzero(~far)
+            self._there[near] = self.depths(now[near], factor, near)
         times = np.flatnonzero(far)
         for start in range(0, len(times), BLOCK):
             part = times[start : start + BLOCK]
-            self.slope[part] = self._slopes(there[part], now[part], factor, part)
+            self._there[part], self.slope[part] = self._with_slopes(now[part], factor, part)
         if len(times):
             self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
-        return there
+        return self._there
 
-    def _slopes(
-        self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
-    ) -> Floats:
-        """Return (n, p, 2 K + f) derivatives of depths by currents and logarithms of factors."""
-        n, flows = state.shape
-        ahead = (state[:, None] + SLOPE_STEP * np.eye(flows)).reshape(-1, flows)
-        by_flow = self.depths(ahead, factor, np.repeat(times, flows)).reshape(n, flows, -1)
-        steps = SLOPE_STEP * np.eye(len(factor))
-        by_factor = [self.depths(state, factor + step, times)[:, None] for step in steps]
-        moved = np.concatenate([by_flow, *by_factor], axis=1).transpose(0, 2, 1)
-        return np.nan_to_num((moved - there[:, :, None]) / SLOPE_STEP)
+    def _with_slopes(
+        self, state: Floats, factor: Floats, times: NDArray[np.int64]
+    ) -> tuple[Floats, Floats]:
+        """Return depths, and (n, p, 2 K + f) derivatives by currents and logarithms of factors."""
+        flow = self.knot_depth[times], *self.currents(state)
+        there, slopes = self.forward(factor).slopes(*flow)
+        steps = FACTOR_STEP * np.eye(len(factor))
+        ahead = [self.forward(factor + step).depths(*flow) for step in steps]
+        by_factor = [(one - there)[:, :, None] / FACTOR_STEP for one in ahead]
+        return there, np.nan_to_num(np.concatenate([slopes, *by_factor], axis=2))
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
@@ -436,6 +438,7 @@ class CurrentSmoother:
         for sensor, time, size in slips:
             self.stepped[time, 1 + sensor] = 0.5 * (self.stepped[time, 1 + sensor] + size**2)
         before = np.full((len(self.measured.time), len(self.still)), np.inf)
+        self._there: Floats | None = None
         for turn in range(TURNS):
             there = self.linear()
             if turn == 0:
@@ -480,6 +483,7 @@ class CurrentSmoother:
         self.common_covariance = np.asarray(covariance, np.float64)
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
+        self._there = None
         # drag times the square of the speed fits the pressures
         drag = 2.0 * METERS_ALIKE * np.array([name.endswith("_drag") for name in self.names])
         self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
@@ -560,12 +564,14 @@ class CurrentSmoother:
             self.stepped[0] = 0.0
         moving = self.state[:, at.current]
         now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
+        step = now[:, at.current] - moving
         self.state = now
-        there = self.depths(now[:, at.current], self.factor, slice(None))
         on_line = one.level_point != FREE
-        hung = there[:, one.level_point[on_line]]
+        hung = there + np.einsum("npq,nq->np", slope[:, :, at.current], step)
+        hung = hung[:, one.level_point[on_line]]
         self.levels[:, on_line] = np.where(np.isfinite(hung), hung, self.levels[:, on_line])
         self.knot_depth = self.knots.at(self.levels)
+        self._there = there = self.depths(now[:, at.current], self.factor, slice(None))
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
         beside = np.r_[at.share, at.factor]
@@ -655,8 +661,8 @@ class CurrentSmoother:
         spread = np.concatenate([each.covariance for each in blocks])[times]
         flow = slice(0, now.shape[1])
         part = one.at(times)
-        there = self.depths(now, factor, times)
-        slope = self._slopes(there, now, factor, times)[:, one.point]
+        there, slopes = self._with_slopes(now, factor, times)
+        slope = slopes[:, one.point]
         current, factors = slope[:, :, flow], slope[:, :, flow.stop :]
         good = np.isfinite(there).all(axis=1)
         by_currents = current @ spread @ current.transpose(0, 2, 1)

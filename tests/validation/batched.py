@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from calm.batch.profiles import Batch, Profiles
+from calm.batch.profiles import Batch, Profiles, unsolved
 from calm.batch.solving import OF_CLAMP, OF_ENDS, OF_PIECE, Results
 from calm.batch.statuses import STATUSES, status_of
 from calm.case import Design
@@ -106,11 +106,7 @@ def _batch(line: Line, water: Water, settings: Settings) -> Batch:
 def _solved(batch: Batch, water: Water, shares: tuple[float, ...]) -> tuple[Results, Integers]:
     line, count = batch.mooring.line, len(shares)
     current = [np.outer(shares, column) for column in (water.u, water.v, water.w)]
-    rows = Results(
-        np.full((count, len(OF_PIECE), len(line.length)), np.nan),
-        np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
-        np.full((count, len(OF_ENDS)), np.nan),
-    )
+    rows = unsolved(line, count)
     endings = np.zeros(count, np.int64)
     mooring: Any = batch.mooring
     batch._solve_rows(mooring, (water.level[None].copy(), *current), rows, endings, MANY_ROOM)
