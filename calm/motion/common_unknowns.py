@@ -112,7 +112,7 @@ def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
         lower = lower if below[lower] >= REACH else one
         apart = still[lower] - still[upper]
         result[:, j] = (depth[:, lower] - depth[:, upper]) / apart if apart > 0.0 else 1.0
-    return result
+    return np.nan_to_num(result, nan=1.0)
 
 
 LONGEST_MEMORY = 25
@@ -185,6 +185,8 @@ class LinearLaw:
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
+MISHUNG = -1
+"""Code of a sensor that hangs elsewhere throughout, in place of a time."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
 """Codes of drifts, in place of a time, with the share of the record over which they last."""
 
@@ -194,7 +196,7 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
     Parameters
     ----------
-    code : 0 for an offset throughout, the time of a slip, or a code of `RAMPS`
+    code : 0 for a wrong zero, the time of a slip, `MISHUNG`, or a code of `RAMPS`
     fall : (n,) change in its depth per metre of displacement along the line
     share : (n,) elapsed share of the record at each time, 0 to 1
     """
@@ -210,7 +212,7 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
     """
     if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
-    return float(np.log(SLIPPED / times if code else MISPLACED)), ELSEWHERE
+    return float(np.log(SLIPPED / times if code > 0 else MISPLACED / 2.0)), ELSEWHERE
 
 
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
@@ -274,5 +276,3 @@ TIDE = 1.0
 RESIDUAL_TIDE = 0.15
 NOISE = 0.2
 """Deviation of a depth from pressure at one time [m]."""
-SPIKE, SPIKES = 30.0, 1e-5
-"""Deviation of a spike in depth [m], and the probability of a spike."""

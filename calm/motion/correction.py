@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,18 +28,16 @@ from calm.dataset.discovery import (
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
 from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
-from calm.motion.estimate import estimated
 from calm.motion.line_response import (
     Forward,
     LineResponse,
-    filled,
     forwards_of,
     labels_of,
     points,
 )
 from calm.motion.matching import serials_of
 from calm.motion.measured_currents import CurrentSmoother
-from calm.motion.measurements import FREE, MooringMeasurements, by_neighbours, level_names
+from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import Fault
 from calm.motion.unknown_currents import unknown_state
 from calm.physics.line import Floats
@@ -240,10 +238,10 @@ class Task:
         if smoother is None:
             moments = LineResponse(one, *self.forwards)
             state = unknown_state(moments, self.common)
-            beside = self._neighbours[0][times], self._neighbours[1][times]
-            found = estimated(moments, self.common, state, beside)
+            found, factor = state.found, np.exp(state.found.logs)
             forward, offset = moments.forward, self.common.offset
-            depth, deviation, read = found.depth, found.deviation, found.likely
+            depth, deviation = found.depth, np.sqrt(found.variance)
+            read = replace(state.read, u=factor * state.read.u, v=factor * state.read.v)
             surface = self.common.datum + found.sea
         else:
             forward, offset = smoother.best, smoother.offset[times]
@@ -277,21 +275,13 @@ class Task:
             columns |= {
                 "current_factor": smoother.current_factor[times] * known,
                 "current_doubt": smoother.doubt[times] * known[:, None],
-                "plain_depth": plain(self._alone, one)[:, one.point],
+                "plain_depth": smoother.plain[times][:, one.point],
             }
         return profiles, columns
 
     @cached_property
     def forwards(self) -> tuple[Forward, dict[str, Forward]]:
         return forwards_of(self.mooring, self.common)
-
-    @cached_property
-    def _neighbours(self) -> tuple[Floats, Floats]:
-        return by_neighbours(self.measured.time, self.measured.depth)
-
-    @cached_property
-    def _alone(self) -> Forward:
-        return Forward(self.mooring, {})
 
 
 def without_current(
@@ -307,38 +297,6 @@ def without_current(
         if isinstance(each, np.ndarray) and each.dtype.kind == "f" and len(each) == len(lost)
     }
     return profiles.with_columns(**columns, status=status.astype(np.int8))
-
-
-def plain(forward: Forward, one: MooringMeasurements) -> Floats:
-    """Return (n, p) depths of the points from the currents alone, without a fit [m]."""
-    depth = np.tile(forward.still, (len(one.time), 1))
-    for _ in range(2):
-        level = hung_levels(one, np.nan_to_num(depth))
-        known = np.isfinite(one.u) & np.isfinite(one.v) & np.isfinite(level)
-        u, v = (filled(level, each, known) for each in (one.u, one.v))
-        depth = forward.depths(level, u, v)
-    return depth
-
-
-APART = 1e-6
-"""Vertical spacing of levels at the same place [m]."""
-
-
-def hung_levels(one: MooringMeasurements, depths: Floats) -> Floats:
-    """Return (n, k) depths of the levels, with those on the line at the points (n, p).
-
-    A current whose own sensor is used takes the measured depth of that sensor.
-    """
-    level = one.level_depth.copy()
-    for k, (point, sensor) in enumerate(zip(one.level_point, one.level_sensor, strict=True)):
-        if point == FREE:
-            continue
-        level[:, k] = depths[:, point]
-        if sensor != FREE:
-            known = np.isfinite(one.depth[:, sensor])
-            level[known, k] = one.depth[known, sensor]
-    apart: Floats = np.maximum(level, 0.0) + APART * np.arange(level.shape[1])
-    return apart
 
 
 class MeasuredRecord(Record):

@@ -301,7 +301,7 @@ class Diagnosis:
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
             # inferred currents adapt to the zero of a sensor
             if not self.alone:
-                codes[0] = "offset"
+                codes |= dict.fromkeys((0, common_unknowns.MISHUNG), "offset")
             if slips[j]:
                 codes[slips[j]] = "slip"
             for code, kind in codes.items():

@@ -1,6 +1,6 @@
 """Estimate of unmeasured currents from pressures, independently at each time.
 
-The line is linearised at a state of the currents; any reading may be a spike.
+The line is linearised at a state of the currents.
 """
 
 from __future__ import annotations
@@ -13,111 +13,8 @@ import numpy as np
 from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import Common
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.line_response import LineResponse
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
-
-NEGLIGIBLE = 0.02
-"""Weight, as a share of the weight of a good reading, below which a spike is not tried."""
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """Estimated depths of the line over a block of times.
-
-    Attributes
-    ----------
-    depth, deviation : (n, p) of the points [m]
-    sea : (n,) height of the sea surface above its mean [m]
-    likely : the most likely currents
-    """
-
-    depth: Floats
-    deviation: Floats
-    sea: Floats
-    likely: ReadCurrents
-
-
-def estimated(
-    moments: LineResponse,
-    common: Common,
-    known: CurrentsState,
-    neighbours: tuple[Floats, Floats] | None = None,
-) -> Estimate:
-    """Return mean and deviation, averaged over the cases of no spike and of a spike in each sensor.
-
-    Parameters
-    ----------
-    known : the best state of the currents
-    neighbours : see `calm.motion.measurements.by_neighbours`; None for isolated times
-    """
-    one, still, law = moments.measured, moments.forward.still, common.law
-    assert law is not None
-    first, at = known.found, known.at
-    own = line_response.own_errors(at.depth, still, True)
-    logs = [np.where(np.isfinite(first.evidence), 0.0, -np.inf)]
-    found, when = [first], [np.arange(len(one.time))]
-    inverse = np.linalg.inv(first.expected)
-    pulled = np.einsum("nst,nt->ns", inverse, first.innovation)
-    gain = 0.5 * pulled**2 / np.einsum("nss->ns", inverse)
-    least = np.log(NEGLIGIBLE / common_unknowns.SPIKES)
-    for sensor in range(len(one.label)):
-        times = np.flatnonzero((gain[:, sensor] > least) & np.isfinite(first.evidence))
-        if not len(times):
-            continue
-        part = Linear(*(each[times] for each in vars(at).values()))
-        spike = posterior(one.at(times), part, law.covariance, common, still, sensor, own[times])
-        chance = np.full(len(times), np.log(common_unknowns.SPIKES))
-        if neighbours is not None:
-            expected, deviation = (each[times, sensor] for each in neighbours)
-            chance += _excuse(one.at(times), common, spike, sensor, expected, deviation)
-        logs.append(chance + spike.evidence - first.evidence[times])
-        found.append(spike)
-        when.append(times)
-    n, p = first.depth.shape
-    best = np.zeros(n)
-    likely = first.logs.copy()
-    for times, log, each in zip(when, logs, found, strict=True):
-        ahead = log > best[times]
-        best[times[ahead]], likely[times[ahead]] = log[ahead], each.logs[ahead]
-    total, sea, depth, square = np.zeros(n), np.zeros(n), np.zeros((n, p)), np.zeros((n, p))
-    for times, log, each in zip(when, logs, found, strict=True):
-        weight = np.exp(np.where(np.isfinite(log), log, -np.inf) - best[times])
-        off = np.nan_to_num(each.depth - first.depth[times])
-        total[times] += weight
-        sea[times] += weight * np.nan_to_num(each.sea)
-        depth[times] += weight[:, None] * off
-        square[times] += weight[:, None] * (off**2 + np.nan_to_num(each.variance))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = depth / total[:, None]
-        deviation = np.sqrt(np.maximum(square / total[:, None] - mean**2, 0.0))
-        factor = np.exp(likely)
-        read = ReadCurrents(known.read.level, known.read.u * factor, known.read.v * factor)
-        return Estimate(first.depth + mean, deviation, sea / total, read)
-
-
-def _excuse(
-    one: MooringMeasurements, common: Common, spike: Posterior, sensor: int, expected: Floats,
-    deviation: Floats,
-) -> Floats:  # fmt: skip
-    """Return (n,) corrections to the log-likelihood of a spike, from the adjacent readings.
-
-    The interpolated neighbours are compared with the reading, and with the depth of the line
-    without the reading, because weather also moves the neighbours.
-
-    Parameters
-    ----------
-    spike : posterior without the sensor
-    expected, deviation : (n,) depth interpolated from adjacent readings, and its deviation [m]
-    """
-    point = one.point[sensor]
-    there = spike.depth[:, point] + common.offset[sensor]
-    wide = deviation**2 + spike.variance[:, point]
-    with np.errstate(invalid="ignore"):
-        as_line = (there - expected) ** 2 / wide + np.log(wide)
-        as_read = ((one.depth[:, sensor] - expected) / deviation) ** 2 + 2.0 * np.log(deviation)
-    excuse: Floats = np.nan_to_num(np.minimum(0.5 * (as_read - as_line), 0.0))
-    return excuse
 
 
 @dataclass(frozen=True)
@@ -149,8 +46,6 @@ def posterior(
     spread: Floats,
     common: Common,
     still: Floats,
-    spike: int = -1,
-    own: Floats | None = None,
 ) -> Posterior:
     """Return the best state in the linear model, and the posterior of all depths.
 
@@ -158,8 +53,6 @@ def posterior(
     ----------
     spread : (g, g) prior covariance of the logarithms
     still : (p,) depths in still water [m]
-    spike : index of a sensor whose readings are treated as spikes
-    own : `own_errors` of the state, if already computed
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -183,11 +76,7 @@ def posterior(
     known = np.isfinite(one.depth)
     innovation = np.where(known, one.depth - base[:, one.point] - common.offset, 0.0)
     noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
-    if spike >= 0:
-        noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
-    if own is None:
-        own = line_response.own_errors(at.depth, still, common.inferred)
-    own = common.worst**2 * own
+    own = common.worst**2 * line_response.own_errors(at.depth, still, common.inferred)
     bent = own[:, :, one.point]
     spread_of = slope @ state
     turned = seen.transpose(0, 2, 1)

@@ -11,7 +11,6 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Design
@@ -202,25 +201,3 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     errors += LOCAL**2 * down[:, :, None] * alike * down[:, None, :]
     ordered: Floats = errors[:, back[:, None], back]
     return ordered
-
-
-def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
-    """Fill unknown values (n, k) at levels (n, k) by linear interpolation in depth.
-
-    Values are constant beyond the first and the last known level, and NaN if no level is known.
-
-    Parameters
-    ----------
-    depth : (n, k) of the levels [m]
-    value : (n, k) values at these depths
-    known : (n, k) mask of valid values
-    """
-    result = np.where(known, value, np.nan)
-    for i in np.flatnonzero(~known.all(axis=1)):
-        there = known[i]
-        if there.any():
-            order = np.argsort(depth[i, there], kind="stable")
-            result[i, ~there] = np.interp(
-                depth[i, ~there], depth[i, there][order], value[i, there][order]
-            )
-    return result

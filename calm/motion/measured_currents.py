@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from calm.case import Design
 from calm.motion import common_unknowns, line_response
-from calm.motion.common_unknowns import Common, LinearLaw
+from calm.motion.common_unknowns import OFFSET, Common, LinearLaw
 from calm.motion.currents_law import ReadCurrents
 from calm.motion.line_response import Forward, LineResponse
 from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, nearest
@@ -79,9 +79,9 @@ Smoothing by the prior of the depths would damp the strongest currents, and rais
 METERS_ALIKE = 0.02
 """Error common to all meters of a record, as a share of the speed."""
 
-STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
-"""Number of stretches with separate errors in knockdown, their correlation length as a share of the
-line, and the local error of a point as a share of its own knockdown.
+STRETCHES, SPAN = 10, 0.25
+"""Number of stretches with separate errors in knockdown, and their correlation length as a share of
+the line. The depth of a point sums the knockdown of all stretches below it, so errors are smooth.
 """
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""
@@ -93,6 +93,13 @@ STEP = 0.02
 Student's law with one degree of freedom applies to these steps and to the initial values, to allow
 steps many times as large.
 """
+TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
+"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom.
+
+A place of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations.
+"""
+ZEROS = 2.0
+"""Variance of Student's law with four degrees of freedom over that of a normal law."""
 SETTLED = 6
 """Number of steps before the line error is estimated, as it would absorb sensor steps."""
 LONGER = 30.0
@@ -161,7 +168,7 @@ class Columns:
 
     Attributes
     ----------
-    current, share, tide, factor, datum, offset : slices of the q columns
+    current, share, tide, factor, datum, zero, place : slices of the q columns
     """
 
     current: slice
@@ -169,7 +176,8 @@ class Columns:
     tide: slice
     factor: slice
     datum: slice
-    offset: slice
+    zero: slice
+    place: slice
 
     @classmethod
     def made(cls, *counts: int) -> Columns:
@@ -180,12 +188,12 @@ class Columns:
     @property
     def count(self) -> int:
         """Number of unknowns."""
-        return int(self.offset.stop)
+        return int(self.place.stop)
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant but for steps: the datum and the offsets."""
-        return slice(self.datum.start, self.offset.stop)
+        """Columns of the unknowns that are constant but for steps: datum, zeros and places."""
+        return slice(self.datum.start, self.place.stop)
 
 
 @dataclass(frozen=True)
@@ -224,7 +232,7 @@ class CurrentSmoother:
         self.hours = (one.time - one.time[:1]) / np.timedelta64(1, "h")
         self.knots = knots_of(place, float(self.still.min()), self.seabed)
         count, sensors = len(self.knots.depth), len(one.label)
-        self.columns = Columns.made(2 * count, STRETCHES, 1, len(self.names), 1, sensors)
+        self.columns = Columns.made(2 * count, STRETCHES, 1, len(self.names), 1, sensors, sensors)
         flow = np.stack([one.u, one.v])
         self.mean = np.concatenate([self._along(place, np.nanmean(each, axis=0)) for each in flow])
         spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
@@ -241,12 +249,16 @@ class CurrentSmoother:
         factors, datum = dict.fromkeys(self.names, 1.0), common_unknowns.DATUM * self.seabed
         prior = common_unknowns.common_beforehand(factors, datum, sensors).covariance
         self.common_covariance: Floats = prior
-        self.factor_prior, self.begin = np.split(prior.diagonal(), [len(factors)])
+        self.factor_prior, begin = np.split(prior.diagonal(), [len(factors)])
+        wide = np.repeat([1.0, ZEROS], [1, sensors])
+        self.begin = np.append(wide * begin, np.full(sensors, STEP**2))
         self.first = self.begin
+        self.tail = np.repeat([TAILS["datum"], 0.0, TAILS["place"]], [1, sensors, sensors])
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
         step = np.diff(self.hours, prepend=self.hours[:1])
-        self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
+        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # a zero is constant
+        self.usual = STEP**2 * step[:, None] * steps
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
         self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
@@ -346,8 +358,7 @@ class CurrentSmoother:
         part = np.diff(at_edge, axis=1)
         number = np.arange(STRETCHES)
         result = part[:, None, :] * (number < own[:, None])
-        mine = down - at_edge[:, own] + LOCAL * down
-        result[:, np.arange(len(own)), own] = mine
+        result[:, np.arange(len(own)), own] = down - at_edge[:, own]
         return result
 
     # --- the law
@@ -393,7 +404,9 @@ class CurrentSmoother:
         seen = np.zeros((n, sensors.start + len(one.label), at.count))
         seen[:, : sensors.start, at.current] = own.seen
         seen[:, sensors] = slope[:, one.point]
-        seen[:, sensors, at.offset] = np.eye(len(one.label))
+        self.fall = common_unknowns.fall(there, self.still, one.point)
+        seen[:, sensors, at.zero] = np.eye(len(one.label))
+        seen[:, sensors, at.place] = np.eye(len(one.label)) * self.fall[:, :, None]
         base = (there + self.bend)[:, one.point]
         base -= np.einsum("nsq,nq->ns", seen[:, sensors, at.current], self.state[:, at.current])
         read = np.hstack([own.read, one.depth - base - one.surface[:, None]])
@@ -436,7 +449,8 @@ class CurrentSmoother:
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
-            self.stepped[time, 1 + sensor] = 0.5 * (self.stepped[time, 1 + sensor] + size**2)
+            column = self.stepped[time, sensor - len(self.measured.label) :]
+            column[:1] = 0.5 * (column[:1] + size**2)
         before = np.full((len(self.measured.time), len(self.still)), np.inf)
         self._there: Floats | None = None
         for turn in range(TURNS):
@@ -446,7 +460,8 @@ class CurrentSmoother:
                     np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
                 )
                 usual = float(np.median(off)) if len(off) else 0.0
-                self.first = self._heavy(np.append(usual**2, np.zeros(len(off))))
+                square = [usual**2, 0.0, OFFSET**2 / TAILS["place"]]
+                self.first = self._heavy(np.repeat(square, [1, len(off), len(off)]))
             law, slope = self.law(there)
             self._turn(law, slope, there, turn)
             if turn in PLACED:
@@ -460,7 +475,8 @@ class CurrentSmoother:
         """Differences (n, s) of datum plus offsets from their medians at each time [m]."""
         stay = self.state[:, self.columns.stays]
         gone = stay - np.median(stay, axis=0)
-        return np.asarray(gone[:, :1] + gone[:, 1:])
+        sensors = len(self.measured.label)
+        return np.asarray(gone[:, :1] + gone[:, 1 + sensors :] * self.fall)
 
     def _place(self) -> None:
         """Take a Gauss-Newton step of the factors, datum and offsets, given the metered currents.
@@ -472,14 +488,16 @@ class CurrentSmoother:
         if not self.names or not len(times):
             return
         law, *_ = self.by_meters(times)
+        own = np.eye(len(self.measured.label)) * law.fall[:, :, None]
+        seen = np.concatenate([law.fixed, own], axis=2)
         of_sensors = self._steps[np.searchsorted(self.measured.time, law.time)]
         raw = np.where(law.known, law.raw - of_sensors, 0.0)
         left = np.where(law.known, law.left - of_sensors, 0.0)
         law = replace(law, raw=raw, left=left)
         before = np.diag(1.0 / np.concatenate([self.factor_prior, self.first]))
-        pulls = law.pulls(law.fixed, raw)
-        alike = common_unknowns.repeated(law.pulls(law.fixed, left)[:, 0])
-        covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        pulls = law.pulls(seen, raw)
+        alike = common_unknowns.repeated(law.pulls(seen, left)[:, 0])
+        covariance = np.linalg.inv(law.normal(seen) / alike + before)
         self.common_covariance = np.asarray(covariance, np.float64)
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
@@ -501,8 +519,9 @@ class CurrentSmoother:
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return initial variances by Student's law, from the expected squares."""
-        return np.asarray(np.maximum(self.begin, 0.5 * (self.begin + square)), np.float64)
+        """Return initial variances by Student's laws, from the expected squares."""
+        wide = self.begin + self.tail * (square - self.begin)
+        return np.asarray(np.maximum(self.begin, wide), np.float64)
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
         one, at, count = self.measured, self.columns, len(self.measured.time)
@@ -559,7 +578,11 @@ class CurrentSmoother:
             usual = min(float(np.sqrt(tide.mean())), one.tide_deviation)
             self.scales = replace(self.scales, hours=hours, tide=usual)
         if turn >= 1:
-            self.first = self._heavy(begun)
+            places = slice(-len(one.label), None)
+            first = self._heavy(begun)
+            if turn < SETTLED:
+                first[places] = self.first[places]
+            self.first = first
             self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
             self.stepped[0] = 0.0
         moving = self.state[:, at.current]
@@ -588,10 +611,14 @@ class CurrentSmoother:
     def common(self) -> Common:
         """Return the common unknowns, with the medians over time of datum and offsets."""
         at = self.columns
-        stay = np.median(self.state[:, at.stays], axis=0)
+        datum, zero, place = (
+            np.median(self.state[:, each], axis=0) for each in (at.datum, at.zero, at.place)
+        )
         factors = np.exp(self.factor).tolist()
         named = dict(zip(self.names, factors, strict=True))
-        return Common(named, float(stay[0]), stay[1:], self.common_covariance, self.scales.share)
+        count = len(named) + 1 + len(zero)
+        covariance = self.common_covariance[:count, :count]
+        return Common(named, float(datum[0]), zero + place, covariance, self.scales.share)
 
     @cached_property
     def best(self) -> Forward:
@@ -605,14 +632,28 @@ class CurrentSmoother:
 
     @property
     def offset(self) -> Floats:
-        """Offset (n, s) of each sensor at each time [m]."""
-        return self.state[:, self.columns.offset]
+        """Error (n, s) in the depth of each sensor at each time, from its zero and place [m]."""
+        at = self.columns
+        return np.asarray(self.state[:, at.zero] + self.state[:, at.place] * self.fall)
 
     @property
     def surface(self) -> Floats:
         """Change (n,) in all depths of the line: datum, tide and steps [m]."""
         at = self.columns
         return self.state[:, at.datum.start] + self.state[:, at.tide.start] + self.measured.surface
+
+    @cached_property
+    def plain(self) -> Floats:
+        """Depths (n, p) of the points from the measured currents alone, without a fit [m]."""
+        one, forward = self.measured, Forward(self.mooring, {})
+        on_line = one.level_point != FREE
+        levels = np.where(np.isfinite(one.level_depth), one.level_depth, self.places)
+        flow = self.currents(self._measured_state(self.places))
+        for _ in range(2):
+            depth = forward.depths(self.knots.at(levels), *flow)
+            levels[:, on_line] = np.nan_to_num(depth)[:, one.level_point[on_line]]
+        known = (np.isfinite(one.u) & np.isfinite(one.v)).any(axis=1)
+        return np.where(known[:, None], depth, np.nan)
 
     @cached_property
     def lost(self) -> NDArray[np.bool_]:
@@ -676,12 +717,13 @@ class CurrentSmoother:
         noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
         expected += one.tide_deviation**2 + noise[:, :, None] * np.eye(len(one.label))
         fixed = common_unknowns.fixed_slopes(factors)
-        value = np.concatenate([factor, np.median(self.state[:, at.stays], axis=0)])
+        stay = np.median(self.state[:, at.stays], axis=0)
+        value, place = np.split(np.concatenate([factor, stay]), [fixed.shape[2]])
         raw = part.depth - there[:, one.point] - bend - part.surface[:, None] + factors @ factor
         raw = np.where(known, raw, 0.0)
-        left = np.where(known, raw - fixed @ value, 0.0)
-        share = one.elapsed(part.time)
         fall = common_unknowns.fall(there, self.still, one.point)
+        left = np.where(known, raw - fixed @ value - fall * place, 0.0)
+        share = one.elapsed(part.time)
         found = LinearLaw(
             part.time[good], share[good], known[good], raw[good], left[good], expected[good],
             fixed[good], fall[good],

@@ -76,13 +76,6 @@ class MooringMeasurements:
         return np.zeros(len(self.time)) if self.sunk is None else self.sunk
 
     @property
-    def level_sensor(self) -> Integers:
-        """Index (k,) of the used sensor at the place of a level; `FREE` without a sensor."""
-        used = self.point.tolist()
-        found = [used.index(at) if at in used else FREE for at in self.level_point.tolist()]
-        return np.array(found, np.int64)
-
-    @property
     def tide_deviation(self) -> float:
         """Prior deviation of the unmeasured part of tide and air pressure [m]."""
         return TIDE if self.tide is None else RESIDUAL_TIDE
@@ -195,38 +188,48 @@ def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> F
     return own
 
 
-def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
-    """Return (n, s) depths interpolated between the adjacent readings, and their deviation [m].
+FAR_NEIGHBOURS = 4.0
+"""Maximum span between the readings before and after a time, in steps of the record."""
+SPIKE, ALIKE = 6.0, 3.0
+"""Deviations of a spike, and deviations below which all others agree with their neighbours."""
 
-    The interpolation is linear in time. The deviation combines a robust value for the whole record
-    with a quarter of the difference between the two readings. It is infinite if either reading is
-    missing or distant.
+
+def without_spikes(
+    measured: MooringMeasurements, hidden: Sequence[str] = ()
+) -> tuple[MooringMeasurements, list[str]]:
+    """Remove readings far from those before and after, if other sensors show no change.
+
+    Also return notes on the removal. The deviation from the line between the two adjacent readings
+    is compared with its usual size and a quarter of the difference between these readings.
 
     Parameters
     ----------
-    time : (n,) rising
-    depth : (n, s) measured depths; NaN if missing [m]
+    hidden : labels of sensors that neither judge others nor are judged
     """
-    expected, deviation = np.full_like(depth, np.nan), np.full_like(depth, np.inf)
-    hours = (time - time[:1]) / np.timedelta64(1, "h")
+    hours = (measured.time - measured.time[:1]) / np.timedelta64(1, "h")
     step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0
-    for j in range(depth.shape[1]):
-        known = np.flatnonzero(np.isfinite(depth[:, j]))
-        if len(known) < 3:
+    off = np.full(measured.depth.shape, np.nan)
+    for j, label in enumerate(measured.label):
+        known, y = np.flatnonzero(np.isfinite(measured.depth[:, j])), measured.depth[:, j]
+        if len(known) < 3 or label in hidden:
             continue
         at, before, after = known[1:-1], known[:-2], known[2:]
-        apart, y = hours[after] - hours[before], depth[:, j]
-        change = y[after] - y[before]
-        between = y[before] + change * (hours[at] - hours[before]) / apart
-        usual = NORMAL * float(np.median(np.abs(y[at] - between)))
+        apart, change = hours[after] - hours[before], y[after] - y[before]
+        away = np.abs(y[at] - y[before] - change * (hours[at] - hours[before]) / apart)
+        usual = max(NORMAL * float(np.median(away)), NOISE)
         near = apart <= FAR_NEIGHBOURS * step
-        expected[at[near], j] = between[near]
-        deviation[at, j] = np.where(near, np.hypot(max(usual, NOISE), 0.25 * change), np.inf)
-    return expected, deviation
-
-
-FAR_NEIGHBOURS = 4.0
-"""Maximum span between the readings before and after a time, in steps of the record."""
+        off[at[near], j] = (away / np.hypot(usual, 0.25 * change))[near]
+    others = np.isfinite(off).sum(axis=1, keepdims=True) - np.isfinite(off)
+    calm = (off < ALIKE).sum(axis=1, keepdims=True) - (off < ALIKE)
+    wrong = (off > SPIKE) & (others > 0) & (calm == others)
+    notes = [
+        f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are far from those before and "
+        f"after, unlike those of other sensors, and are left out: the first is "
+        f"{measured.depth[at, j]:.1f} m, at {np.datetime_as_string(measured.time[at], 's')}"
+        for j, at in enumerate(wrong.argmax(axis=0).tolist())
+        if wrong[at, j]
+    ]
+    return replace(measured, depth=np.where(wrong, np.nan, measured.depth)), notes
 
 
 def joined(

@@ -29,6 +29,7 @@ from calm.motion.measurements import (
     MooringMeasurements,
     joined,
     read_currents,
+    without_spikes,
 )
 from calm.motion.remarks import ALL, Fault
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
@@ -224,6 +225,8 @@ class RecoveredMooring:
             "pressures": ", ".join(hashed(split_label(one)[1]) for one in self.pressures),
         }
         if not self.currents:
+            self.measured, more = without_spikes(self.measured, self.hidden)
+            self.notes += more
             step = common_step(without(self.measured, self.hidden), line.still)
             if step is not None:
                 sunk = np.where(self.measured.time >= step.since, step.value, 0.0)

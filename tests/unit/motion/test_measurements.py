@@ -8,10 +8,11 @@ import pytest
 from calm.errors import UsageError
 from calm.motion.measurements import (
     CurrentMeasurements,
-    by_neighbours,
+    MooringMeasurements,
     common_times,
     interpolated,
     joined,
+    without_spikes,
 )
 from calm.records.instrument_series import InstrumentSeries
 
@@ -64,7 +65,7 @@ def test_records_are_joined_level_by_level_from_the_top_down():
         (hours(0, 1, 2, 3), np.array([0.5, 0.7, 0.9, 0.7])),
     )  # fmt: skip
     assert one.label == ("a", "b") and one.point.tolist() == [0, 1]
-    assert one.level_point.tolist() == [-1, 1, -1] and one.level_sensor.tolist() == [-1, 1, -1]
+    assert one.level_point.tolist() == [-1, 1, -1]
     u = [[np.nan, 0.8, 0.1], [0.5, 0.9, 0.2], [0.6, 1.0, 0.3], [0.7, np.nan, np.nan]]
     assert one.u == pytest.approx(np.array(u), nan_ok=True)
     assert one.depth[1].tolist() == [22.0, 53.0]
@@ -101,15 +102,34 @@ def test_half_a_current_is_none(lost):
         )  # fmt: skip
 
 
-def test_neighbours_say_what_is_linear_between_them_and_nothing_across_a_gap():
-    time = hours(*range(12), 20, 21, 22)
-    depth = np.array([100.0, 101.0] * 6 + [140.0, 180.0, 220.0])[:, None]
-    depth[5] = np.nan
-    expected, deviation = by_neighbours(time, depth)
-    # ends have one neighbour; around the gap of nine hours they are too far
-    known = np.isfinite(deviation[:, 0])
-    assert np.flatnonzero(known).tolist() == [1, 2, 3, 4, 6, 7, 8, 9, 10, 13]
-    assert expected[[1, 2, 4, 13], 0] == pytest.approx([100.0, 101.0, 101.0 - 1.0 / 3.0, 180.0])
-    # median of what is left: 1 m, as a normal law; and a quarter of 80 m
-    assert deviation[1, 0] == pytest.approx(1.4826)
-    assert deviation[13, 0] == pytest.approx(np.hypot(1.4826, 20.0))
+def record(depth, labels=("a", "b", "c")):
+    count = depth.shape[1]
+    none = np.zeros((len(depth), 0))
+    return MooringMeasurements(
+        hours(*range(len(depth))), labels[:count], np.arange(count), depth, none,
+        np.zeros(0, np.int64), none, none, none.astype(np.int8),
+    )  # fmt: skip
+
+
+def test_a_reading_far_from_its_neighbours_is_left_out_unless_others_move_with_it():
+    random = np.random.default_rng(2)
+    depth = np.array([50.0, 120.0, 250.0]) + 0.2 * random.standard_normal((60, 3))
+    depth[20, 1] += 5.0  # a spike
+    depth[30] += [20.0, 8.0, 2.0]  # an hour of strong current
+    depth[40:, 2] += 9.0  # a slip: the readings after it agree
+    depth[50, 0] = np.nan
+    found, said = without_spikes(record(depth))
+    assert np.argwhere(np.isnan(found.depth)).tolist() == [[20, 1], [50, 0]]
+    assert said == [
+        "b: 1 of its readings are far from those before and after, unlike those of other sensors, "
+        f"and are left out: the first is {depth[20, 1]:.1f} m, at 2026-03-01T20:00:00"
+    ]
+    assert without_spikes(record(depth), ["b"])[1] == []
+    assert without_spikes(record(depth[:, 1:2]))[1] == []  # no other sensor confirms it
+
+
+def test_across_a_gap_no_reading_is_a_spike():
+    depth = np.array([50.0, 120.0]) + 0.2 * np.random.default_rng(2).standard_normal((60, 2))
+    depth[20, 1] += 5.0
+    depth[21:25, 1] = np.nan
+    assert without_spikes(record(depth))[1] == []

@@ -8,6 +8,7 @@ from scipy.stats import multivariate_normal
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import (
+    MISHUNG,
     ROBUST,
     LinearLaw,
     fall,
@@ -59,6 +60,7 @@ def test_the_time_from_which_on_a_sensor_hangs_elsewhere_is_found(sensor, start)
 
 def test_an_offset_a_slip_and_a_drift_move_a_reading():
     assert moved_by(0, FALL[:, 1], SHARE) == pytest.approx(np.ones(TIMES))
+    assert moved_by(MISHUNG, FALL[:, 1], SHARE) == pytest.approx(FALL[:, 1])
     slipped = np.append(np.zeros(5), FALL[5:, 1])
     assert moved_by(5, FALL[:, 1], SHARE) == pytest.approx(slipped)
     for code, ramp in RAMPS.items():

@@ -9,7 +9,7 @@ import pytest
 import calm.motion.correction as module
 from calm.batch.statuses import STATUSES
 from calm.motion.common_unknowns import Common
-from calm.motion.correction import MeasuredRecord, Task, plain
+from calm.motion.correction import MeasuredRecord, Task
 from calm.motion.currents_law import ReadCurrents
 from calm.motion.matching import without
 from calm.motion.measurements import MooringMeasurements
@@ -65,7 +65,7 @@ def common():
     return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), np.eye(4))
 
 
-def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch):
+def test_a_block_has_the_estimated_depths_and_what_is_known_besides():
     depth = STILL + 5.0 + np.arange(16.0).reshape(4, 4)
     surface = 2.0 + np.array([0.3, -0.2, 0.0, 0.1])
     offset = np.array([[0.5, -0.4], [0.5, -0.3], [0.6, -0.4], [0.7, 0.1]])
@@ -75,9 +75,8 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
         best=Line(), offset=offset, depth=depth, deviation=0.1 * depth, surface=surface,
         read=lambda times: ReadCurrents(np.full((4, 2), 7.0), speeds, V),
         lost=np.array([False, False, True, False]), doubt=np.full((4, 2), 0.01),
-        current_factor=np.array([1.1, 0.9, np.nan, 1.2]),
+        current_factor=np.array([1.1, 0.9, np.nan, 1.2]), plain=depth - 3.0,
     )  # fmt: skip
-    monkeypatch.setattr(module, "Forward", lambda mooring, factors: Line() if not factors else None)
     one = measured(false=np.array([False, True, True, False]))
     environment = SimpleNamespace(maximum_speed=5.0)
     mooring = SimpleNamespace(file=SimpleNamespace(environment=environment))
@@ -101,18 +100,7 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
     assert more["current_factor"] == pytest.approx(smoother.current_factor, nan_ok=True)
     assert more["current_doubt"] == pytest.approx(0.01 * lost * np.ones(2), nan_ok=True)
     assert more["residual"] == pytest.approx(READ - offset - depth[:, [0, 3]], nan_ok=True)
-    assert more["plain_depth"] == pytest.approx(plain(Line(), one)[:, [0, 3]], nan_ok=True)
-
-
-def test_the_currents_alone_hang_where_they_have_the_line():
-    """Not at a pressure of a sensor that is not used; twice, which a line settles in."""
-    one = without(measured(level_point=np.array([0, 1])), ["a"])
-    depth = STILL[0]
-    for _ in range(2):
-        depth = STILL[0] + 10.0 * U[0, 0] + depth / 20.0
-    assert plain(Line(), one)[0, 0] == pytest.approx(depth, abs=1e-5)
-    at = measured(level_point=np.array([0, 1]))
-    assert plain(Line(), at)[0, 0] == pytest.approx(STILL[0] + 3.0 + READ[0, 0] / 20.0, abs=1e-5)
+    assert more["plain_depth"] == pytest.approx(depth[:, [0, 3]] - 3.0)
 
 
 def test_a_hidden_sensor_is_hidden_everywhere():
@@ -121,9 +109,6 @@ def test_a_hidden_sensor_is_hidden_everywhere():
     assert (upper.label, lower.label) == (("a",), ("d",))
     assert upper.depth.tolist() == READ[:, :1].tolist()
     assert (upper.point.tolist(), lower.point.tolist()) == ([0], [3])
-    assert upper.level_sensor.tolist() == [-1, 0]  # its current hangs where the line has it
-    assert lower.level_sensor.tolist() == [0, -1]
-    assert without(one, []).level_sensor.tolist() == [1, 0]
 
 
 def test_what_was_measured_is_the_record_of_a_result():
