@@ -261,6 +261,8 @@ class CurrentSmoother:
         self.usual = STEP**2 * step[:, None] * steps
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
+        self.depth: Floats = np.full(self.bend.shape, np.inf)
+        self._there: Floats | None = None
         self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
         self._slopes_factor = np.full(len(self.names), np.inf)
         self.slope = np.zeros((len(one.time), len(self.still), 2 * count + len(self.names)))
@@ -308,17 +310,17 @@ class CurrentSmoother:
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
-        if self._there is None:
-            self._there = np.empty((len(now), len(self.still)))
-            near = np.flatnonzero(~far)
-            self._there[near] = self.depths(now[near], factor, near)
-        times = np.flatnonzero(far)
+        times, near = np.flatnonzero(far), np.flatnonzero(~far)
+        there = self._there
+        if there is None:
+            there = np.empty((len(now), len(self.still)))
+            there[near] = self.depths(now[near], factor, near)
         for start in range(0, len(times), BLOCK):
             part = times[start : start + BLOCK]
-            self._there[part], self.slope[part] = self._with_slopes(now[part], factor, part)
+            there[part], self.slope[part] = self._with_slopes(now[part], factor, part)
         if len(times):
             self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
-        return self._there
+        return there
 
     def _with_slopes(
         self, state: Floats, factor: Floats, times: NDArray[np.int64]
@@ -451,10 +453,9 @@ class CurrentSmoother:
         for sensor, time, size in slips:
             column = self.stepped[time, sensor - len(self.measured.label) :]
             column[:1] = 0.5 * (column[:1] + size**2)
-        before = np.full((len(self.measured.time), len(self.still)), np.inf)
-        self._there: Floats | None = None
+        self._there = None
         for turn in range(TURNS):
-            there = self.linear()
+            there, before = self.linear(), self.depth
             if turn == 0:
                 off = np.nan_to_num(
                     np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
@@ -468,7 +469,6 @@ class CurrentSmoother:
                 self._place()
             elif turn > max(PLACED) and np.nanmax(np.abs(self.depth - before)) < ENOUGH:
                 break
-            before = self.depth
 
     @property
     def _steps(self) -> Floats:
@@ -652,8 +652,8 @@ class CurrentSmoother:
         for _ in range(2):
             depth = forward.depths(self.knots.at(levels), *flow)
             levels[:, on_line] = np.nan_to_num(depth)[:, one.level_point[on_line]]
-        known = (np.isfinite(one.u) & np.isfinite(one.v)).any(axis=1)
-        return np.where(known[:, None], depth, np.nan)
+        known = np.isfinite(one.u + one.v).any(axis=1, keepdims=True)
+        return np.where(known, depth, np.nan)
 
     @cached_property
     def lost(self) -> NDArray[np.bool_]:
