@@ -68,23 +68,6 @@ class RecordProfile:
 
 
 @dataclass(frozen=True)
-class Widening:
-    """Factors on deviations, 1 at least: between sensors by depth [m], and beyond them."""
-
-    depth: Floats
-    within: Floats
-    beyond: float
-
-    def at(self, level: Floats, between: NDArray[np.bool_]) -> Floats:
-        """Return the factors at levels, which lie between the sensors or beyond them."""
-        inside = np.interp(level, self.depth, self.within)
-        return np.where(between, inside, np.maximum(inside, self.beyond))
-
-
-NOT_WIDENED = Widening(np.zeros(1), np.ones(1), 1.0)
-
-
-@dataclass(frozen=True)
 class GriddedQuantity:
     """A quantity with fitted correlation scales.
 
@@ -93,7 +76,7 @@ class GriddedQuantity:
     samples, profile, scales : samples, mean profile and correlation scales
     noise : standard deviation of a sensor, in the unit of the quantity
     in_time : whether neighbouring times are used
-    widened : factors on the deviations, from leaving out each sensor in turn
+    beyond : factor on the deviations beyond the sensors, from leaving out each sensor in turn
     """
 
     samples: Samples
@@ -101,7 +84,7 @@ class GriddedQuantity:
     scales: Scales
     noise: float
     in_time: bool = True
-    widened: Widening = NOT_WIDENED
+    beyond: float = 1.0
 
 
 class LevelPosterior(NamedTuple):
@@ -146,7 +129,7 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
     ]
     found = replace(rough, scales=_likeliest(rough, np.unique(times)))
     every = max(len(known) // TIMES_LEFT_OUT, 1)
-    return replace(found, widened=_widening(found, np.arange(0, len(known), every)))
+    return replace(found, beyond=_beyond(found, np.arange(0, len(known), every)))
 
 
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
@@ -305,7 +288,7 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
     flag = np.where(between & ~little, INTERPOLATED, DOUBTFUL)
     nothing = little & ~between
     flag = np.where(nothing, MISSING, flag).astype(np.int8)
-    deviation = deviation * field.widened.at(np.broadcast_to(levels, left.shape), between)
+    deviation = deviation * np.where(between, 1.0, field.beyond)
     value, deviation = (np.where(nothing, np.nan, one) for one in (mean, deviation))
     return LevelValues(value, deviation, flag)
 
@@ -377,28 +360,14 @@ MIN_RESIDUALS = 20
 """Minimum number of residuals of a sensor for a factor."""
 
 
-def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening:
-    """Find the factors by which bands must be widened to cover 95 % of each sensor, withheld in
-    turn.
+def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
+    """Find the factor by which bands must be widened to cover 95 % of a sensor beyond all others,
+    if each sensor is withheld in turn.
     """
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
-    enough = np.isfinite(residual).sum(axis=0) >= MIN_RESIDUALS
-    if enough.sum() < 2:
-        return NOT_WIDENED
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))
-    between = (place > upper) & (place < lower)
-    depth, within, beyond = [], [], 1.0
-    for j in np.flatnonzero(enough).tolist():
-        off = np.abs(residual[:, j] / spread[:, j]) / HALF_WIDTH
-        inside = off[between[:, j]]
-        if inside.size >= MIN_RESIDUALS:
-            depth.append(float(np.nanmean(place[:, j])))
-            within.append(max(1.0, float(np.percentile(inside, 95.0))))
-        outside = off[np.isfinite(off) & ~between[:, j]]
-        if outside.size >= MIN_RESIDUALS:
-            beyond = max(beyond, float(np.percentile(outside, 95.0)))
-    if not depth:
-        depth, within = [0.0], [1.0]
-    order = np.argsort(depth)
-    return Widening(np.array(depth)[order], np.array(within)[order], beyond)
+    off = np.abs(residual / spread) / HALF_WIDTH
+    outside = np.isfinite(off) & ((place <= upper) | (place >= lower))
+    each = [off[out, j] for j, out in enumerate(outside.T) if out.sum() >= MIN_RESIDUALS]
+    return max([1.0, *(float(np.percentile(one, 95.0)) for one in each)])

@@ -71,10 +71,6 @@ def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
 def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
     """Tabulate the correlation scales of each quantity."""
 
-    def widened(one: tuple[str, GriddedQuantity]) -> str:
-        found = one[1].widened
-        return "-" if found is None else f"{found.within.max():.2f}, {found.beyond:.2f}"
-
     return table_of(
         "",
         fields.items(),
@@ -83,11 +79,10 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         number("depth scale", lambda one: f"{one[1].scales.depth:.3g}", "m"),
         number("time scale", lambda one: _hours(one[1]), "h"),
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
-        number("widened", widened),
+        number("widened", lambda one: f"{one[1].beyond:.2f}"),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
-        "the rest of the variance is uncorrelated. Widened: factors on the bands between "
-        "instruments (the largest one) and beyond them, from a test that omits each instrument in "
-        "turn.",
+        "the rest of the variance is uncorrelated. Widened: factor on the bands beyond the "
+        "instruments, from a test that omits each instrument in turn.",
     )
 
 
