@@ -79,9 +79,12 @@ Smoothing by the prior of the depths would damp the strongest currents, and rais
 METERS_ALIKE = 0.02
 """Error common to all meters of a record, as a share of the speed."""
 
-STRETCHES, SPAN = 10, 0.25
-"""Number of stretches with separate errors in knockdown, and their correlation length as a share of
-the line. The depth of a point sums the knockdown of all stretches below it, so errors are smooth.
+STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
+"""Number of stretches with separate errors in knockdown, their correlation length as a share of the
+line, and the local error of a point as a share of its own knockdown.
+
+Without the local error, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse,
+and RAPID's depths without currents up to 26 % worse.
 """
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""
@@ -360,7 +363,8 @@ class CurrentSmoother:
         part = np.diff(at_edge, axis=1)
         number = np.arange(STRETCHES)
         result = part[:, None, :] * (number < own[:, None])
-        result[:, np.arange(len(own)), own] = down - at_edge[:, own]
+        mine = down - at_edge[:, own] + LOCAL * down
+        result[:, np.arange(len(own)), own] = mine
         return result
 
     # --- the law
