@@ -43,8 +43,8 @@ EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
 LEAST = {
     "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
-    "exchanged": 0.0, "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06,
-    "length": 0.004, "drag": 0.3, "fouling": 0.2,
+    "exchanged": 0.0, "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
+    "fouling": 0.2,
 }  # fmt: skip
 """Smallest faults that are reported.
 
@@ -100,9 +100,8 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     if not len(times):
         return None, []
     if task.smoother is not None:
-        law, read, moments = task.smoother.by_meters(times)
-        at = moments.linear(read, np.zeros((len(times), moments.groups)))
-        return law, list(line_suspects(task, moments, read, at))
+        law, read, at = task.smoother.by_meters(times)
+        return law, list(line_suspects(task, read, at, law.share))
     common, part = task.common, task.measured.at(times)
     moments = LineResponse(part, *task.forwards)
     here = unknown_state(moments, replace(common, covariance=np.zeros_like(common.covariance)))
@@ -175,7 +174,7 @@ class Diagnosis:
             kin = [log for one, log in likely if one.fault.alike(best[0].fault)]
             if np.logaddexp.reduce(kin) < np.log(self.likely):
                 break
-            taken.append(self._bent(taken, best[0]))
+            taken.append(best[0])
             if best[0].fault.kind == "exchanged":  # no other diagnosis is valid before the exchange
                 break
         found = []
@@ -200,17 +199,6 @@ class Diagnosis:
                 rival = ""
             found.append(replace(suspect.fault, odds=float(odds), rival=rival))
         return tuple(found)
-
-    def _bent(self, taken: list[Suspect], one: Suspect) -> Suspect:
-        """Return a suspect with the nonlinear effect of its size."""
-        if one.ahead is None:
-            return one
-        size = one.fault.size
-        for _ in range(3):
-            one = one.at(size)
-            size = self.fitted(taken, one, 1.0).value
-        self.causes = [one if one.fault.same(each.fault) else each for each in self.causes]
-        return one
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
         """Return possible faults besides those in `taken`, with their log odds."""

@@ -1,7 +1,7 @@
 """Depths of the line at each time of a block, and their derivatives by the unknowns.
 
-The unknowns are the logarithms of factors on the current, one for each group of levels, and the
-unknowns common to the record.
+The unknowns are the logarithms of factors on the current of each level, and the unknowns common to
+the record.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import FACTORS, Common
 from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
-from calm.physics.line import Floats, Integers, Line
+from calm.physics.line import Floats, Line
 
 STEP = 0.05
 """Step of the logarithms for numerical derivatives."""
@@ -30,12 +30,9 @@ class LineResponse:
     """The times of a block, and the mooring for its solutions."""
 
     def __init__(
-        self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward],
-        group: Integers | None = None,
-    ) -> None:  # fmt: skip
+        self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward]
+    ) -> None:
         self.measured, self.forward, self.shifted = measured, forward, shifted
-        self.group = np.arange(measured.u.shape[1]) if group is None else group
-        self.groups = int(self.group.max()) + 1 if len(self.group) else 0
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
         """Return (n, p) depths of the points in currents that are multiplied by factors.
@@ -43,20 +40,19 @@ class LineResponse:
         Parameters
         ----------
         read : interpretation of the currents
-        logs : (n, g) logarithms of the factors on the currents
+        logs : (n, k) logarithms of the factors on the currents
         forward : mooring to use; by default that of the block
         """
-        factor = np.exp(logs[:, self.group])
+        factor = np.exp(logs)
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return depths and slopes for factors of the currents, given as logarithms (n, g)."""
-        factor = np.exp(logs[:, self.group])
+        """Return depths and slopes for factors of the currents, given as logarithms (n, k)."""
+        factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)
         by_u, by_v = np.split(slopes, 2, axis=2)
-        each = by_u * u[:, None] + by_v * v[:, None]  # by the logarithm of the speed of each level
-        own = np.nan_to_num(each) @ np.eye(self.groups)[self.group]
+        own = np.nan_to_num(by_u * u[:, None] + by_v * v[:, None])
         common = [self.depths(read, logs, forward) for forward in self.shifted.values()]
         return Linear(logs, there, own, _slopes(common, there))
 

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from calm.case import Design
 from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import OFFSET, Common, LinearLaw
-from calm.motion.currents_law import ReadCurrents
-from calm.motion.line_response import Forward, LineResponse
+from calm.motion.currents_law import Linear, ReadCurrents
+from calm.motion.line_response import Forward
 from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, nearest
 from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
@@ -693,11 +693,11 @@ class CurrentSmoother:
         doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
         return doubt
 
-    def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
+    def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
         """Return the linear law of the pressures at several times, given the meters alone.
 
         The law is linearised at the smoothed currents of the meters. Also return these currents at
-        the knots, and the line response.
+        the knots, and the line in them with its slopes by the logarithm of all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady
@@ -733,7 +733,5 @@ class CurrentSmoother:
             fixed[good], fall[good],
         )  # fmt: skip
         read = ReadCurrents(self.knot_depth[times], *self.currents(now))
-        near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
-        levels = len(self.places)  # neighbours of many levels share a factor
-        forwards = line_response.forwards_of(self.mooring, self.common())
-        return found, read, LineResponse(part, *forwards, near * min(levels, MOST_LEVELS) // levels)
+        speed = slopes[:, :, flow] @ np.hstack([read.u, read.v])[:, :, None]
+        return found, read, Linear(np.zeros((len(now), 1)), there, speed, slopes[:, :, flow.stop :])

@@ -18,7 +18,7 @@ NO_TIME = np.datetime64("NaT", "ns")
 FALSE = 0.5
 """Probability above which the current of a level is reported as false."""
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
-OF_LINE = ("currents", "speed", "slows", "buoyancy", "length", "drag", "fouling")
+OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
 """Faults of the line and its currents, not of sensors. Their sizes are logarithms."""
 LIKELY = 20.0
 """Odds above which a fault is reported."""
@@ -123,12 +123,6 @@ class Fault:
         )
         text = {
             "currents": f"they measure {share} of the current",
-            "speed": f"its speeds are {share} of the true current"
-            + ": its direction or its unit is wrong" * (not 0.25 < self.value < 4.0),
-            "slows": (
-                f"its speeds decrease to {share} of the true current by the end; its rotor may be "
-                "fouled"
-            ),
             "buoyancy": (
                 f"the net buoyancy of its floats is {share} of the value in the file; a float may "
                 "be missing, flooded or wrongly listed"

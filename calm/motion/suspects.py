@@ -1,14 +1,14 @@
 """Suspects: possible faults of a record, with their effects on the depths.
 
-Faults of the line and its currents: all currents or those of one level read too low or too high, or
-a rotor slows; floats are missing; cables are longer or shorter; the drag is wrong, or increases by
-fouling. Some have nearly the same effect on the depths: their odds show if the record distinguishes
-them. Fault of the readings: two sensors are farther apart than the line between them is long.
+Faults of the line and its currents: all currents read too low or too high; floats are missing;
+cables are longer or shorter; the drag is wrong, or increases by fouling. Some have nearly the same
+effect on the depths: their odds show if the record distinguishes them. Fault of the readings: two
+sensors are farther apart than the line between them is long.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -16,12 +16,11 @@ import numpy as np
 
 from calm.case import Design
 from calm.files.pieces import clamps_down
-from calm.motion import line_response
 from calm.motion.common_unknowns import FACTORS, NOISE, NORMAL
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.line_response import STEP, Forward, LineResponse
-from calm.motion.measurements import MooringMeasurements, level_names
+from calm.motion.line_response import STEP, Forward
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
@@ -31,13 +30,8 @@ CAUSES: Mapping[str, tuple[float, float]] = {
     "length": (0.02, 0.02),
     "drag": (0.3, 0.02),
     "fouling": (0.5, 0.02),
-    "speed": (0.3, 0.001),
-    "slows": (0.5, 0.01),
 }
-"""Prior deviation of the logarithm of each fault, beyond the common priors, and its probability.
-
-The levels share the probability of a fault in one level.
-"""
+"""Prior deviation of the logarithm of each fault, beyond the common priors, and its probability."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +45,6 @@ class Suspect:
     wide : prior deviation of its size; 0 for a fixed size
     log : logarithm of its prior probability
     shift : (n, s) fixed change in the depths [m]; 0 if the size is fitted
-    ahead : (n, s) change in the depths for a size that applies throughout [m]; None if linear
-    share : (n, 1) share of the size at each time; None if it is constant
     """
 
     fault: Fault
@@ -60,80 +52,38 @@ class Suspect:
     wide: float
     log: float
     shift: Floats | float = 0.0
-    ahead: Callable[[float], Floats] | None = None
-    share: Floats | None = None
-
-    def at(self, size: float) -> Suspect:
-        """Return a copy with the nonlinear effect of a fault of the given size.
-
-        The effect is a parabola in the share: it has the linear slope at zero, and passes through
-        the effect of the full size.
-        """
-        if self.ahead is None or self.share is None or not size:
-            return self
-        slope = np.divide(
-            self.column, self.share, out=np.zeros_like(self.column), where=self.share > 0.0
-        )
-        bend = self.ahead(size) / size - slope
-        return replace(self, column=self.share * (slope + bend * self.share))
 
 
-def line_suspects(
-    task: Task, moments: LineResponse, read: ReadCurrents, at: Linear
-) -> Iterator[Suspect]:
+def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
     Parameters
     ----------
-    moments : line response at several times
-    read, at : currents at these times, and the line in them
+    read : currents at several times
+    at : the line in them, with its slopes by the logarithm of all speeds
+    share : elapsed share of the record at the times with an equilibrium
     """
-    one, factors = moments.measured, task.common.factors
+    factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
-    share = task.measured.elapsed(one.time[good])[:, None]
 
-    def seen(slope: Floats) -> Floats:
-        return slope[good][:, one.point]
-
-    def suspect(
-        label: str, kind: str, column: Floats, among: int = 1,
-        ahead: Callable[[float], Floats] | None = None, part: Floats | None = None,
-    ) -> Suspect:  # fmt: skip
+    def suspect(label: str, kind: str, slope: Floats, part: Floats | float = 1.0) -> Suspect:
         wide, chance = CAUSES[kind]
-        log = float(np.log(chance / among))
-        return Suspect(Fault(label, kind, value=1.0), column, wide, log, 0.0, ahead, part)
+        column = part * slope[good][:, task.measured.point]
+        return Suspect(Fault(label, kind, value=1.0), column, wide, float(np.log(chance)))
 
-    def dragged(size: float) -> Floats:
-        grown = {n: v * np.exp(size * n.endswith("drag")) for n, v in factors.items()}
-        there = moments.depths(read, at.logs, Forward(task.mooring, grown))
-        return np.nan_to_num(seen(there - at.depth))
-
-    def misread(level: int) -> Callable[[float], Floats]:
-        mine = np.arange(moments.groups) == level
-        return lambda size: np.nan_to_num(
-            seen(moments.depths(read, at.logs - size * mine) - at.depth)
-        )
-
-    names = list(factors)
-    columns = {name: seen(at.common[:, :, i]) for i, name in enumerate(names)}
+    columns = dict(zip(factors, np.moveaxis(at.common, 2, 0), strict=True))
     for name in FACTORS:
         if name not in columns:
             forward = Forward(task.mooring, {**factors, name: float(np.exp(STEP))})
-            ahead = moments.depths(read, at.logs, forward)
-            columns[name] = np.nan_to_num(seen((ahead - at.depth) / STEP))
+            ahead = forward.depths(read.level, read.u, read.v)
+            columns[name] = np.nan_to_num((ahead - at.depth) / STEP)
     yield suspect(LINE, "length", columns["length"])
     yield suspect(LINE, "buoyancy", columns["buoyancy"])
     drag = columns["cable_drag"] + columns["rigid_drag"]
     yield suspect(LINE, "drag", drag)
-    yield suspect(LINE, "fouling", share * drag, 1, dragged, share)
-    slope = seen(at.slope)  # a meter that reads low: the line is deeper than computed
-    yield suspect(CURRENTS, "currents", -slope.sum(axis=2))
-    levels = level_names(task.measured, line_response.labels_of(task.mooring))
-    if len(levels) == moments.groups > 1:
-        for k, name in enumerate(levels):
-            one_level, many = -slope[:, :, k], len(levels)
-            yield suspect(name, "speed", one_level, many, misread(k), np.ones_like(share))
-            yield suspect(name, "slows", share * one_level, many, misread(k), share)
+    yield suspect(LINE, "fouling", drag, share[:, None])
+    # meters that read low: the line is deeper than computed
+    yield suspect(CURRENTS, "currents", -at.slope[:, :, 0])
 
 
 GOOD, FEWEST_TIMES = 2, 20

@@ -297,7 +297,9 @@ def test_times_without_current_or_without_pressure_have_wider_bands(calm, given,
         off = result["clamp_depth"].values[10:20] - truth[1][10:20]
         spread = result["clamp_depth_sd"].values
         assert (np.abs(off) < 3.0 * spread[10:20]).all()
-        assert spread[:8, 1].max() > 1.2 * spread[22:, 1].max()
+        # besides the zeros of the sensors, whose error is the same at all times
+        own = spread[:, 1] ** 2 - spread[:, 1].min() ** 2
+        assert own[:8].max() > 4.0 * own[22:].max()
 
 
 def test_times_far_from_any_current_have_a_status(calm, given, folder):
