@@ -27,7 +27,6 @@ class StateSpace:
     Attributes
     ----------
     fade : (n, q) decay factor of each state since the previous time; the first row is not used
-    gained : (n, q) growth of the steady variances since the previous time, as a share of `steady`
     steady : (q, q) covariance of states that decay
     stepped : (n, q) noise variances of persistent states since the previous time
     first : (q, q) covariance at the first time; the mean is 0 throughout
@@ -47,7 +46,7 @@ class StateSpace:
         """Return (q, q) covariance of the state noise since the previous time."""
         fade = self.fade[time]
         result = self.steady * (1.0 - np.outer(fade, fade))
-        result[np.diag_indices_from(result)] += self.stepped[time]
+        result.flat[:: len(result) + 1] += self.stepped[time]
         return result
 
 
@@ -95,7 +94,7 @@ def _filter(
         seen = law.seen[time, there]
         across = spread @ seen.T
         expected = seen @ across
-        expected[np.diag_indices_from(expected)] += law.noise[time, there]
+        expected.flat[:: len(expected) + 1] += law.noise[time, there]
         inverse = np.linalg.inv(expected)
         gain = across @ inverse
         left = law.read[time, there] - seen @ mean
