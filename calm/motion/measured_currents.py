@@ -476,9 +476,9 @@ class CurrentSmoother:
 
     @property
     def _steps(self) -> Floats:
-        """Differences (n, s) of datum plus offsets from their medians at each time [m]."""
+        """Changes (n, s) in datum and places since the first time, in the depth of a sensor [m]."""
         stay = self.state[:, self.columns.stays]
-        gone = stay - np.median(stay, axis=0)
+        gone = stay - stay[0]
         sensors = len(self.measured.label)
         return np.asarray(gone[:, :1] + gone[:, 1 + sensors :] * self.fall)
 
@@ -721,7 +721,7 @@ class CurrentSmoother:
         noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
         expected += one.tide_deviation**2 + noise[:, :, None] * np.eye(len(one.label))
         fixed = common_unknowns.fixed_slopes(factors)
-        stay = np.median(self.state[:, at.stays], axis=0)
+        stay = self.state[0, at.stays]
         value, place = np.split(np.concatenate([factor, stay]), [fixed.shape[2]])
         raw = part.depth - there[:, one.point] - bend - part.surface[:, None] + factors @ factor
         raw = np.where(known, raw, 0.0)
