@@ -89,8 +89,9 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Return the schema of all fields that can be overridden; a field that differs between kinds
-    allows all its forms.
+    """Return the schema of all fields that can be overridden.
+
+    A field that differs between kinds of components allows all its forms.
     """
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}

@@ -416,9 +416,7 @@ class Line(_Arrays):
         }
 
     def below_a_point(self) -> Line:
-        """Return the line below an additional first piece, a point without length, weight and
-        drag.
-        """
+        """Return the line below an additional first piece without length, weight and drag."""
         columns: dict[str, Any] = {
             name: np.append(np.zeros(1, column.dtype), column)
             if isinstance(column, np.ndarray)
