@@ -36,7 +36,7 @@ _CLOSE = 0.05  # m between pieces that touch
 # relative difference, and difference in metres, allowed between heights: most are whole metres
 _OFF, _ROUNDED = 0.02, 0.5
 _MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
-# prefixes of the keys of a position, the most exact first
+# prefixes of the keys of a position, the most accurate first
 _PLACES = ("seabed", "deployment", "planned", "")
 _MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
 

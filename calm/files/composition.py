@@ -203,7 +203,7 @@ class _Reader:
                 key = Node("scalar", start, end, line, mark.column + 1, event.style or "", name)
                 value = self._node(self._next(), depth)
                 if value.data is None and value.start == value.end:
-                    # Its event is before whatever comes next.
+                    # The event of an empty value is placed at the next token, not at the key.
                     colon = _COLON.match(self._text, end)
                     if colon is None and _TWO_WORDS.match(name):
                         self._refusals.append(_refusal(event, without_colon(name)))

@@ -191,7 +191,8 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
 def _around(file: MooringFile) -> dict[str, ComparedValue]:
     """Return all values outside the line."""
     found = {name: _figure(name, getattr(file, name) or None) for name in ("name", "description")}
-    around = _figures(file.environment, frozenset({"position", "seas"}))  # they follow from others
+    # position and sea states follow from other values
+    around = _figures(file.environment, frozenset({"position", "seas"}))
     found |= {f"environment.{key}": one for key, one in around.items()}
     names = "position", "tow", "solver", "checks", "uncertainty", "document", "deployed"
     parts = {name: part for name in names if (part := getattr(file, name)) is not None}

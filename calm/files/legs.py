@@ -198,7 +198,7 @@ def read_legs(
         before, first = len(top.problems), len(pieces)
         if isinstance(own.data.get("line"), list):
             read = reader.read(own, "line")
-            for piece in read:  # places count the items of the legs before
+            for piece in read:  # places also count the items of preceding legs
                 place = replace(piece.place, item=piece.place.item + items)
                 pieces.append(placed(piece, place))
             items += len(own.data["line"])

@@ -130,7 +130,7 @@ def line_suspects(
     drag = columns["cable_drag"] + columns["rigid_drag"]
     yield suspect(LINE, "drag", drag)
     yield suspect(LINE, "fouling", share * drag, 1, dragged, share)
-    slope = seen(at.slope)  # a meter that reads low: the line is deeper than computed
+    slope = seen(at.slope)  # negative below: if a meter reads low, the line is deeper than computed
     yield suspect(CURRENTS, "currents", -slope.sum(axis=2))
     levels = level_names(task.measured, line_response.labels_of(task.mooring))
     if len(levels) == moments.groups > 1:

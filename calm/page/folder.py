@@ -114,7 +114,7 @@ def _runtime_files(runtime: Path) -> dict[str, Path]:
     if "pyodide-lock.json" in there:
         packages = _lock(there["pyodide-lock.json"])["packages"]
         names = list(IN_RUNTIME)
-        for name in names:  # which grows
+        for name in names:  # the loop appends the packages that a package needs
             if name in packages:
                 needed = map(normal_name, packages[name]["depends"])
                 names += [each for each in needed if each not in names]

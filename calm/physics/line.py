@@ -30,9 +30,9 @@ class MarchError(ArithmeticError):
 
 
 State = tuple[float, float, float, float, float, float, float, int]
-"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], rise of
-the last axis, and interval of the water. It is a bare tuple, since in CPython a named tuple costs
-half as much as the balance of a segment.
+"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], vertical
+component of the last axis, and interval of the water. It is a bare tuple, because creating a named
+tuple in CPython takes half as long as the balance of a segment.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
@@ -47,7 +47,7 @@ FAILURES = (
 )
 """Description of each outcome of a march."""
 NO_BALANCE = -2.0
-"""Marker in place of the strain of a segment, or the rise of a rod, that has no balance."""
+"""Marker for no balance, in place of the strain of a segment or the vertical axis of a rod."""
 
 
 class Bed(NamedTuple):

@@ -15,7 +15,7 @@ LEAST_PART = 0.01
 
 NEAR_A_LEVEL = 1e-6
 """Depth range beyond a level, as a fraction of the segment's depth range, below which the segment
-is not split at the level. In water that is still at the level, every part would otherwise be split.
+is not split at the level. Without this limit, every part would be split at a level without flow.
 """
 
 

@@ -169,7 +169,7 @@ def locate(
     ships = frame.place(survey.latitude, survey.longitude, np.full(count, survey.transducer))
     model = range_model.RangeModel(survey, sound, frame, ships, depth)
     x, used = model.fitted()
-    inconsistent = model.consistency(x, used)  # a wrong unit is named for what it is
+    inconsistent = model.consistency(x, used)  # before the residuals, to report a wrong unit
     missed, reach = (
         float(np.median(np.abs(each[used]))) for each in (model.residuals(x), model.measured(x))
     )
@@ -319,7 +319,7 @@ def _intervals(
     _, sizes, axes = np.linalg.svd(jacobian, full_matrices=False)
     covariance = (axes.T / np.maximum(sizes, 1e-12) ** 2) @ axes
     lengths, axes = np.linalg.eigh(covariance[:2, :2])
-    # as the residuals tell, and no less than ranges and ship are known to scatter
+    # the scatter of the residuals, but at least the known scatter of ranges and ship
     of_residuals = rms * sqrt(2.0 * float(fisher.ppf(CONFIDENCE, 2, freedom)))
     widest = max(of_residuals, range_model.FLOOR * sqrt(float(chi2.ppf(CONFIDENCE, 2))))
     reach = widest * np.sqrt(np.maximum(lengths, 0.0))
@@ -412,7 +412,7 @@ def _beside_the_plan(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Describe the deviation from the planned position and depth, and list any doubts."""
     planned, plan_depth = file.position, file.environment.depth
-    assert plan_depth is not None  # of a mooring
+    assert plan_depth is not None  # a mooring always has a water depth
     deeper = water_depth - plan_depth
     sentences = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
     doubts = []

@@ -228,7 +228,7 @@ class RangeModel:
         """
         starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
         fits = [self.least_squares(start, used) for start in starts]
-        if self.depth is None:  # a place as deep that fits is one, if a deeper one fits better
+        if self.depth is None:  # another place also counts if it fits at the depth of this one
             same = replace(self, depth=self.frame.position(x)[2])
             fits += [np.append(same.least_squares(start[:2], used), x[2]) for start in starts]
 

@@ -305,7 +305,7 @@ _OTHER_NAMES: Mapping[str, str] = {
 
 _PART = re.compile(r"(?i)(?:ship[ _]?)?(lat|lon)\w*?[ _\[(]*(deg|min|hem|ns|ew|dir)\w*[\])]*")
 _LARGEST = 5_000_000
-_NEAR = 1.0  # degrees between a survey's positions, at most
+_NEAR = 1.0  # degrees: largest difference between the positions of a survey
 _BareRow = tuple[int, list[str]]
 """The number of a line and its cells."""
 

@@ -18,7 +18,7 @@ _SLIGHT = 1e-6  # relative excess of hull volume over net buoyancy
 _FLAT = 1e-3  # m: height assumed for a float without one
 _SOFT = 1e10  # Pa: ropes have a lower modulus, wires a higher one
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
-_LARGEST = 1e9  # m, kg: of no piece
+_LARGEST = 1e9  # m, kg: no piece is longer or heavier
 _ROWS = ("B", "Cd", "ME", "Wt")
 GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
 """Library variables that hold elements."""

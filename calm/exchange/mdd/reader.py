@@ -139,7 +139,7 @@ def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[
         number = count - 1 - number
     if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
-    # a tow is counted from the body up, and shares from the lower end
+    # elements of a tow are numbered from the body up, and shares are from the lower end
     length = design.items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 

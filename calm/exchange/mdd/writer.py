@@ -13,7 +13,7 @@ from calm.units import KILOGRAM_FORCE
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _LONGEST = 32  # characters of a name
-_LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used of
+_LEAST_USED = 1e-3  # smallest used share of the buoyancy of a float, as a divisor
 
 
 def write_mdd(exported: ExportedDesign) -> Exported:

@@ -144,7 +144,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     if depth <= 0.0:
         raise refused(path, "has no depth of the water (`WtrDpth`)")
     density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
-    gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
+    gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # MoorDyn's default
     kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
     current = _currents(beside) if kind in _STEADY and beside.is_file() else ()
     water = model.ImportedWater(depth, density, gravity, current)
@@ -210,7 +210,7 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
         try:
             z, u, v, w = (float(word) for word in line.split()[:4])
         except ValueError:
-            continue  # its head
+            continue  # a line of the header
         if z <= 0.0:
             rows.append((0.0 - z, u, v, w))
     return tuple(sorted(rows))

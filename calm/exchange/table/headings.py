@@ -94,7 +94,8 @@ class ListColumn:
     by_mass : whether forces are in kilograms
     per_metre : whether values of lines are per metre
     known : whether the heading has a unit
-    whole : whether values apply to all pieces of a row together, according to the heading
+    whole : whether the heading marks totals: values of all pieces of a row, or of the whole length
+        of a line
     wrong : mistake in the heading, as a message; empty if there is none
     twin : second column of the same quantity; one of the two is per metre, the other per piece
     """

@@ -365,7 +365,7 @@ def set_value(
         head, below = style.parts(key.data, value, mapping.column, open=open)
     assert colon is not None
     if mapping.style == "block" and old.line > key.line:
-        # Lines below the key: a comment behind the key stays.
+        # The value is in lines below the key, so a comment after the key is kept.
         start, end = line_end(text, colon), own_end(text, old.end, old.column - 1)
         return [Patch(colon, colon, head), Patch(start, end, below)]
     patches = [Patch(colon, old.end, head)]
