@@ -59,8 +59,8 @@ class SeabedKeys(Model):
     @property
     def plane(self) -> tuple[float, float]:
         """Increase in depth per metre to the east and to the north [-]."""
-        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
-        return steep * math.sin(way), steep * math.cos(way)
+        azimuth, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
+        return steep * math.sin(azimuth), steep * math.cos(azimuth)
 
     def deeper(self, places: Floats) -> Floats:
         """Return the increase in depth (n,) at positions (n, 2) east and north of the reference
