@@ -143,9 +143,8 @@ def _friction(
     Returns
     -------
     The drag along the axis, its derivative by the tangential flow, its derivative by the speed
-    times
-    the speed, and for Hoerner's law the drag parallel to the flow divided by the flow. None means
-    zero.
+    times the speed, and for Hoerner's law the drag parallel to the flow divided by the flow. None
+    means zero.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)
@@ -175,8 +174,7 @@ def _afloat(
     Returns
     -------
     Net force and its derivative by height, immersed share of the drag and its derivative by height,
-    and
-    wind force.
+    and wind force.
     """
     on, gravity = chain.elements, sea.water.gravity
     net = on.buoyancy + (density - REFERENCE_DENSITY) * gravity * on.volume

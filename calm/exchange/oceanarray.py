@@ -91,8 +91,7 @@ def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[s
     Returns
     -------
     For each instrument: line number, label, serial number, height above the seabed [m], and the
-    keys of
-    the item with the `recovery_time` of the file.
+    keys of the item with the `recovery_time` of the file.
 
     Raises
     ------

@@ -363,8 +363,7 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     Returns
     -------
     Measured minus predicted values (n, s), and their standard deviations (n, s); NaN if the sensor
-    or
-    all others have no value.
+    or all others have no value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]

@@ -200,8 +200,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     Returns
     -------
     c [N/(m/s)], between 0 and k|V|. If A is opposite to V to within 19.5° there may be three roots;
-    the
-    element takes the smallest when the current increases from rest.
+    the element takes the smallest when the current increases from rest.
     """
     vv = vx * vx + vy * vy + vz * vz
     if k == 0.0 or vv == 0.0:

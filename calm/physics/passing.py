@@ -186,8 +186,7 @@ def pass_cable(
     Returns
     -------
     The state; the unstretched length above the touchdown [m], or -1 without touchdown; the numbers
-    of
-    segments and of nodes so far; and the outcome.
+    of segments and of nodes so far; and the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:

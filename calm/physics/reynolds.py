@@ -53,14 +53,10 @@ def cylinder_coefficient(reynolds: float) -> float:
         and above 4.94e6
 
     Up to 1.61e5, where Cn is 1.18, the curve is Wieselsberger's measurements (NACA report 121).
-    From
-    2.1e5, where Cn is 1.21, it is DNV's recommendation (DNV-RP-C205, figure 6-6, smooth). Between
-    them
-    it is linear in log Re. From 3e4 to 1.61e5 the measurements lie 2 to 4 % below the
-    recommendation.
-    In the drag crisis the recommendation falls later, which is on the safe side, and extends to
-    higher
-    Re. Roshko (1961) found 0.7 above 3.5e6, compared with 0.65 to 0.68 here.
+    From 2.1e5, where Cn is 1.21, it is DNV's recommendation (DNV-RP-C205, figure 6-6, smooth).
+    Between them it is linear in log Re. From 3e4 to 1.61e5 the measurements lie 2 to 4 % below the
+    recommendation. In the drag crisis the recommendation falls later, which is on the safe side,
+    and extends to higher Re. Roshko (1961) found 0.7 above 3.5e6, compared with 0.65 to 0.68 here.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
@@ -73,8 +69,8 @@ def sphere_coefficient(reynolds: float) -> float:
     reynolds : |V| D/ν [-]; the coefficient is constant above 1e6, and below 0.1, where drag no
         longer matters
 
-    Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan
-    Technological University, 2016), whose author advises Re < 1e6.
+    Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan Technological
+    University, 2016), whose author advises Re < 1e6.
     """
     re = min(max(reynolds, _CREEPING), LARGEST_SPHERE)
     intermediate, crisis, beyond = re / 5.0, re / 2.63e5, re / 1e6
@@ -133,12 +129,9 @@ def varying_share(
     Returns
     -------
     c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|. Roots
-    less
-    than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes more
-    drag,
-    an element may be inclined in slow normal flow or upright in fast normal flow. It takes the
-    smallest
-    root, which has more drag, when the current grows from rest.
+    less than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes
+    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. It
+    takes the smallest root, which has more drag, when the current grows from rest.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -223,7 +216,6 @@ def finite_length_factor_above(slenderness: float) -> float:
     slenderness : length over diameter L/D [-]
 
     Source: DNV-RP-C205, table 6-2, whose columns change at Re = 2e5. Here κ is linear in log Re
-    between
-    1.8e5 and 2.2e5, so that the drag has no step.
+    between 1.8e5 and 2.2e5, so that the drag has no step.
     """
     return interpolated(_KAPPA_AT, _KAPPA, log(max(slenderness, 1.0)))

@@ -152,8 +152,8 @@ def absolute_density(
     depth : (...) depth below the surface [m]
     latitude : latitude [degrees]
 
-    Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression
-    of Roquet et al. (2015), Ocean Modelling 90, 29-43, by way of the library gsw.
+    Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression of
+    Roquet et al. (2015), Ocean Modelling 90, 29-43, by way of the library gsw.
     """
     import gsw
 

@@ -100,8 +100,8 @@ class ElongationCurve:
         Loads do not increase, strains decrease, there is a strain without load or a load above the
         breaking load, or values are negative or not finite.
 
-    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the
-    slopes at the points.
+    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the slopes
+    at the points.
     """
 
     __slots__ = ("breaking_load", "knots", "limit", "permanent", "strains", "tensions")

@@ -218,8 +218,7 @@ def amplified_share(
     -------
     c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f at this root. Fixed-point
     iteration with f(c) approaches the root monotonically from below; the iteration is extrapolated
-    as
-    long as the result stays below.
+    as long as the result stays below.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx

@@ -156,8 +156,7 @@ class Buoy:
         Returns
         -------
         Stiffness (3, f) of surge [N/m], of surge coupled with pitch [N], and of pitch [N m];
-        exciting force
-        in surge [N/m] and moment in pitch [N] (2, f).
+        exciting force in surge [N/m] and moment in pitch [N] (2, f).
         """
         if self.panels is None:
             added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)

@@ -216,8 +216,7 @@ def respond(
     Returns
     -------
     The response, and the flow past the nodes for which drag is linearised: (n, 3) standard
-    deviations
-    along the axes of each node [m/s], followed by a row for the pitch of the float.
+    deviations along the axes of each node [m/s], followed by a row for the pitch of the float.
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
