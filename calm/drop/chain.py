@@ -212,8 +212,9 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Find points at given fractions of the length of their pieces: the bar, and the position on
-    it.
+    """Find points at given fractions of the length of their pieces.
+
+    Return their bars, and their positions on the bars.
     """
     first, end = bars[piece].T
     begin, stop = span[piece].T

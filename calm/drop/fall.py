@@ -154,7 +154,7 @@ def fall(
 
 
 def nothing_limits() -> NoEquilibrium:
-    """Return the exception for a fall whose speed no drag limits."""
+    """Return the exception for a fall without drag, whose speed would be unlimited."""
     return Status.NO_EQUILIBRIUM.because(
         "The speed of the line is unlimited, since neither the line nor its anchor has drag.",
         advice="Set the drag of its pieces, or `kt` of the anchor.",
@@ -298,9 +298,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
 
 def _drawn(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Move the free end to a given horizontal distance [m] from the lower end, and let the line
-    settle.
-    """
+    """Move the free end to a distance [m] from the lower end, and let the line settle."""
     end = state.node[0, :2]
     here = float(np.linalg.norm(end))
     for share in np.linspace(0.0, 1.0, 21)[1:]:

@@ -93,9 +93,7 @@ class FallPath:
 
 
 def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
-    """Return the positions (m, 3) [m] of points given by their bar and their position on it, 0 to
-    1.
-    """
+    """Return the positions (m, 3) [m] of points given by bar and position on the bar, 0 to 1."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
@@ -191,9 +189,7 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the depths [m] of the upper and of the deeper end of every piece, followed by the
-    clamps.
-    """
+    """Return the depths [m] of the upper and lower ends of all pieces, and then of the clamps."""
     upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
     clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
     return np.append(upper, clamps), np.append(np.maximum(upper, lower), clamps)
@@ -210,8 +206,7 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 
 
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
-    """Return the tensions at both ends of every piece (t-1, p, 2), and its maximum tension (t-1, p)
-    [N].
+    """Return the tensions at the ends of all pieces (t-1, p, 2), and their maxima [N].
 
     The first state is omitted, because the flow past the line under tow differs from the flow after
     the release. Pieces that are rigidly connected to the free end form one bar and share the
@@ -240,9 +235,8 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 def rest_difference(result: LegResult, rest: Motion) -> float:
     """Return the largest distance between a piece's end at rest and in equilibrium [m].
 
-    Pieces on the seabed are excluded if the line touches down before its anchor. Their heights
-    differ for another reason: in the equilibrium they lie at the level of the seabed, while here
-    they lead up to the top of the anchor.
+    Pieces on the seabed are excluded if the line touches down before its anchor. In the
+    equilibrium they lie at the level of the seabed, but here they lead up to the top of the anchor.
     """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)

@@ -32,10 +32,10 @@ CHECK_FINENESS = Fineness(bars=50, steps=50)
 
 @dataclass(frozen=True)
 class Launch:
-    """Fall of a line behind its anchor, released from a ship that tows it at 1 m/s against the
-    current.
+    """Fall of a line behind its anchor, which is released while the ship tows the line.
 
-    The jerk as the line straightens and the swing of the line are neglected.
+    The line is towed at 1 m/s against the current. The jerk as the line straightens and the swing
+    of the line are neglected.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Launch:
     tangles: tuple[int, ...]
 
     def components(self) -> list[dict[str, Any]]:
-        """Values of the pieces above the anchor, by JSON name."""
+        """Tensions of the pieces above the anchor, with their names in JSON."""
         pairs = zip(self.tension_top.tolist(), self.tension_bottom.tolist(), strict=True)
         return [
             {"index": index, "tension_top": top, "tension_bottom": bottom}
@@ -76,8 +76,12 @@ class Launch:
 
 
 def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
-    """Compute the fall of a mooring that is deployed anchor last. Raises NoEquilibrium as `fall`
-    does.
+    """Compute the fall of a mooring that is deployed anchor last.
+
+    Raises
+    ------
+    NoEquilibrium
+        As in `fall`.
     """
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))
@@ -128,7 +132,7 @@ def falling_line(leg: Leg) -> Line:
 
 
 def falling_anchor(leg: Leg) -> FallingAnchor:
-    """Return the falling anchor of a mooring."""
+    """Return weight and drag of the anchor of a mooring, for its fall."""
     return FallingAnchor(leg.anchor_weight, leg.anchor_drag)
 
 
@@ -170,9 +174,7 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
 
 
 def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -> Motion:
-    """Repeat the last time step of a fall with a factor on the tangential drag and one on the
-    anchor drag.
-    """
+    """Repeat the last time step with factors on the tangential drag and on the anchor drag."""
     landed, falling = drop.states[-1], drop.mover
     # the step ends at the touchdown and may be very short
     least = 0.5 * falling.sea.water.depth / fineness.steps

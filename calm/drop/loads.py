@@ -40,9 +40,7 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return current (3, k), its increase per metre of depth (3, k), and density (k,) at depths
-        (k,).
-        """
+        """Return the current and its increase per metre of depth (3, k), and the density (k,)."""
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
@@ -142,9 +140,9 @@ def _friction(
 
     Returns
     -------
-    The drag along the axis, its derivative by the tangential flow, its derivative by the speed
-    times the speed, and for Hoerner's law the drag parallel to the flow divided by the flow. None
-    means zero.
+    The drag along the axis, its derivative by the tangential flow, its derivative by the speed,
+    multiplied by the speed, and for Hoerner's law the drag parallel to the flow divided by the
+    flow. None means zero.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)
@@ -167,9 +165,8 @@ def _afloat(
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """Compute the effect of the surface on the loads.
 
-    Buoyant loads lose their buoyancy within the surface layer as their top emerges; if its mass is
-    known, the load then weighs on the line. A float with a known hull loses buoyancy and drag with
-    its draft.
+    Buoyant loads lose their buoyancy within the surface layer as their top emerges. A load of known
+    mass then weighs on the line. A float with a known hull loses buoyancy and drag with its draft.
 
     Returns
     -------

@@ -188,9 +188,7 @@ class Mover:
     def anchor_force(
         self, node: Floats, velocity: Floats, slowest: float = SLOWEST
     ) -> tuple[Floats, Floats]:
-        """Return weight plus drag of the falling anchor (3,) [N], and its derivative by velocity
-        (3, 3).
-        """
+        """Return weight plus drag of the falling anchor [N], and its derivative by velocity."""
         current, _, density = self.sea.at(-node[2, -1:])
         flow = current[:, 0] - velocity[:, -1]
         k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
@@ -297,8 +295,9 @@ def _solved(
     slack: Floats,
     fixed: tuple[int, ...],
 ) -> Floats:
-    """Solve the linear system for the correction (n+1, 4) of nodes and tensions; the last tension
-    is 0.
+    """Solve the linear system for the correction (n+1, 4) of nodes and tensions.
+
+    The last tension is 0.
 
     Parameters
     ----------

@@ -109,8 +109,7 @@ class DropPlan:
     rest_difference: float | None
 
     def position(self, place: tuple[float, float]) -> Position | None:
-        """Return the geographic position of a point that is given in m east and north of the
-        target.
+        """Return the geographic position of a point given in m east and north of the target.
 
         Return None if the position of the target is unknown. The conversion uses the tangent plane
         of the WGS 84 ellipsoid and is accurate within 1 m up to 10 km from the target.
@@ -217,8 +216,7 @@ def drop_plan(
     fineness: Fineness = FINE,
     deck_time: Mapping[str, float] | None = None,
 ) -> DropPlan:
-    """Plan the drop of a mooring that is deployed anchor last, with the line streamed behind the
-    ship.
+    """Plan the drop of a mooring that is deployed anchor last, behind the ship.
 
     Parameters
     ----------

@@ -260,8 +260,7 @@ class ExportedLine:
         return paths
 
     def float_as_point(self, density: float) -> tuple[float, float]:
-        """Return net force [N] and drag area [m²] of a point that represents a float below the
-        surface.
+        """Return net force [N] and drag area [m²] of a point that represents a submerged float.
 
         Some programs treat a float as a point without an axis at the end of the line, in the flow
         there and in water of uniform `density` [kg/m³]. The result gives the same load on the line

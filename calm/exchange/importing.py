@@ -1,7 +1,7 @@
 """Import files of other programs: find the format, read the file, and write a mooring file.
 
-CALM adds an anchor that holds, uses entries of the catalogue, and adds an environment. The mooring
-file is read back as a check.
+CALM replaces components by entries of the catalogue where possible, and adds an environment and an
+anchor that is heavy enough. The mooring file is read back as a check.
 """
 
 from __future__ import annotations

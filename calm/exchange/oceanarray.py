@@ -52,8 +52,8 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     Raises
     ------
     InputError
-        The file lists no line, a height or length is missing or wrong, or neither the library nor
-        the catalogue has a component of some name.
+        The file lists no line, a height or length is missing or wrong, or a component
+        is neither in the library nor in the catalogue.
     """
     document, problems = read_document(path), list[Problem]()
     library = {} if options.elements is None else read_library(options.elements)
@@ -312,9 +312,7 @@ class _Strung:
 
 
 def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
-    """Build the line from the anchor up, with ropes inserted between pieces, and add it to the
-    design.
-    """
+    """Add the line to the design from the anchor up, with ropes inserted between pieces."""
     items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # lower ends; the last is for the next piece
     if not line[-1].is_anchor:

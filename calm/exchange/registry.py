@@ -138,8 +138,9 @@ def file_format(name: str) -> FileFormat:
 
 
 def file_formats() -> tuple[FileFormat, ...]:
-    """Return all formats in the order in which they are tried: formats of other packages come
-    first.
+    """Return all formats in the order in which they are tried.
+
+    Formats of other packages come first.
 
     Raises
     ------

@@ -100,8 +100,9 @@ class WordIndex:
 
     @classmethod
     def of(cls, catalogue: Catalogue, text: str) -> Self:
-        """Build the index of a catalogue and the `components:` of a mooring file, as far as
-        readable.
+        """Build the index of a catalogue and of the `components:` of a mooring file.
+
+        Components that cannot be read are omitted.
         """
         try:
             document = compose("", text)

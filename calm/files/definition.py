@@ -367,7 +367,7 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Return whether the definition being validated is for use in air."""
+    """True if the definition being validated is for use in air."""
     return info.context == IN_AIR
 
 

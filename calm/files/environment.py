@@ -51,8 +51,9 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return this seabed relative to another point, given in m east and north of the present
-        one.
+        """Return this seabed relative to another point.
+
+        The point is given in m east and north of the present reference point.
         """
         return self
 
@@ -63,8 +64,8 @@ class SeabedKeys(Model):
         return steep * math.sin(azimuth), steep * math.cos(azimuth)
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the increase in depth (n,) at positions (n, 2) east and north of the reference
-        point [m].
+        """Return the increase in depth (n,) at positions (n, 2) relative to the reference point
+        [m].
         """
         deeper: Floats = places @ np.array(self.plane)
         return deeper
@@ -98,7 +99,7 @@ class Environment:
     depth : water depth [m]; None in a tow without a water depth
     density : density of the fluid [kg/m³], or temperature and salinity for it
     gravity : gravitational acceleration [m/s²]; None if not given
-    current : current by depth
+    current : current speeds and directions by depth
     wind : wind over the water
     position : position of the mooring; None if not given
     depth_range : water depth at low and at high water [m]

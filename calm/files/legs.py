@@ -157,8 +157,9 @@ class FileLeg:
 
 
 def stand_in_anchor(index: int, item: int) -> Piece:
-    """Create a substitute anchor with a reserved id, of zero height and practically unlimited
-    weight.
+    """Create a substitute anchor with a reserved id.
+
+    It has no height, and practically unlimited weight.
     """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))

@@ -264,8 +264,9 @@ class LineReader:
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
     ) -> item_keys.Equipment:
-        """Read the keys for individual equipment; `planned_depth` defaults to the depth in the
-        label.
+        """Read the keys for individual equipment.
+
+        The default of `planned_depth` is the depth in the label.
         """
         equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):

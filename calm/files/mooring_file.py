@@ -115,8 +115,9 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Index of the lowest release in the line, above which parts are recovered; None if there
-        is none.
+        """Index of the lowest release in the line; None if there is none.
+
+        Parts above it are recovered.
         """
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None

@@ -168,8 +168,7 @@ class MooringReader:
         self._catalogue = catalogue
 
     def in_environment(self, environment: str | Path | None = None) -> MooringFile:
-        """Read the file in a named variant, an environment file, or by default its default
-        environment.
+        """Read the file in a named variant or environment file, or in its default environment.
 
         Raises
         ------
@@ -399,7 +398,10 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check an environment that may have a base or be one; its water depth may be missing."""
+    """Check an environment that may have a base or be one.
+
+    Its water depth may therefore be missing.
+    """
     section = section.over(section.holding({"depth": "1 m"}))
     read_environment(section, None, [], open_files=False, towed=towed)
 

@@ -45,8 +45,9 @@ INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
 
 
 class Scales(NamedTuple):
-    """Correlation scales of the anomaly: depth [m], time [s], and uncorrelated share of the
-    variance.
+    """Correlation scales of the anomaly in depth [m] and time [s], and uncorrelated variance.
+
+    The uncorrelated variance is given as a share of the whole.
     """
 
     depth: float
@@ -296,7 +297,7 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
     """Estimate values at fixed levels for some times.
 
     Values between the sensors are flagged as interpolated. Values beyond the sensors, and values
-    that the record constrains poorly, are flagged as doubtful. Values to which both applies are
+    that the record constrains poorly, are flagged as doubtful. Values to which both apply are
     missing.
 
     Parameters

@@ -124,8 +124,7 @@ class Samples:
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Choose the times of the field: those of the depths, or equally spaced times if there is a
-    step.
+    """Choose the times of the field: those of the depths, or equal steps if a step is given.
 
     They cover the period in which both depths and values are known.
 

@@ -87,7 +87,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Extend (n, s, f) derivatives by the factors to (n, s, q), with the datum and the offsets."""
+    """Append the derivatives by datum and offsets to the derivatives (n, s, f) by the factors."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
@@ -119,8 +119,9 @@ LONGEST_MEMORY = 25
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times that share an error, from the autocorrelation of
-    `pull`.
+    """Return the number of successive times that share an error.
+
+    It follows from the autocorrelation of `pull`.
     """
     one = pull - pull.mean()
     whole = float(one @ one)
@@ -172,8 +173,9 @@ class LinearLaw:
 
     @cached_property
     def weight(self) -> Floats:
-        """Weight (n,) of each time under Student's t distribution; a large misfit lowers the
-        weight.
+        """Weight (n,) of each time under Student's t distribution.
+
+        A large misfit lowers the weight.
         """
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
         weight: Floats = (ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit)
@@ -215,8 +217,7 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
 
 def chance_of(code: int, times: int) -> tuple[float, float]:
-    """Return the log prior probability of a fault, and the prior standard deviation of its size
-    [m].
+    """Return the log prior probability of a fault, and the prior deviation of its size [m].
 
     Parameters
     ----------

@@ -42,8 +42,9 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at another state with known depths, updating the slopes by Broyden's
-        method.
+        """Return the model at another state with known depths.
+
+        The slopes are updated by Broyden's method.
         """
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]

@@ -410,8 +410,9 @@ def _describe(
 
 
 def _place(copy: Dataset, result: Dataset) -> list[float]:
-    """Return latitude and longitude [degrees] from the file, else from the mooring; empty if
-    unknown.
+    """Return latitude and longitude [degrees] from the file, or else from the mooring.
+
+    The result is empty if they are unknown.
     """
     found = []
     for axis in ("latitude", "longitude"):

@@ -304,8 +304,9 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths at the present state [m]; renew the slopes where the state has
-        changed.
+        """Return (n, p) depths at the present state [m].
+
+        The slopes are renewed where the state has changed.
         """
         now, factor = self.state[:, self.columns.current], self.factor
         there = self.depths(now, factor, slice(None))
@@ -322,9 +323,7 @@ class CurrentSmoother:
     def _slopes(
         self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> Floats:
-        """Return (n, p, 2 K + f) derivatives of the depths by the currents and the logarithms of
-        factors.
-        """
+        """Return derivatives (n, p, 2 K + f) of the depths by currents and log factors."""
         n, flows = state.shape
         ahead = (state[:, None] + SLOPE_STEP * np.eye(flows)).reshape(-1, flows)
         by_flow = self.depths(ahead, factor, np.repeat(times, flows)).reshape(n, flows, -1)
@@ -368,8 +367,9 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return the state-space model of the currents at the knots, with the meters as only
-        readings.
+        """Return the state-space model of the currents at the knots.
+
+        Its only readings are those of the meters.
         """
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)

@@ -112,7 +112,7 @@ class Fault:
         return self.odds >= LIKELY
 
     def sentence(self, rival: bool = True) -> str:
-        """Describe the fault in a sentence, if `rival` also with the alternative explanations."""
+        """Describe the fault in a sentence, with the alternative explanations in `rival`."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
         way = "late" if self.value > 0.0 else "early"

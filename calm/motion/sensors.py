@@ -366,7 +366,7 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
 
 
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
-    """Return the reason why a sensor is unusable, by the label of each unusable sensor.
+    """Return the labels of unusable sensors, each with the reason.
 
     Parameters
     ----------

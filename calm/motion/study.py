@@ -259,8 +259,9 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return (n,) increase in depth, from its minimum, of the highest sensor that has a pressure
-    [m].
+    """Return the knockdown (n,) of the highest sensor that has a pressure [m].
+
+    This is the increase of the sensor's depth above its minimum.
     """
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):

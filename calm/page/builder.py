@@ -76,8 +76,7 @@ class PageBuilder(BuildApp):
 
 
 class WebPage:
-    """The page as seen from Python: a folder of files in memory, and the builder that edits one of
-    them.
+    """The page as seen from Python: a folder in memory, and the builder that edits a file.
 
     Parameters
     ----------

@@ -46,8 +46,9 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Return draft and immersed area for a share of the displaced volume, all as shares of the
-        whole.
+        """Return draft and immersed area for a share of the displaced volume.
+
+        All are shares of the values of the whole hull.
         """
         return immersed_shares(self.form, self.rows, share)
 

@@ -43,8 +43,7 @@ _seen: dict[Any, Any] = {}
 
 
 def resolving_once(typing: Any) -> Any:
-    """Return a typing context that remembers the signature of each operation for its argument
-    types.
+    """Return a typing context that remembers the signatures of operations.
 
     numba's own context tries all candidates every time. Only the compiler of laws uses this
     context.
@@ -63,8 +62,9 @@ def resolving_once(typing: Any) -> Any:
 
 
 def short_name(name: str, given: Any, **more: Any) -> str:
-    """Return a short symbol for a law; numba's own symbols, with all argument types, are pages
-    long.
+    """Return a short symbol for a law.
+
+    numba's own symbols contain all argument types and are pages long.
     """
     digest = hashlib.sha256(repr(given).encode()).hexdigest()[:16]
     return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))

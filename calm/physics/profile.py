@@ -257,10 +257,9 @@ class Profile:
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """Return the additional buoyancy per displaced volume at a depth, relative to reference
-        water.
+        """Return the additional buoyancy per displaced volume at a depth [N/m³].
 
-        It is in N/m³.
+        It is relative to reference water.
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity

@@ -1,5 +1,4 @@
-"""Independent check of a march: load on every element of a shape, and moment balance of the
-element.
+"""Independent check of a march: load and moment balance of every element of a shape.
 
 All results follow from the recorded coordinates. The interpolation of the water and the laws of
 drag and friction are implemented independently of the march. Only measured curves (stretch, drag,
@@ -322,8 +321,9 @@ def worst_moment(
 
 
 def greatest_size(shape: RefereeShape, first: int) -> float:
-    """Return the largest absolute coordinate [m] if `first` is 0, or the largest force [N] if it is
-    3.
+    """Return the largest absolute coordinate [m], or the largest force [N].
+
+    `first` is 0 for coordinates and 3 for forces.
     """
     greatest = 0.0
     for n in range(shape.nodes):
@@ -336,8 +336,9 @@ def greatest_size(shape: RefereeShape, first: int) -> float:
 
 
 def expected_strain(moored: Moored, body: RefereeBody, middle: float, half: float) -> float:
-    """Return the mean strain of a segment whose tension varies linearly by ± `half` about `middle`
-    [N].
+    """Return the mean strain of a segment.
+
+    The tension varies linearly by ± `half` about `middle` [N].
     """
     if body.first_knot == body.end_knot:
         return body.compliance * middle

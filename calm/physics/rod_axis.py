@@ -131,9 +131,7 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the axis in moment balance, in the water at the depths of the loads for a given
-    `rise`.
-    """
+    """Return the axis in moment balance, in the water at the depths for a `rise`."""
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
@@ -175,10 +173,10 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the next iterate of the axis of a rod, with drags combined at the axis t (see
-    `rod_axis`).
+    """Return the next iterate of the axis of a rod.
 
-    The water is sampled at the depths that the loads have for a given `rise`.
+    Drags are combined at the axis t, see `rod_axis`. The water is sampled at the depths that the
+    loads have for a given `rise`.
     """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
@@ -232,7 +230,10 @@ def _following_axis(
 
 @within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
-    """Return buoyancy plus lift of a rigid piece or clamp [N], for a squared current speed."""
+    """Return buoyancy plus lift of a rigid piece or clamp [N].
+
+    `squared` is the square of the current speed.
+    """
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
     return lift + density / REFERENCE_DENSITY * load.lift * squared
 
@@ -250,8 +251,9 @@ def load_force(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the sum of buoyancy, drag, lift and wind force on a rigid piece or clamp of axis t
-    [N].
+    """Return the force on a rigid piece or clamp of axis t [N].
+
+    It is the sum of buoyancy, drag, lift and wind force.
 
     Parameters
     ----------

@@ -105,9 +105,10 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a part of a line that is under tension, and the tension at its end.
+    """Return the fraction of a part of a line that is under tension, and the tension at its end
+    [N].
 
-    The unit is N. Friction and slope would reduce the tension by `hold` along the whole part [N].
+    Friction and slope would reduce the tension by `hold` along the whole part [N].
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -159,8 +160,7 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Return the relative difference between the sum of the loads and the force at the end of the
-    line.
+    """Return the relative difference between the sum of the loads and the force at the end.
 
     If the line has a part on the seabed, the loads above its touchdown must leave no force normal
     to the seabed. Exceptions are a downward force at a rigid piece or clamp that stands on the

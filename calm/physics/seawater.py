@@ -1,7 +1,7 @@
-"""Properties of sea water, and gravity: density by TEOS-10, viscosity by Sharqawy, gravity by
-latitude.
+"""Properties of sea water, and gravity.
 
-Positions are geographic, in degrees north and east, as in TEOS-10.
+Density follows from TEOS-10, viscosity from Sharqawy, and gravity from the latitude. Positions are
+geographic, in degrees north and east, as in TEOS-10.
 """
 
 from __future__ import annotations

@@ -14,8 +14,7 @@ _GAUSS = sqrt(1.0 / 3.0)
 
 
 class Knot(NamedTuple):
-    """A point of an elongation curve: its tension [N], and a cubic polynomial for the strain above
-    it.
+    """A point of an elongation curve, and a cubic polynomial for the strain above it.
 
     The strain is a + x (b + x (c + x d)) at x newtons above the tension of the point.
     """
@@ -28,10 +27,10 @@ class Knot(NamedTuple):
 
 
 def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
-    """Return the strain [-] of a rope at a tension ≥ 0 [N], from knots `first` to `end` of its
-    curve.
+    """Return the strain of a rope at a tension ≥ 0 [N].
 
-    Monotone cubic interpolation, with linear extrapolation above the last knot.
+    `first` and `end` are the range of the knots of its curve. Monotone cubic interpolation, with
+    linear extrapolation above the last knot.
     """
     knot = knots[_knots_below(knots, first + 1, end, tension) - 1]
     x = tension - knot.tension
@@ -41,8 +40,7 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Return the mean strain [-] for a tension that varies linearly by ± `half` about `tension`
-    [N].
+    """Return the mean strain if the tension varies linearly by ± `half` about `tension` [N].
 
     Two Gauss points between each pair of knots in the range make this exact.
     """
@@ -162,8 +160,9 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
 
 
 def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float, float]]:
-    """Return the coefficients of y in powers of x - xs[i] for every interval, and beyond the last
-    point.
+    """Return the coefficients of y in powers of x - xs[i] for every interval.
+
+    The last ones apply beyond the last point.
     """
     widths = [b - a for a, b in pairwise(xs)]
     chords = [(b - a) / h for (a, b), h in zip(pairwise(ys), widths, strict=True)]

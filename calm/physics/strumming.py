@@ -70,11 +70,11 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
 def line_amplitude(
     mass: float, diameter: float, density: float, damping: float = STRUCTURAL_DAMPING
 ) -> float:
-    """Return the amplitude ratio A/D of a strumming line, by `griffin_skop` with a cable's mode
-    factor.
+    """Return the amplitude ratio A/D of a strumming line.
 
-    The result does not depend on the current: at any speed, some mode of a long line is excited.
-    Values for ropes and wires in water are between 0.68 and 0.74.
+    It is that of `griffin_skop` with the mode factor of a cable. The result does not depend on the
+    current: at any speed, some mode of a long line is excited. Values for ropes and wires in water
+    are between 0.68 and 0.74.
 
     Parameters
     ----------
@@ -205,8 +205,7 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """Return `drag_share` for a strumming cable, whose drag coefficient depends on its angle to the
-    flow.
+    """Return `drag_share` for a strumming cable, whose Cn depends on its angle to the flow.
 
     Parameters
     ----------
@@ -299,8 +298,7 @@ class BourgetMarichal:
         return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
-        """Return the frequency F = 0.166 V₀ sin φ_n/D [Hz], common to the whole cable of diameter D
-        [m].
+        """Return the frequency F = 0.166 V₀ sin φ_n/D [Hz], common to the whole cable.
 
         Parameters
         ----------
@@ -310,16 +308,14 @@ class BourgetMarichal:
         return self.strouhal * speed * sin(ship_angle) / diameter
 
     def factor(self, angle: float, beat: float) -> float:
-        """Return the drag ratio C*/C₀, at most `greatest`, of a cable at an angle φ to the flow
-        [rad].
+        """Return the drag ratio C*/C₀ of a cable at an angle φ to the flow [rad].
 
-        `beat` is as in `Vibration`.
+        It is at most `greatest`. `beat` is as in `Vibration`.
         """
         return strummed(self.vibration(beat), min(sin(angle), 1.0))
 
     def coefficient(self, angle: float, ship_angle: float) -> float:
-        """Return the drag coefficient C* of a cable in a uniform flow, which is independent of
-        speed.
+        """Return the drag coefficient C* of a cable in a uniform flow of any speed.
 
         Parameters
         ----------

@@ -304,8 +304,7 @@ def _scatter(residuals: Floats, freedom: int) -> float:
 def _intervals(
     jacobian: Floats, rms: float, freedom: int, depth_given: bool, farthest: float
 ) -> tuple[float, float, float, float]:
-    """Return both semi-axes of the 95 % ellipse [m], bearing of the major axis, and depth interval
-    [m].
+    """Return semi-axes [m] and bearing [degrees] of the 95 % ellipse, and the depth interval.
 
     The bearing is in degrees; the depth interval is half of the 95 % interval. An interval that is
     as wide as the longest range is NaN.

@@ -147,11 +147,10 @@ class _Setting:
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
-        """Compute standard deviations of tension (seas, pieces) [N] and of pitch of the float
-        (seas, 1).
+        """Compute the standard deviations of tension [N], and of the pitch of the float.
 
-        Tensions are 0 on the seabed, and the pitch is 0 if unknown. Also return the flow past the
-        nodes in each sea.
+        They are arrays (seas, pieces) and (seas, 1). Tensions are 0 on the seabed, and the pitch is
+        0 if unknown. Also return the flow past the nodes in each sea.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])

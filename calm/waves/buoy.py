@@ -105,8 +105,7 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness in heave, and the exciting force per metre of wave elevation
-        [N/m].
+        """Return dynamic stiffness and exciting force per metre of elevation in heave [N/m].
 
         The formulas for a disc of radius R at the draft T are: Froude-Krylov force ρgA e^(-kT) 2
         J1(kR)/(kR); added mass `DISC_ADDED`, excited by the acceleration of the water at this
@@ -142,8 +141,7 @@ class Buoy:
     def pitch(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness in surge and pitch, and the exciting forces per metre of
-        elevation.
+        """Return dynamic stiffness and exciting forces per metre of elevation, in surge and pitch.
 
         They refer to the point where the axis of the float meets the surface. Pitch is positive if
         the part above the surface moves forward.
@@ -175,8 +173,9 @@ class Buoy:
         return held, pushing
 
     def _given(self, omega: Floats, column: int) -> Complexes:
-        """Interpolate a response in `rao`, with amplitudes in `column` and phases in the next
-        column.
+        """Interpolate a response in `rao`.
+
+        The amplitudes are in `column`, and the phases in the next column.
         """
         at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
         turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
@@ -199,8 +198,7 @@ class Buoy:
     def _of_sections(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Floats, Floats, Complexes]:
-        """Compute added mass (3, f), radiation damping (3, f) and exciting forces (2, f), as in
-        `pitch`.
+        """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
         They are integrated over the sections of the hull. Exciting forces include the wave pressure
         on the hull and the inertia of the water, with the local acceleration: the added mass of the

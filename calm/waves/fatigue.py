@@ -140,8 +140,7 @@ def moments_of(omega: Floats, spectral: Floats) -> Floats:
 
 
 def dirlik(moments: Sequence[float], slope: float) -> float:
-    """Return the mean of R^slope of the rainflow ranges R of a Gaussian process, times their rate
-    [1/s].
+    """Return the mean of R^slope of the rainflow ranges R, times their rate [1/s].
 
     The ranges have one exponential and two Rayleigh distributions that were fitted to simulations
     (Dirlik 1985, Application of computers in fatigue analysis, University of Warwick).
@@ -171,11 +170,10 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
 
 
 def narrow_band(moments: Sequence[float], slope: float) -> float:
-    """Return the result of `dirlik` for a narrow-band process, whose ranges have a Rayleigh
-    distribution.
+    """Return the result of `dirlik` for a narrow-band process.
 
-    The formula is ν0 (2 √(2 m0))^m Γ(1 + m/2). It is an upper bound for all processes with the same
-    moments m0 and m2 (Rychlik 1993).
+    The ranges of such a process have a Rayleigh distribution. The formula is ν0 (2 √(2 m0))^m Γ(1 +
+    m/2). It is an upper bound for all processes with the same moments m0 and m2 (Rychlik 1993).
     """
     zeroth, _, second, _ = moments
     if not zeroth > 0.0:

@@ -87,8 +87,9 @@ class LumpedLine:
     inextensible: tuple[str, ...]
 
     def turned(self, motion: Complexes) -> Complexes:
-        """Return the rotation (f, n-1, 3) of the springs normal to their axes, for motions (f, n,
-        3) [rad].
+        """Return the rotation (f, n-1, 3) of the springs [rad], for motions (f, n, 3).
+
+        It is normal to their axes.
         """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
@@ -210,9 +211,7 @@ _NODE_FIGURES = (
 def _element_figures(
     component: Component, carried: Line, piece: int, cut: float
 ) -> dict[str, float]:
-    """Return masses and drag of an element, which is a rigid piece or `cut` metres of a flexible
-    one.
-    """
+    """Return masses and drag of a rigid piece, or of `cut` metres of a flexible piece."""
     flexible = isinstance(component, Flexible)
     share, length = (cut, 1.0) if flexible else (1.0, _length_of(component))
     across, along = float(carried.normal_drag[piece]), float(carried.tangential_drag[piece])

@@ -24,7 +24,7 @@ COMPARED = 1.0, 10.0
 
 @dataclass(frozen=True)
 class MeasuredBand:
-    """Band of the ratio of measured to computed standard deviation of tension, from `low` to
+    """Range of the ratio of measured to computed standard deviation of tension, from `low` to
     `high`.
 
     `from_height` and `to_height` are the limits of significant height of the seas compared [m].

@@ -79,7 +79,7 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state up to its cut-off frequency, and up to half and twice of it."""
+    """Responses to a sea state up to its cut-off frequency, half of it, and twice it."""
 
     full: WaveResponse
     half: WaveResponse
@@ -101,7 +101,8 @@ class MooringInSea:
         computed only in the highest of several seas; None in other seas and for a line below the
         surface
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
-    moments : moments of the tension in the pieces, for the cut-off frequency, half and twice of it
+    moments : moments of the tension in the pieces, for the cut-off frequency, half of it, and twice
+        it
     spectrum : angular frequencies [rad/s], and spectrum of the tension at the top [N² s/rad]
     along : depth [m], and mean, standard deviation and maximum of the tension down the line [N]
     """
@@ -186,7 +187,7 @@ def mooring_in_sea(
 
     Parameters
     ----------
-    responses : responses for the cut-off frequency, half and twice of it
+    responses : responses for the cut-off frequency, half of it, and twice it
     duration : duration to which the maximum and the minimum tension refer [s]
     follower : `MooringInSea.follower_std` of the result
     """

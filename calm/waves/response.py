@@ -108,8 +108,7 @@ class Waves:
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the water velocity (f, n, 3) at positions (n, 3), per metre of wave elevation
-        [1/s].
+        """Return the velocity (f, n, 3) of water at positions (n, 3), per metre of wave [1/s].
 
         The elevation of the linear waves is the real part of e^(i(ωt - ks)), with s in the
         direction of travel.
@@ -177,8 +176,9 @@ class _Afloat(NamedTuple):
         return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
-        """Return stiffness and exciting forces including a linear drag (3, 3) and a rotational
-        drag.
+        """Return stiffness and exciting forces including drag.
+
+        The drag is a linear drag (3, 3) and a rotational drag.
         """
         each = drag / len(self.ways)
         whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
@@ -259,8 +259,9 @@ def respond(
 
 
 def _axes(line: LumpedLine) -> Floats:
-    """Return (n, 3, 3) unit vectors: along the line, along the mean normal flow, and normal to
-    both.
+    """Return (n, 3, 3) unit vectors at the nodes.
+
+    They lie along the line, along the mean normal flow, and normal to both.
     """
     t = line.tangent
     across = line.current - (line.current * t).sum(1, keepdims=True) * t

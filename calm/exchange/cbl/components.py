@@ -98,8 +98,9 @@ class ComponentMaker:
             component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """Convert a connector to a sphere of the same drag and length, or to a body if it has no
-        size.
+        """Convert a connector to a sphere of the same drag and length.
+
+        A connector without size becomes a body.
         """
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
@@ -189,11 +190,11 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight in the file's water to CALM's reference water, and return it with the
-        mass.
+        """Convert a weight in the file's water to reference water.
 
-        The displaced volume follows from weight and mass, so that the weight in the file's own
-        water is unchanged. If the mass is impossible, the mass is 0 and the weight is unchanged.
+        Return it with the mass. The displaced volume follows from weight and mass, so that the
+        weight in the file's own water is unchanged. If the mass is impossible, the mass is 0 and
+        the weight is unchanged.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0
@@ -230,8 +231,9 @@ def varies(definition: CableDefinition) -> bool:
 def _displacement(
     definition: CableDefinition, shape: str
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return the displacement table of a buoy: draft [m], displaced volume [m³], immersed area
-    [m²].
+    """Return the displacement table of a buoy.
+
+    Its columns are draft [m], displaced volume [m³] and immersed area [m²].
     """
     values = definition.values
     across = values.number("d", "diam")

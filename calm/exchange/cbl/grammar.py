@@ -51,8 +51,7 @@ class KeyValue:
         return self.formula.at(**values)
 
     def at(self, depth: float) -> float:
-        """Evaluate the formula or table at a depth, or at the speed or strain on which a table
-        depends.
+        """Evaluate the formula or table at a depth, or at the speed or strain that it depends on.
 
         A table is interpolated linearly, and extrapolated beyond its ends.
         """
@@ -214,7 +213,7 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
 
 
 def _section_name(words: TokenStream) -> str | None:
-    """Return the name of a section that begins here, or None."""
+    """Return the name of a section that begins here; None if none begins here."""
     word, behind = words.next.text.lower(), words.ahead(1)
     if words.next.kind != "name" or word not in _SECTIONS:
         return None

@@ -185,9 +185,7 @@ class CableLayout:
     def _clamps(
         self, segment: grammar.CableSegment, length: float
     ) -> list[tuple[float, model.ImportedComponent]]:
-        """Return the items attached to nodes of a segment, with their heights above its lower end
-        [m].
-        """
+        """Return the items at the nodes of a segment, with heights above its lower end [m]."""
         heights = _heights(segment, length) if segment.attachments else []
         found = []
         for token, nodes in segment.attachments:
@@ -248,8 +246,9 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return the pieces at an end of a leg, the key of its connection, and whether it leads
-        down.
+        """Return the pieces at an end of a leg.
+
+        Return also the key of its connection, and whether the leg leads down.
         """
         if isinstance(at, str):
             return [], model.joined_at(at), False

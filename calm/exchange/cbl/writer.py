@@ -302,8 +302,7 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
 
 
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
-    """Return the factor on the drag coefficient of a hull that gives CALM's drag at the present
-    draft.
+    """Return the factor on a hull's drag coefficient that gives CALM's drag at its draft.
 
     `net` is the net buoyancy in use, and `most` the buoyancy of the whole hull [N].
     """

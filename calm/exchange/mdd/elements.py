@@ -272,8 +272,9 @@ def _names(variables: MatVariables, name: str, count: int) -> list[str]:
 
 
 def _modulus(value: float) -> float | None:
-    """Return the elastic modulus [Pa]; a small whole number in the file is the number of a
-    material.
+    """Return the elastic modulus [Pa].
+
+    A small whole number in the file is the number of a material.
     """
     if not value > 0.0:
         return None

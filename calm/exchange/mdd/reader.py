@@ -108,7 +108,7 @@ def _lay_tow(
 def _clamp(
     design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Clamp each clamped element on its piece, at a fraction of the length from its lower end."""
+    """Attach each clamped element to its piece, at a fraction of the length from its lower end."""
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)

@@ -111,9 +111,7 @@ class _System:
         return points, lines
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
-        """Return the values of a line type as text, from its load per metre and its stiffness EA
-        [N].
-        """
+        """Return the values of a line type as text, from its load per metre and its EA [N]."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -247,7 +245,7 @@ def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
 
 
 def _stiff(length: float) -> float:
-    """Return the EA of a rigid length [N]."""
+    """Return the stiffness EA that represents a rigid length [N]."""
     return _RIGID * min(length / _SHORT, 1.0)
 
 

@@ -200,8 +200,9 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
 
 def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
-    """Find the columns in a row of headings; the cells below the heading of the names must have
-    words.
+    """Find the columns in a row of headings.
+
+    The cells below the heading of the names must contain words.
     """
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
@@ -305,7 +306,9 @@ def _is_unit(cell: str) -> bool:
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """Return the index of the first column without a heading that contains words; None if none."""
+    """Return the index of the first column without a heading that contains words; None if there is
+    none.
+    """
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):

@@ -111,11 +111,10 @@ def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
     path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return name, cells and headings of the only sheet with headings; return None if there is
-    none.
+    """Return name, cells and headings of the only sheet with headings.
 
-    A hidden sheet is used only if no visible sheet has headings. Remarks about hidden sheets and
-    parts are added to `remarks`.
+    Return None if no sheet has headings. A hidden sheet is used only if no visible sheet has
+    headings. Remarks about hidden sheets and parts are added to `remarks`.
 
     Raises
     ------

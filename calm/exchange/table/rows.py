@@ -192,7 +192,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
 
 
 def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide values for all pieces of a row by its count; headings such as "total" mark them."""
+    """Divide values by the count of pieces in a row, if the heading shows that they are totals."""
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
@@ -287,7 +287,10 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """True if lines of equal name but different length have equal values (per metre)."""
+    """True if lines of the same name have equal values although their lengths differ.
+
+    Such values are per metre.
+    """
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:
         length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))

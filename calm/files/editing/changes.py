@@ -105,8 +105,12 @@ class Page:
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
-        """Sort indices of list items and remove repetitions; raise EditError if an item does not
-        exist.
+        """Sort the indices of list items and remove repetitions.
+
+        Raises
+        ------
+        EditError
+            An item does not exist.
         """
         node = self.node(location)
         count = len(node.children) if node is not None and node.kind == "sequence" else 0
