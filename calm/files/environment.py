@@ -64,9 +64,7 @@ class SeabedKeys(Model):
         return steep * math.sin(azimuth), steep * math.cos(azimuth)
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the increase in depth (n,) at positions (n, 2) relative to the reference point
-        [m].
-        """
+        """Return the increase in depth (n,) at positions (n, 2) from the reference point [m]."""
         deeper: Floats = places @ np.array(self.plane)
         return deeper
 

@@ -131,13 +131,12 @@ class MooringFile:
 
     @property
     def anchor_friction(self) -> float:
-        """Friction coefficient of the anchor on a level seabed, from the anchor or else from
-        `checks:`.
+        """Friction coefficient with which the anchor would hold as well on a level seabed.
 
-        It accounts for a slope b of the seabed: an anchor of weight w under a load H down the
-        slope, the least favourable direction, holds if H cos b + w sin b <= friction (w cos b - H
-        sin b). On a level seabed this corresponds to the friction coefficient tan(arctan(friction)
-        - b).
+        It follows from the friction of the anchor, or else from that of `checks:`, and from the
+        slope b of the seabed. An anchor of weight w under a load H down the slope, the least
+        favourable direction, holds if H cos b + w sin b <= friction (w cos b - H sin b). On a level
+        seabed this corresponds to the friction coefficient tan(arctan(friction) - b).
         """
         own, seabed = self.anchor.friction, self.environment.seabed
         friction = self.checks.anchor_friction if own is None else own

@@ -105,8 +105,7 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a part of a line that is under tension, and the tension at its end
-    [N].
+    """Return the fraction of a part of a line under tension, and the tension at its end [N].
 
     Friction and slope would reduce the tension by `hold` along the whole part [N].
     """

@@ -24,8 +24,9 @@ COMPARED = 1.0, 10.0
 
 @dataclass(frozen=True)
 class MeasuredBand:
-    """Range of the ratio of measured to computed standard deviation of tension, from `low` to
-    `high`.
+    """Range of the ratio of measured to computed tension, from `low` to `high`.
+
+    The ratio is that of the standard deviations.
 
     `from_height` and `to_height` are the limits of significant height of the seas compared [m].
     """

@@ -306,9 +306,7 @@ def _is_unit(cell: str) -> bool:
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """Return the index of the first column without a heading that contains words; None if there is
-    none.
-    """
+    """Return the index of the first column of words without a heading; None if there is none."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
