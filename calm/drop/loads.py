@@ -40,7 +40,7 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the current and its increase per metre of depth (3, k), and the density (k,)."""
+        """Return current and its increase per metre of depth (3, k), and density, at k depths."""
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)

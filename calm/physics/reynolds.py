@@ -191,7 +191,7 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Return the ratio of the drag to the drag with the constant coefficient."""
+        """Return the ratio of the drag at a Reynolds number to that of the constant coefficient."""
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property

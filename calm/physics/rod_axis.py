@@ -131,7 +131,7 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the axis in moment balance, in the water at the depths for a `rise`."""
+    """Return the axis in moment balance, in the water at the depths that follow from a `rise`."""
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)

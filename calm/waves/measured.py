@@ -26,9 +26,8 @@ COMPARED = 1.0, 10.0
 class MeasuredBand:
     """Range of the ratio of measured to computed tension, from `low` to `high`.
 
-    The ratio is that of the standard deviations.
-
-    `from_height` and `to_height` are the limits of significant height of the seas compared [m].
+    The ratio is that of the standard deviations. `from_height` and `to_height` are the limits of
+    significant height of the seas compared [m].
     """
 
     low: float

@@ -108,10 +108,10 @@ class Waves:
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity (f, n, 3) of water at positions (n, 3), per metre of wave [1/s].
+        """Return the velocity (f, n, 3) of water at positions (n, 3) [1/s].
 
-        The elevation of the linear waves is the real part of e^(i(ωt - ks)), with s in the
-        direction of travel.
+        It is per metre of wave elevation. The elevation of the linear waves is the real part of
+        e^(i(ωt - ks)), with s in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
