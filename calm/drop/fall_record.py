@@ -235,8 +235,8 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 def rest_difference(result: LegResult, rest: Motion) -> float:
     """Return the largest distance between a piece's end at rest and in equilibrium [m].
 
-    Pieces on the seabed are excluded if the line touches down before its anchor. In the
-    equilibrium they lie at the level of the seabed, but here they lead up to the top of the anchor.
+    Pieces on the seabed are excluded if the line touches down before its anchor. In the equilibrium
+    they lie at the level of the seabed, but here they lead up to the top of the anchor.
     """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)

@@ -52,8 +52,8 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     Raises
     ------
     InputError
-        The file lists no line, a height or length is missing or wrong, or a component is neither
-        in the library nor in the catalogue.
+        The file lists no line, a height or length is missing or wrong, or a component is neither in
+        the library nor in the catalogue.
     """
     document, problems = read_document(path), list[Problem]()
     library = {} if options.elements is None else read_library(options.elements)
