@@ -9,7 +9,7 @@ from typing import Literal
 
 
 def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
-    """Return the folder of the shipped catalogue, lines or manual.
+    """Return the folder of the shipped catalogue, of the example lines or of the manual.
 
     Raises
     ------
@@ -42,6 +42,6 @@ None accepts a figure that is not known: that is for whoever signs the design.
 
 
 def template(kind: Template) -> str:
-    """Return the text of the template of a kind."""
+    """Return the text of a template by its kind."""
     folder = importlib.resources.files("calm") / "templates"
     return (folder / f"{kind}.yaml").read_text(encoding="utf-8")

@@ -145,12 +145,11 @@ class QuantityError(ValueError):
     Attributes
     ----------
     complaint : str
-        What is wrong, to be read after the invalid text: "needs a unit".
+        The fault, worded to follow the invalid text: "needs a unit".
     suggestion : str or None
         The corrected text, if a correction is known.
     is_other : bool
-        Whether the text is of another dimension, so that either its unit or its number may be
-        wrong.
+        Whether the text has another dimension, so that its unit or its number may be wrong.
     """
 
     def __init__(
@@ -187,7 +186,7 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
 
 @functools.lru_cache(maxsize=4096)
 def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
-    """Return the value of a text without surrounding blanks."""
+    """Parse a stripped text to its SI value."""
     wanted = DIMENSIONS[dimension]
     if dimension in HEMISPHERES:
         try:
@@ -294,15 +293,14 @@ def unit_factor(text: str, dimension: str) -> float:
 
 
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
-    """Return factor and offset between two units: a value x becomes ``factor * x + offset`` in the
-    other.
+    """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
     Factor and offset come from pint, which knows the zeros of temperature scales.
 
     Parameters
     ----------
-    text : the unit, such as ``"K"`` or ``"S m-1"``
-    wanted : the other unit, as pint writes it
+    text : original unit, such as ``"K"`` or ``"S m-1"``
+    wanted : target unit, as pint writes it
 
     Raises
     ------
@@ -360,7 +358,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
 
 
 def _tidy(unit: str) -> str:
-    """Return a single spelling for the variants of a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
+    """Reduce the spellings of a unit to one: `m s-1`, `m.s^-1` and `m·s⁻¹` become the same."""
     unit = unit.strip().replace("**", "^").replace("·", "*")
     unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)
