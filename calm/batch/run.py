@@ -1,4 +1,4 @@
-"""Solution of every profile of a record in blocks, and output as one file, complete or none."""
+"""Solution of every profile of a record in blocks, and output as one file."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -35,8 +35,8 @@ def run_batch(
 ) -> dict[str, int]:
     """Solve a mooring for every profile of a record, and write the result file.
 
-    The file gets its final name when it is complete. If the run ends earlier, no new file remains,
-    and an older result is kept.
+    The file gets its final name when it is complete. If the run stops earlier, no new file remains,
+    and an older result is not overwritten.
 
     Parameters
     ----------
