@@ -1,7 +1,7 @@
 """The rule `environment`: doubtful values in the environments of a mooring.
 
-The rule reports the `Environment.doubts` of each environment. A comparison of the environments
-reveals a storm that is weaker than the ordinary current, and missing wind for a float with a wind
+The rule reports the `Environment.doubts` of each environment. By comparing the environments, it
+also finds a storm that is weaker than the ordinary current, and missing wind if a float has a wind
 area.
 """
 
@@ -54,10 +54,11 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Warn if levels of the stronger current are much weaker than those of the ordinary current.
+    """Warn if a current that should be the stronger one is much weaker at some levels than the
+    ordinary current.
 
-    A current counts as stronger by the name of its environment, or by its maximum. If only the
-    maximum is larger, the upper and lower ends of the profile may be weaker.
+    A current should be stronger because of the name of its environment, or because its maximum is
+    larger. In the second case, it may be weaker at the upper and lower ends of the profile.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)
