@@ -18,8 +18,7 @@ def new(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     force: bool = False,
 ) -> ExitCode:
-    """Write an example of a mooring file with comments, or of a matching current
-    record.
+    """Write an example mooring file with comments, or a matching current record.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Write drawings to files, and replace characters not allowed in drawings."""
+"""Writing of drawings to files, and replacement of characters that a drawing must not contain."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 
 
 def check_format(path: Path) -> None:
-    """Raise UsageError, with the allowed formats, if the suffix of a picture's file name is not
-    allowed.
+    """Raise UsageError, with the allowed formats, if a picture cannot have the suffix of the given
+    file name.
     """
     if path.suffix.lower() not in FORMATS:
         allowed = f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}"
@@ -24,7 +24,7 @@ def check_format(path: Path) -> None:
 
 
 def image(svg: str, suffix: str) -> bytes:
-    """Convert a drawing to the bytes of an SVG, PNG or PDF file; a PDF page has the size of the
+    """Convert a drawing to the content of an SVG, PNG or PDF file. A PDF page has the size of the
     drawing.
 
     The suffix is one of `FORMATS`, in upper or lower case.
@@ -48,9 +48,7 @@ def within_xml(text: str) -> str:
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """Prefix the identifiers of a drawing, so that several drawings on a page have distinct
-    identifiers.
-    """
+    """Prefix the identifiers in a drawing, so that those of several drawings on a page differ."""
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
 
 
@@ -69,7 +67,7 @@ def printable(text: str) -> str:
 
 
 def in_ascii(text: str) -> str:
-    """Write out the symbols of units and arithmetic in ASCII: ``27 deg`` for ``27°``.
+    """Replace the symbols of units and arithmetic by ASCII text: ``27 deg`` for ``27°``.
 
     Letters are not changed.
     """

@@ -1,7 +1,7 @@
-"""Draw the parts of a line in a column, with symbols, wrapped texts and values.
+"""Drawing of the parts of a line in a column, with symbols, wrapped texts and values.
 
-The schematic is one such column, an SVG picture in order from the top and not to scale; the pages
-of a mooring diagram hold several columns. Lengths are in points (1/72 inch).
+The schematic of a line is one such column as an SVG picture, in order from the top and not to
+scale. The pages of a mooring diagram have several columns. Lengths are in points (1/72 inch).
 """
 
 from __future__ import annotations
@@ -43,13 +43,14 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
-    """Draw a line as an SVG picture that prints on A4 up to about 50 parts, and on a longer sheet
-    otherwise.
+    """Draw a line as an SVG picture. Up to about 50 parts fit on an A4 page; more parts need a
+    longer sheet.
 
-    The picture has no external references, identifiers or style sheets, so that it can be placed on
-    a page with others. Long texts wrap and are never cut. The same line gives the same text. With a
-    result, depths are under load and in the current; without a result, they refer to the upright,
-    unstretched line, and are unknown for a tow and for a float at the surface.
+    The picture has no external references, identifiers or style sheets, so that several pictures
+    can be placed on a page. Long texts are wrapped and never cut. The same line always gives the
+    same picture. With a result, depths are under load and in the current. Without a result, depths
+    are those of the upright, unstretched line; they are unknown for a tow and for a float at the
+    surface.
     """
     shown = schematic_of(file, result)
     rows = [row for part in shown.parts for row in part.rows]
@@ -82,7 +83,9 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
 
 
 def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:
-    """Level of the sea surface, or of a helicopter's hook, and the placed parts below."""
+    """Place the parts; return them and the level of the sea surface, or of the hook of a
+    helicopter.
+    """
     parts = measured(shown.parts, column)
     if shown.towed_by is None:
         middle = parts[0].height / 2
@@ -101,7 +104,7 @@ def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tupl
 def _draw_scene(
     page: Pen, shown: Schematic, column: LineColumn, surface: float, bottom: float
 ) -> None:
-    """Draw water, surface, seabed and the towing vehicle, with their texts."""
+    """Draw the water, its surface, the seabed and the towing vehicle, with their texts."""
     if shown.sea is not None:
         draw_sea(page, column, 0.0, (surface, bottom), None if shown.surface else shown.sea)
     if shown.seabed is not None:
@@ -117,13 +120,13 @@ def _draw_scene(
 
 @dataclass(frozen=True)
 class LineColumn:
-    """Layout of a column: positions of line, texts and values.
+    """Layout of a column: positions of the line, the texts and the values.
 
     Attributes
     ----------
     width : total width
-    headings : headings of the values, line by line, with the unit last
-    rights : right edges of the columns of values
+    headings : headings of the values; each is a sequence of text lines, with the unit last
+    rights : right edge of each column of values
     text : left and right edge of the texts
     line_at : position of the line from the left edge
     """
@@ -141,13 +144,13 @@ def column_of(
     width: float,
     line_at: float = 26.0,
 ) -> LineColumn:
-    """Compute the layout of a column, with room for the widest entry in each column of values.
+    """Compute the layout of a column. Each column of values is as wide as its widest entry.
 
     Parameters
     ----------
     parts : rows of text next to the line
-    headings : headings of their values
-    line_at : position of the line; the picture is twice as wide
+    headings : headings of the values
+    line_at : distance of the line from the left edge; the symbols take twice this width
     """
     cells = [[*heading] for heading in headings]
     for row in parts:
@@ -160,7 +163,9 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text next to a part, with values and an optional `side_text` at distance `at`."""
+    """A line of text next to a part, with values, and with an optional `side_text` at the distance
+    `at`.
+    """
 
     text: str
     colour: str = INK
@@ -171,14 +176,15 @@ class TextLine(NamedTuple):
 
     @property
     def width(self) -> float:
-        """Width of the line of text."""
         side_text = self.at + text_width(self.side_text, FONT) if self.side_text else 0.0
         return max(text_width(self.text, FONT, bold=self.bold), side_text)
 
 
 @dataclass(frozen=True)
 class PlacedPart:
-    """A part with its position and texts; `ends` are the ends of its section of the line."""
+    """A part with its position and texts; `ends` are the upper and lower end of the line drawn
+    through it.
+    """
 
     part: ShownPart
     top: float
@@ -195,9 +201,9 @@ class PlacedPart:
 def measured(
     parts: Sequence[ShownPart], column: LineColumn, growth: float = 1.0
 ) -> list[PlacedPart]:
-    """Compute the height of each part, before the parts are placed.
+    """Compute the height of each part; the parts are not placed yet.
 
-    The height of a cable, with its clamps, grows with the logarithm of its length at a rate of
+    The height of a cable with its clamps increases with the logarithm of its length, at a rate of
     `growth`, so that long cables look long.
     """
     found = [_measured(part, column) for part in parts]
@@ -226,7 +232,7 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Place label and name on one line if they fit, otherwise below each other with wrapping."""
+    """Write label and name on one line if they fit; otherwise wrap them on separate lines."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
@@ -240,8 +246,8 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 def placed(
     parts: Sequence[PlacedPart], top: float, line_top: float | None = None
 ) -> tuple[PlacedPart, ...]:
-    """Place parts one below the other from `top`; the line begins at `line_top` if given, else at
-    `top`.
+    """Place parts one below the other, beginning at `top`. The line begins at `line_top`, by
+    default at `top`.
     """
     tops = accumulate((part.height for part in parts), initial=top)
     found = [
@@ -254,7 +260,9 @@ def placed(
 
 
 def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
-    """Write the headings of the values, aligned at their last lines, and a rule below."""
+    """Write the headings of the values, with their last lines aligned, and draw a rule below
+    them.
+    """
     for lines, right in zip(column.headings, column.rights, strict=True):
         for number, word in enumerate(reversed(lines)):
             y = top + HEAD - 8.0 - 9.4 * number
@@ -265,7 +273,7 @@ def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> Non
 def draw_sea(
     page: Pen, column: LineColumn, left: float, levels: tuple[float, float], row: TextRow | None
 ) -> None:
-    """Draw the water between two levels, and the surface with its text, if any."""
+    """Draw the water between two levels, and the surface with its text, if it has one."""
     pen = page.group(left, 0.0)
     symbols.draw_water(pen, 2.0 * column.line_at, *levels)
     symbols.draw_surface(pen, 2.0 * column.line_at, levels[0])
