@@ -1,6 +1,7 @@
 """Locate files installed with CALM: component catalogue, example lines, manual and templates.
 
-In an installation the first three are inside the package; in a checkout they are next to it.
+In an installation the first three are inside the package; in a checkout they are next to the
+package.
 """
 
 import importlib.resources
@@ -9,7 +10,7 @@ from typing import Literal
 
 
 def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
-    """Return the folder of the shipped catalogue, of the example lines or of the manual.
+    """Return the folder of the shipped catalogue, example lines or manual.
 
     Raises
     ------

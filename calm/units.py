@@ -358,7 +358,9 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
 
 
 def _tidy(unit: str) -> str:
-    """Reduce the spellings of a unit to one: `m s-1`, `m.s^-1` and `m·s⁻¹` become the same."""
+    """Convert all spellings of a unit to one spelling; `m s-1`, `m.s^-1` and `m·s⁻¹` are
+    examples.
+    """
     unit = unit.strip().replace("**", "^").replace("·", "*")
     unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)

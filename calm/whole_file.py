@@ -82,7 +82,9 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Delete old temporary files in a folder: those of the file `name`, or by default all."""
+    """Delete old temporary files in a folder, either those of the file `name` or, without a name,
+    all.
+    """
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
         for part in folder.glob(f"{begin}*{UNFINISHED}"):

@@ -1,8 +1,8 @@
 """Heavy line in a uniform stream, with drag quadratic in the normal velocity: exact integrals.
 
-With φ the angle between the upward direction of the line and the upstream direction, s the arc
-length up the line, w the weight and R the drag per metre of a line normal to the stream, and
-p = w/R:
+φ is the angle between the upward direction of the line and the upstream direction, and s the arc
+length up the line. Per metre of line, w is the weight and R the drag if it is normal to the stream.
+With p = w/R:
 
     dT/ds = w sin φ + F,      T dφ/ds = −R D(φ),      D = sin²φ − p cos φ,      0 ≤ φ ≤ π.
 
@@ -147,7 +147,9 @@ class Hodograph:
         return weight + self.friction * np.abs(here - upright)
 
     def _rubbing(self, m: Floats) -> Floats:
-        """Return the integral ∫ F/(f R D) dφ from φ, up to a constant; it increases with φ."""
+        """Return the integral ∫ F/(f R D) dφ from φ, up to a constant. The integral increases with
+        φ.
+        """
         u, a = self._u, self._a
         sine, cosine = self._half_angle(m)
         straight = 2.0 * m / self._sine

@@ -20,8 +20,8 @@ from calm.units import QuantityError, parse_quantity
 def net_buoyancy(component: files.Component, gravity: float) -> float:
     """Return the net buoyancy in reference water, positive up [N, N/m].
 
-    A specified buoyancy or weight is used as it is; otherwise the value follows from the mass and
-    the gravity [m/s²].
+    The value is the specified buoyancy or weight, or else follows from the mass and the gravity
+    [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
@@ -114,8 +114,8 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
 
     A cable's Kn includes strumming. With Bourget & Marichal's law, Kn is the value without
     strumming, which the march increases. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or
-    chain has no Ct, the default in Pode's law, Ct π/Cn, gives the same friction as the default in
-    the quadratic law: 0.012, 0.022 or 0.031, depending on the finish.
+    chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031, depending on the
+    finish), so that the friction is the same as in the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]

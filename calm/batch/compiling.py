@@ -1,4 +1,4 @@
-"""Compilation of the batch solver before the first profile, and the message about it."""
+"""Compilation of the batch solver before the first profile, with a message for the user."""
 
 from collections.abc import Callable
 from time import perf_counter

@@ -63,7 +63,7 @@ replaced.
 
 @dataclass(frozen=True)
 class Attribution:
-    """Contributions of p drags, each of a piece or of a clamped instrument.
+    """Contributions of the drags of p pieces and clamped instruments.
 
     The columns of `start` and `shares` are the depth and the excursion of a point of the line [m],
     and the used fraction of the surface float's buoyancy.

@@ -114,8 +114,8 @@ class ResultColumn:
         return {**units, "long_name": meaning, **more}
 
     def value(self, row: Any, file: MooringFile) -> Any:
-        """Return the value to show for a row; None if the row has no such value, such as a clamp
-        without length.
+        """Return the value to show for a row, or None for a missing value, such as the length of a
+        clamp.
         """
         return self.of_row(row, file) if self.of_row else getattr(row, self.name, None)
 

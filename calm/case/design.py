@@ -376,9 +376,9 @@ def _upside_down(result: LegResult) -> str:
 class Result:
     """A converged design. Lengths and depths [m], forces [N], angles [degrees].
 
-    x and y are distances to the east and north of the anchor, of the tow point or, for several
-    legs, of the origin of the file. A result with one leg also has the attributes of this leg, such
-    as `top` and `anchor`.
+    x and y are distances to the east and north. Their origin is the anchor, the tow point or, for
+    several legs, the origin in the file. A result with one leg also has the attributes of this leg,
+    such as `top` and `anchor`.
 
     Attributes
     ----------
@@ -411,7 +411,7 @@ class Result:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings; those of the file come first."""
+        """All warnings, beginning with those of the file."""
         if not self.several:
             return self.leg.warnings
         return (

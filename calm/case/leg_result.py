@@ -132,7 +132,7 @@ class LegResult:
 
     @cached_property
     def components(self) -> Components:
-        """Pieces in line order; for a tow, from the ship down.
+        """Pieces in line order, which is from the ship down for a tow.
 
         The last piece of a leg without an anchor is a stand-in, whose values have no meaning.
         """
@@ -215,7 +215,7 @@ class LegResult:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings; those of the file come first."""
+        """All warnings, beginning with those of the file."""
         return warnings_of(self)
 
     @cached_property

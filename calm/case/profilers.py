@@ -97,7 +97,7 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 
 
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
-    """Return a file whose profilers do not move; one profiler may be placed at another position.
+    """Return a file with fixed profilers, one of which may be at another position.
 
     Parameters
     ----------

@@ -131,7 +131,9 @@ class Assessment:
         return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Yield all findings: those of the environments first, then launch, recovery and breaks."""
+        """Yield the findings in all environments, and then the findings on launch, recovery and
+        breaks.
+        """
         for stand in self.in_environments:
             yield from stand.findings
         yield from self.findings
@@ -164,7 +166,7 @@ class Assessment:
         yield from self.tighter_findings()
 
     def accepted_findings(self) -> list[Finding]:
-        """Return the governing one of the accepted findings for each rule and component."""
+        """Return the governing accepted finding for each rule and component."""
         every = (*(one for stand in self.in_environments for one in stand.accepted), *self.findings)
         accepted = (one for one in every if one.accept is not None)
         found = grouped_by(accepted, lambda one: (one.rule, one.component))
@@ -197,7 +199,7 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Acceptances in a mooring file on a given day; they apply to failures and unknowns only.
+    """Acceptances in a mooring file on a given day, which apply only to failures and unknowns.
 
     `parts` maps labels to the pieces and clamps of the line.
     """

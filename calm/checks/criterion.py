@@ -225,9 +225,7 @@ def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
 
 
 def cited(file: MooringFile, *names: str) -> str:
-    """Return the text for those of the named limits that differ from their defaults; empty if there
-    are none.
-    """
+    """Return the text about the named limits that differ from their defaults, or an empty text."""
     return "; ".join(
         f"The design's own `{key.name}`, {limit_value_text(key, key.value)} instead of "
         f"{limit_value_text(key, key.default)}"

@@ -54,11 +54,11 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Warn if a current that should be the stronger one is much weaker at some levels than the
-    ordinary current.
+    """Warn if the stronger of two currents is much weaker than the ordinary current at some levels.
 
-    A current should be stronger because of the name of its environment, or because its maximum is
-    larger. In the second case, it may be weaker at the upper and lower ends of the profile.
+    A current counts as the stronger one because of the name of its environment, or because its
+    maximum is larger. In the second case, it may be weaker at the upper and lower ends of the
+    profile.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)

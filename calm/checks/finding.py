@@ -102,7 +102,7 @@ Sense = Literal["<=", ">="]
 
 @dataclass(frozen=True)
 class Lack:
-    """Missing value of a component that a rule needs.
+    """Component value that a rule needs and the file lacks.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """Missing value of a component, with all rules and pieces that need it.
+    """Missing value of a component, with all affected rules and pieces.
 
     Attributes
     ----------
@@ -401,7 +401,7 @@ class Finding(Verdict):
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Places of all affected pieces and clamps; empty for a finding about the whole line."""
+        """Places of all affected pieces and clamps. A finding about the whole line has none."""
         if self.missing is not None:
             return self.missing.places
         return () if self.place is None else (self.place,)
@@ -421,7 +421,8 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the most severe finding, and of equal ones the one with the largest utilisation.
+    """Return the most severe finding. Among equally severe findings, it has the largest
+    utilisation.
 
     A finding that is not judged is returned only if there are no others.
     """
@@ -431,7 +432,8 @@ def worst_of(findings: Iterable[Finding]) -> Finding:
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
-    """Return the finding with the largest utilisation; of equal ones, the most severe.
+    """Return the finding with the largest utilisation. Among equal utilisations, it is the most
+    severe.
 
     If no finding has a utilisation, return the most severe finding.
     """
@@ -443,11 +445,11 @@ def governing(findings: Iterable[Finding]) -> Finding:
 
 
 def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Select the findings to report for a rule: the governing one, and also the worst one if its
+    """Select the findings to report for a rule: the governing finding, and the worst finding if its
     state is more severe.
 
-    If the governing finding is worse than pass, estimated and accepted findings are not added to
-    it.
+    The worst finding is omitted if it is only estimated or accepted, unless the governing finding
+    passes.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)

@@ -2,9 +2,9 @@
 
 Biofouling is a layer of uniform thickness on everything above a given depth in still water. The
 diameter of a cable increases by twice the thickness. The drag of a rigid piece increases with its
-projected areas. A body without dimensions is treated as a sphere whose projected area is its
-`drag_area`, or the area that gives its drag with a coefficient of 1. The layer displaces water, and
-its weight in water follows from its density; without a specified density it is weightless.
+projected areas. A body without dimensions is treated as a sphere. Its projected area is the
+`drag_area`, or else the area for a drag coefficient of 1. The layer displaces water, and its weight
+in water follows from its density; without a specified density it is weightless.
 """
 
 from collections.abc import Iterator, Sequence

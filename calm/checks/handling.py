@@ -44,9 +44,9 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     float.
 
     The line may break at any connection above the back-up floats, or lose any single buoyant
-    element. The net buoyancy should be at least a tenth of the weight that it lifts, and sufficient
-    for a rise at `minimum_rise_speed`. A compact line below a single float has no back-up buoyancy.
-    A surface mooring without floats below its buoy has none either, and is recovered by hauling.
+    element. The net buoyancy should be at least a tenth of the lifted weight, and sufficient for a
+    rise at `minimum_rise_speed`. A compact line below a single float has no back-up buoyancy. A
+    surface mooring without floats below its buoy has none either, and is recovered by hauling.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):

@@ -111,8 +111,8 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
 
 
 def _in_all(component: Component, figure: float | None, length: float | None) -> float | None:
-    """Convert a value per metre of cable or chain to the value of the piece; return values of other
-    items unchanged.
+    """Convert a value per metre of cable or chain to the whole piece. Values of other items are
+    unchanged.
     """
     if figure is None or not isinstance(component, Flexible):
         return figure

@@ -167,8 +167,8 @@ class LegGraph:
 
     @property
     def coming_up(self) -> set[int]:
-        """Pieces that surface after all releases open; without a release, all pieces except
-        anchors.
+        """Pieces that surface after all releases open. In a design without a release, these are all
+        pieces except anchors.
         """
         parts = self._rising(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}

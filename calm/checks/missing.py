@@ -24,13 +24,13 @@ _INSTEAD = {
 
 
 def alternatives(quantity: str) -> tuple[str, ...]:
-    """Return the keys of a component that can supply a missing value; any one of them suffices."""
+    """Return the keys of a component, any one of which can supply a missing value."""
     return quantity, *_INSTEAD.get(quantity, ())
 
 
 @rule(MISSING)
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
-    """Yield one verdict per component id and missing value; it represents all findings that lack
+    """Yield one verdict per component id and missing value, which represents all findings without
     this value.
 
     Its message is that of the finding with the largest value, such as the largest depth or load.

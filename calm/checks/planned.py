@@ -79,7 +79,7 @@ planned_depth = replace(rule("planned-depth", once=True, case="0")(_judge), coun
 
 
 def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
-    """Return the parts with a planned depth, and the verdict on each of them."""
+    """Return the parts with a planned depth, and one verdict for each part."""
     parts = planned_parts(result)
     return parts, [
         _verdict(result.file, part, _remedy(result, parts, number))

@@ -65,8 +65,8 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
     design.
 
     Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 for a single-point
-    Doppler current meter, 20 for an ADCP (data are doubtful above 15), 45 for a release, and 10 for
-    a sediment trap.
+    Doppler current meter, 45 for a release, and 10 for a sediment trap. The limit for an ADCP is 20
+    degrees, and its data are doubtful above 15.
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -338,8 +338,8 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
 
 
 def _too_long(leg: Leg) -> str:
-    """Return the remedy that the line may be too long; empty if the float has a key that only
-    surface floats have.
+    """Return the remedy that the line may be too long, or an empty text for a designated surface
+    float.
     """
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
@@ -352,9 +352,9 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
     """Check the watch-circle radius √(L² - h²) of a surface float.
 
     L is the line length from the float to the anchor, and h the height of the surface above the top
-    of the anchor. The line is assumed to be taut, which is the worst case for a slack line:
-    PacIOOS, for example, states 1.73 times the depth at a scope of 2. The limit is
-    `maximum_excursion`, if the design sets it.
+    of the anchor. The line is assumed to be taut, which is the worst case. PacIOOS, for example,
+    states 1.73 times the depth at a scope of 2. The limit is `maximum_excursion`, if the design
+    sets it.
     """
     limit = result.file.checks.maximum_excursion
     if not reaches_the_surface(result.leg):

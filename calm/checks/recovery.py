@@ -1,11 +1,11 @@
 """Recovery: rise speed of the line without its anchor, surfacing times and surfacing order.
 
 The release and everything above it rise together at terminal speed until the first buoyant piece
-reaches the surface. This piece stays there with everything rigidly connected to it. If the line
-below it is buoyant, it continues to rise as a separate line in still water. The part of this line
-that is already suspended from the surface is included, so the computed rise is too slow. Buoyant
-pieces surface one after another. Each one has risen by the length of line between it and the
-previous one, and everything else is suspended below them.
+reaches the surface. This piece and everything rigidly connected to it stay there. If the line below
+it is buoyant, it continues to rise as a separate line in still water. The part of this line that is
+already suspended from the surface is included, so the computed rise is too slow. Buoyant pieces
+surface one after another. Each one has risen by the length of line between it and the previous one,
+and everything else is suspended below them.
 
 The model neglects acceleration, the possibility that a piece is carried past one above it in the
 line, and that surfaced floats are only half immersed. If the line tangles during ascent

@@ -73,12 +73,18 @@ entry.
 def situations_of(design: Design) -> tuple[Situations, ...]:
     """Solve a design as given, and then in every situation that its file requires.
 
-    These situations are still water; high water, low water and still low water if the environment
-    has a `depth_range`; profilers at their lower stops and at the position of maximum wire angle;
-    biofouling if `fouling` is set; cables with Cn × 1.5 if no strumming law is in use; and the
-    depth and lengths of `deployed` if they differ from the design. A fitted piece keeps the length
-    from the design as given. A surface line that is longer than the water depth is slack in still
-    water and has no unique shape, so this situation is omitted for it.
+    These situations are
+
+    - still water;
+    - high water, low water and still low water, if the environment has a `depth_range`;
+    - profilers at their lower stops and at the position of maximum wire angle;
+    - biofouling, if `fouling` is set;
+    - cables with Cn × 1.5, if no strumming law is in use;
+    - the depth and lengths of `deployed`, if they differ from the design.
+
+    A fitted piece keeps the length from the design as given. Still water is omitted for a surface
+    line that is longer than the water depth, because the line is then slack and has no unique
+    shape.
     """
     given = solved(AS_GIVEN, design)
     if given[0].result is None:
@@ -185,7 +191,7 @@ SOUNDING = 1.0, 0.023
 def as_deployed(design: Design) -> Design:
     """Return the design with the depth, position, serial numbers and cut lengths in `deployed`.
 
-    A fitted piece keeps its design length, unless `deployed` has another length for it.
+    A fitted piece keeps its design length, unless `deployed` specifies a length.
 
     Raises
     ------
@@ -201,7 +207,9 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Replace values in a file by those of its key `deployed`; the file has no fitted piece."""
+    """Replace the values of a file by the values under `deployed`. The file must not have a fitted
+    piece.
+    """
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}

@@ -38,7 +38,7 @@ Kind = Literal["sphere", "cylinder", "body", "profiler", "cable", "chain", "anch
 def list_components(
     words: list[str] | None = None, /, *, kind: Kind | None = None, json: bool = False
 ) -> ExitCode:
-    """List all components by family, or those that match every word.
+    """List all components by family, or the components that match every word.
 
     Among the matches, favourites and components recently used in the line builder
     come first, followed by components used in the shipped lines. Misspelt words

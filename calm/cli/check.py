@@ -150,7 +150,7 @@ def _read(
     against: Path | None,
     ready: Callable[[], None],
 ) -> tuple[list[DesignFile], list[Path], Design | None]:
-    """Read the designs and the earlier design; also return the files that are tows.
+    """Read the designs and the earlier design, and separate the files that are tows.
 
     `ready` is called while other processes read. Raises InputError with the mistakes of all files.
     """

@@ -163,9 +163,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 
 def _missing_characters(deck: Deck) -> tuple[str, ...]:
-    """Describe the characters of the file that the font of the sheets lacks, and where they
-    occur.
-    """
+    """Describe the characters of the file that the font of the sheets lacks, with their places."""
     from calm.drawing.typesetting import lacking
 
     signs = lacking(text for text, _ in _texts(deck))

@@ -79,7 +79,7 @@ def _missing(command: str, error: MissingArgumentError, argument: Argument) -> s
 
 
 def _form(argument: Argument, app: App | None = None) -> str:
-    """Return an argument as it is written on the command line: ``--currents FILE``, ``FILE...``."""
+    """Return the form of an argument on the command line: ``--currents FILE``, ``FILE...``."""
     if argument.name.startswith("-"):
         short = min(argument.names, key=len)
         return f"{short} {metavar(argument.name) or 'PATH'}"
@@ -89,6 +89,8 @@ def _form(argument: Argument, app: App | None = None) -> str:
 
 
 def _positionals(app: App | None) -> Sequence[str]:
-    """Return the positional arguments in the usage line of a command, if it has one."""
+    """Return the positional arguments in the usage line of a command; empty without a usage
+    line.
+    """
     usage = "" if app is None or not app.usage else app.usage
     return [word for word in usage.partition("[OPTIONS]")[2].split() if word[0] != "["]

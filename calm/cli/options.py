@@ -114,7 +114,7 @@ def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
 
 
 def from_one(**given: int | None) -> None:
-    """Raise UsageError if a count is below 1; the message lists all such counts."""
+    """Raise UsageError if a count is below 1. The message lists all such counts."""
     few = {name: count for name, count in given.items() if count is not None and count < 1}
     if few:
         complaints = (f"{option(name)}: {count} is below 1" for name, count in few.items())

@@ -99,7 +99,7 @@ def narrate(text: str) -> None:
 
 
 def narrate_card(card: ReadCard) -> None:
-    """Write to standard error what was read from a file."""
+    """Write the interpretation of an input file to standard error."""
     from calm.records.card import card_rows
 
     rows = card_rows(card.to_dict())
@@ -121,7 +121,7 @@ def save(path: Path, content: bytes, then: str = "") -> None:
 
 
 def check_suffix(path: Path, allowed: Sequence[str]) -> None:
-    """Raise UsageError unless the suffix of an output file is in `allowed`; an empty list allows
+    """Raise UsageError unless the suffix of an output file is in `allowed`. An empty list allows
     any suffix.
     """
     if allowed and path.suffix.lower() not in allowed:
@@ -161,7 +161,7 @@ _GRAVEST_FIRST = (ExitCode.BAD_INPUT, ExitCode.NO_EQUILIBRIUM, ExitCode.FINDING)
 
 
 def gravest(codes: Iterable[ExitCode]) -> ExitCode:
-    """Return the most severe of several exit codes, in the order 2, 3, 1, 0."""
+    """Return the most severe exit code, in the order 2, 3, 1, 0."""
     occurred = set(codes)
     return next((code for code in _GRAVEST_FIRST if code in occurred), ExitCode.DONE)
 
@@ -217,8 +217,8 @@ class Outputs:
     suffixes: tuple[str, ...] = SUFFIXES
 
     def apiece(self, path: Path) -> list[Path]:
-        """Return the path of an output for each input file; if there are several, their names are
-        added to it.
+        """Return the path of an output for each input file. With several input files, the path
+        includes the name of each.
         """
         if len(self.files) == 1:
             return [path]
@@ -261,8 +261,8 @@ class Outputs:
         """Write the result of a command without input files: the JSON document if requested, and
         the part unless JSON is printed.
 
-        `document` is called only if JSON is requested; the version of CALM is added to it. Raises
-        UsageError if a file cannot be written.
+        `document` is called only if JSON is requested; the version of CALM is added to the
+        document. Raises UsageError if a file cannot be written.
         """
         from calm.report.result_files import to_json
 

@@ -34,9 +34,9 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 
 
 class ProgressTeller:
-    """Progress display in one line of the terminal; it is called with the `Progress` of a batch.
+    """Progress display in one line of the terminal, which is called with the `Progress` of a batch.
 
-    With a `patience` [s], nothing is shown on a terminal during this time. Without `patience`, time
+    The display waits for `patience` [s] before it appears on a terminal. Without `patience`, time
     is counted from the first call.
     """
 

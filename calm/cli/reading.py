@@ -57,7 +57,7 @@ def read_designs(
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
 ) -> tuple[list[DesignFile], list[Path]]:
-    """Read every mooring in every environment; also return the files that are tows.
+    """Read every mooring in every environment, and separate the files that are tows.
 
     Parameters
     ----------
@@ -119,7 +119,9 @@ def names_of_files(
 
 
 def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
-    """Append the path of the file to each name that several files have."""
+    """Make names unique: a name that occurs in several files is followed by the path of its
+    file.
+    """
     while True:
         count = Counter(names.values())
         if max(count.values()) == 1:
@@ -130,7 +132,8 @@ def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
 
 
 def _with_equal_cuts(moorings: Sequence[Design]) -> tuple[Design, ...]:
-    """Use the same cut lengths in every environment; they are fitted in the first environment.
+    """Use the same cut lengths in every environment, namely those that fit in the first
+    environment.
 
     The designs share a cache, so results that do not depend on the environment, such as the line in
     still water, are computed once.

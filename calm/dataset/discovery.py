@@ -106,7 +106,9 @@ def coverage(
 
 
 def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
-    """Return the attributes for the range of depths [m]; none if all are NaN."""
+    """Return the attributes for the range of depths [m]. The result is empty if all depths are
+    NaN.
+    """
     known = depth[np.isfinite(depth)]
     if not known.size:
         return {}

@@ -332,7 +332,7 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Create the CF station variables of a mooring; also return the names to append to
+    """Create the CF station variables of a mooring, and return the names to append to
     `coordinates`.
 
     Parameters

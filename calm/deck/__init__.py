@@ -100,7 +100,7 @@ class Lifts:
 
     @property
     def heaviest(self) -> Lift | None:
-        """Heaviest of the lifts whose mass in air is known."""
+        """Heaviest lift of known mass in air."""
         known = [lift for lift in self.deployment if lift.mass is not None]
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
@@ -151,8 +151,8 @@ class Deck:
         return item_numbers(self.result)
 
     def leg(self, index: int) -> str:
-        """Return the name of the leg that contains the piece with this index; empty for a single
-        line.
+        """Return the name of the leg that contains the piece with this index. A single line has no
+        name.
         """
         number = leg_numbers(self.file)[index]
         return self.result.legs[number].name if self.result.several else ""

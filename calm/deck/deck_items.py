@@ -98,7 +98,9 @@ class DeckItem:
 
     @property
     def holds_instrument(self) -> bool:
-        """Whether the item is an instrument or a release, or holds one."""
+        """Whether the item is an instrument, a release, or a float or frame that holds an
+        instrument.
+        """
         return holds_instrument(self.part)
 
     @property
@@ -185,7 +187,7 @@ class DeckRow:
 
     @property
     def name(self) -> str:
-        """Names of the items with their counts; for a chain with floats, the name of the floats."""
+        """Names of the items with their counts. A chain with floats has the name of the floats."""
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
@@ -208,7 +210,9 @@ class DeckRow:
 
 
 def hardware_text(joints: Iterable[DeckItem]) -> str:
-    """Describe connecting hardware, such as `2 × 13 mm shackle`; empty without hardware."""
+    """Describe connecting hardware, such as `2 × 13 mm shackle`. The text is empty without
+    hardware.
+    """
     counts = Counter(one.hardware for one in joints)
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
@@ -378,8 +382,7 @@ def instruments_of(
     """List the instruments, the floats and frames that hold an instrument, and the releases, down
     the line.
 
-    `results` has the name of each environment and the result in it; the environment of the sheets
-    is first.
+    `results` lists the name and the result of each environment, beginning with that of the sheets.
     """
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []

@@ -176,8 +176,8 @@ class Stock:
 
     @property
     def spares(self) -> int:
-        """Number of spares: one tenth, rounded up, but at least two for small parts and one for
-        others.
+        """Number of spares, which is one tenth rounded up, but at least two for small parts and one
+        for others.
         """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
@@ -309,7 +309,7 @@ class ShippedComponent:
 def shipped_of(
     file: MooringFile, inventory: Sequence[InventoryItem]
 ) -> tuple[ShippedComponent, ...]:
-    """Return the shipping list: one row per component, in line order."""
+    """Return the shipping list with one row per component, in line order."""
     components = {
         (piece.index, part.label): part.component
         for piece in file.pieces

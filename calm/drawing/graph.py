@@ -62,7 +62,7 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
 
 
 def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
-    """Widen one of two ranges about its middle, so that both axes have the same scale.
+    """Widen the narrower range about its middle, so that both axes have the same scale.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ class LegendEntry(NamedTuple):
 
 
 class Graph:
-    """An SVG graph with a white background; width and height in points."""
+    """An SVG graph with a white background. Its width and height are in points."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size

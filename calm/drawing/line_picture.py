@@ -1,8 +1,8 @@
 """Side view and plan of a solved line [m], independent of the output format.
 
 `calm.drawing.line_drawing` draws the picture for files and pages, `calm.drawing.sketch` draws it in
-a terminal, and `calm.drawing.plot` on matplotlib axes. `calm.drawing.check_figures` uses it for the
-figures of a design check.
+a terminal, and `calm.drawing.plot` on matplotlib axes. `calm.drawing.check_figures` combines it
+with the figures of a design check.
 """
 
 from collections.abc import Iterator, Sequence
@@ -250,9 +250,7 @@ def seabed_of(result: AnyResult) -> float:
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
-    """Project points (east, north) onto a horizontal direction; return their coordinates along
-    it.
-    """
+    """Return the coordinates of points (east, north) along a horizontal direction."""
     return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
 
 
@@ -346,8 +344,8 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
     `wanted` positions, which are in ascending order.
 
     Between `start` and `end`, the sum of the squared shifts is minimal. If not all positions fit,
-    they extend beyond the end. The problem becomes isotonic regression if the gaps before each
-    position are subtracted: descending runs are replaced by their mean.
+    they extend beyond the end. After subtraction of the gaps before each position, this is an
+    isotonic regression: descending runs are replaced by their mean.
     """
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):

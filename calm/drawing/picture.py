@@ -48,7 +48,9 @@ def within_xml(text: str) -> str:
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """Prefix the identifiers in a drawing, so that those of several drawings on a page differ."""
+    """Prefix the identifiers in a drawing, so that several drawings on a page have distinct
+    identifiers.
+    """
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
 
 

@@ -39,7 +39,7 @@ _ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
 
 
 def figure_svg(figure: Figure) -> str:
-    """Convert a figure to SVG without prologue and metadata; letters remain text.
+    """Convert a figure to SVG without prologue and metadata. Letters remain text.
 
     A style sheet inside the drawing would apply to the whole page, so its settings become
     attributes.

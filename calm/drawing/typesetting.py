@@ -26,7 +26,7 @@ def typeset(
     kind: Literal["pdf", "png"],
     timestamp: int | None = None,
 ) -> bytes:
-    """Typeset a typst template; a PNG contains only the first page.
+    """Typeset a typst template. A PNG contains only the first page.
 
     Parameters
     ----------

@@ -75,7 +75,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted distribution and the return levels that follow from it.
+    """A fitted distribution and its return levels.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class LevelsRefused:
-    """Reason why a method in `METHODS` gives no return levels."""
+    """Reason why a method in `METHODS` has no return levels."""
 
     method: str
     reason: str
@@ -273,8 +273,8 @@ def years_of(step: np.timedelta64, count: int) -> float:
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Return the median time between profiles, which is not affected by gaps; zero for a single
-    profile.
+    """Return the median time between profiles, which is not affected by gaps. A single profile has
+    zero.
     """
     if len(time) < 2:
         return np.timedelta64(0, "ns")

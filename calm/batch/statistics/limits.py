@@ -185,8 +185,8 @@ _LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on
 
 @dataclass(frozen=True)
 class Exceedance:
-    """How often a limit is exceeded: `share` is a fraction of the `count` profiles in which the
-    limit can be evaluated.
+    """Frequency with which a limit is exceeded: `share` is a fraction of the `count` profiles in
+    which the limit can be evaluated.
 
     A profile beyond a limit that is an estimate is not counted as a failure.
 

@@ -1,4 +1,4 @@
-"""Columns of a batch result, read one at a time to limit memory use."""
+"""Columns of a batch result, of which only one is in memory at a time."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ class ResultColumns:
         return len(self.time)
 
     def of_leg(self, leg: LegSeats) -> ResultColumns:
-        """Return the columns of one leg of a net; they share the temporary file of the whole
+        """Return the columns of one leg of a net, which share the temporary file of the whole
         result.
         """
         view, ends = copy(self), slice(leg.number, leg.number + 1)
@@ -140,7 +140,7 @@ class ResultColumns:
 
     @property
     def seats(self) -> tuple[Seat, ...]:
-        """Column positions of the components, followed by those of the clamps."""
+        """Column numbers of all components, and then of all clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
         return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
 

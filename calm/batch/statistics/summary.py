@@ -83,8 +83,8 @@ class Response:
 
 @dataclass(frozen=True)
 class WorstProfile:
-    """One of the worst profiles, with all its responses; `leaning` is the label of the part with
-    the largest tilt.
+    """One of the worst profiles, with its responses. `leaning` is the label of the part with the
+    largest tilt.
     """
 
     time: np.datetime64
@@ -405,8 +405,8 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
 
 
 def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
-    """Divide the record into `MOST_INTERVALS` intervals; return their start times and the smallest
-    and largest value in each.
+    """Divide the record into `MOST_INTERVALS` intervals, and return their start times and extreme
+    values.
 
     The intervals contain equal numbers of profiles. In a shorter record, each profile is an
     interval.

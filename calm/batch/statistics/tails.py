@@ -194,9 +194,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Minimise the loss from the best of several starting points; return the minimum and its
-    loss.
-    """
+    """Minimise the loss from the best starting point, and return the minimum with its loss."""
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))

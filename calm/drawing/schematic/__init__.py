@@ -83,8 +83,8 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
 
 
 def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:
-    """Place the parts; return them and the level of the sea surface, or of the hook of a
-    helicopter.
+    """Place the parts below the sea surface or the hook of a helicopter, and return its level and
+    the parts.
     """
     parts = measured(shown.parts, column)
     if shown.towed_by is None:
@@ -232,7 +232,7 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Write label and name on one line if they fit; otherwise wrap them on separate lines."""
+    """Write label and name on one line if they fit, and on separate, wrapped lines otherwise."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
@@ -246,8 +246,8 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 def placed(
     parts: Sequence[PlacedPart], top: float, line_top: float | None = None
 ) -> tuple[PlacedPart, ...]:
-    """Place parts one below the other, beginning at `top`. The line begins at `line_top`, by
-    default at `top`.
+    """Place parts below each other, beginning at `top`. The line begins at `line_top`, by default
+    at `top`.
     """
     tops = accumulate((part.height for part in parts), initial=top)
     found = [
@@ -273,7 +273,7 @@ def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> Non
 def draw_sea(
     page: Pen, column: LineColumn, left: float, levels: tuple[float, float], row: TextRow | None
 ) -> None:
-    """Draw the water between two levels, and the surface with its text, if it has one."""
+    """Draw the water between two levels, and the surface with an optional text."""
     pen = page.group(left, 0.0)
     symbols.draw_water(pen, 2.0 * column.line_at, *levels)
     symbols.draw_surface(pen, 2.0 * column.line_at, levels[0])

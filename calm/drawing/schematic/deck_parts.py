@@ -136,7 +136,7 @@ def _piece(
 
 
 def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
-    """Return the codes of a release; for a pair, the codes of each release after its serial
+    """Return the codes of a release. For a pair, the codes of each release follow its serial
     number.
     """
     known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
@@ -153,8 +153,10 @@ def _figures(
     *,
     planned: bool,
 ) -> tuple[str, ...]:
-    """Return the values of a part: item numbers; lengths; depth, planned depth and height of the
-    first item; maximum tension; total net buoyancy.
+    """Return the values of a part.
+
+    These are item numbers, lengths, depth, planned depth and height of the first item, maximum
+    tension, and total net buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)

@@ -81,8 +81,8 @@ class Pen:
         bold: bool = False,
         anchor: str = "start",
     ) -> Pen:
-        """Write a text without shortening, vertically centred at `y`; an empty text draws
-        nothing.
+        """Write a text without shortening, vertically centred at `y`. Nothing is drawn for an empty
+        text.
         """
         if not text:
             return self
@@ -100,7 +100,7 @@ def _text(value: float | str) -> str:
 
 
 def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
-    """Create an empty picture with a white background; return its pen, with the origin in the upper
+    """Create an empty picture with a white background, and return its pen. The origin is the upper
     left corner.
 
     Parameters

@@ -33,7 +33,7 @@ class TextRow:
 
 @dataclass(frozen=True)
 class ShownPart:
-    """A part that is drawn with one symbol: one or several equal pieces, a junction, or a clamped
+    """A part that has its own symbol: a piece, several equal pieces, a junction, or a clamped
     instrument.
 
     Attributes

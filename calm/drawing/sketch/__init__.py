@@ -142,7 +142,7 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
 
 
 def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
-    """Return the index of the name to omit where names are crowded.
+    """Select which of several crowded names to omit, and return its index.
 
     Names of instruments are omitted first; among these, the name closest to the middle.
     """
@@ -211,8 +211,8 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
 
 
 def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
-    """Return start and end along the line [m], and allowable load [N], of each piece whose load is
-    known.
+    """Return start and end along the line [m] and allowable load [N] for each piece with a known
+    load.
     """
     factors = result.file.checks.safety_factor
     surface = not result.towed and reaches_the_surface(result.leg)

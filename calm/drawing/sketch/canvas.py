@@ -147,10 +147,10 @@ class PlotFrame:
         self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
-        """Draw a mark at a point.
+        """Draw a mark at a point, or in an adjacent cell if another mark is in the cell of the
+        point.
 
-        If another mark is in this cell, it is drawn in a cell next to it. A mark equal to the
-        existing one is not drawn again.
+        A mark is not repeated if an equal mark is already there.
         """
         column, row = self.cell(x, y)
         for shift in (0, 1, -1, 2):
@@ -225,7 +225,7 @@ def scaled_frame(
     margin: int = 0,
     per_tick: int = COLUMNS_PER_TICK,
 ) -> PlotFrame:
-    """Create a canvas with scales along the left and lower edges; return its frame.
+    """Create a canvas with scales along the left and lower edges, and return its frame.
 
     Parameters
     ----------
