@@ -22,11 +22,11 @@ NOTICED = 1.05
 which the rule warns.
 """
 
-_Told = tuple[LegResult, Verdict]
+_LegVerdict = tuple[LegResult, Verdict]
 
 
 @rule("drag-coefficient")
-def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
+def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
     """Check that the Reynolds numbers of spheres and cylinders are in the range of their constant
     drag coefficients.
 
