@@ -43,6 +43,6 @@ None accepts a figure that is not known: that is for whoever signs the design.
 
 
 def template(kind: Template) -> str:
-    """Return the text of a template by its kind."""
+    """Return the text of the template for a kind of mooring."""
     folder = importlib.resources.files("calm") / "templates"
     return (folder / f"{kind}.yaml").read_text(encoding="utf-8")

@@ -82,8 +82,8 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Delete old temporary files in a folder, either those of the file `name` or, without a name,
-    all.
+    """Delete old temporary files of the file `name` in a folder, or those of all files if no name
+    is given.
     """
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
@@ -219,7 +219,9 @@ class FileCache(Generic[T]):
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return the cached value; call `read` if the files are others or one has changed."""
+        """Return the cached value; call `read` if the list of files differs or one of them has
+        changed.
+        """
         stamp = _stamp(paths)
         last = self._last
         if stamp is not None and last is not None and last[0] == stamp:
@@ -230,7 +232,9 @@ class FileCache(Generic[T]):
 
 
 def _stamp(paths: Sequence[Path]) -> Stamp | None:
-    """Return the names, times and sizes of files; None if these cannot reveal a change."""
+    """Return the names, times and sizes of files. Return None if a file is missing, or so recent
+    that its time may not reveal a change.
+    """
     try:
         found = [(str(path), path.stat()) for path in paths]
     except (OSError, ValueError):

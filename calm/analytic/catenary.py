@@ -5,9 +5,9 @@ below it (unstretched), an inextensible line of weight w per metre spans
 
     x = (H/w) [asinh(V/H) − asinh(V₀/H)],      z = [√(H² + V²) − √(H² + V₀²)] / w.
 
-Linear stretch adds H s/EA and (V² − V₀²)/(2 w EA), the weight being that of the unstretched metre.
-On a level seabed without friction V₀ does not fall below 0, and the remaining length, L − V/w, lies
-on the seabed with tension H.
+Linear stretch adds H s/EA to x and (V² − V₀²)/(2 w EA) to z, if w is the weight per unstretched
+metre. On a level seabed without friction V₀ does not fall below 0, and the remaining length, L −
+V/w, lies on the seabed with tension H.
 
 Source: H. M. Irvine, *Cable Structures*, MIT Press, 1981, chapter 2.
 """

@@ -51,7 +51,7 @@ class ChartAnswer:
     ----------
     status : ``converged``; else ``no-equilibrium``, ``inconsistent`` (the given quantities
         contradict each other) or ``one-parameter-family`` (they do not determine the cable)
-    k : the parameter K of the current
+    k : K, as in `chart_solve`
     solutions : the cables; cables that do not dip below A come first
     message, advice : reason and advice if there is no solution
     """
@@ -293,7 +293,7 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
 
     Parameters
     ----------
-    k : the parameter K of the current
+    k : K, as in `chart_solve`
     known : the given quantities, mirrored for a buoyant cable
     floats : whether the cable is buoyant, so that the quantities are mirrored
     """

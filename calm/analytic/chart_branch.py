@@ -15,8 +15,8 @@ With u = cos φ and u_c = cos φ_c, dT/T = −du/g integrates to
     T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m,    m = (1 − u_c²)/(1 + u_c²)
 
 The bracket is set equal to cosh λ. For K = 0, λ is the parameter of the catenary. For every K, λ
-resolves the whole branch, whereas points given by φ would crowd together at φ_c. The arc and the
-abscissa are Gauss–Legendre quadratures in λ of smooth functions, accurate to rounding.
+resolves the whole branch, whereas points given by φ would crowd together at φ_c. Arc length and
+distance are Gauss–Legendre quadratures of smooth functions of λ, accurate to rounding.
 
 Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
 """
@@ -141,8 +141,8 @@ class Branch:
         return side * arc, side * self.sign * distance
 
     def span(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
-        """Return arc length and distance between two points with start ≤ end, in units of H₀
-        (vectorised).
+        """Return arc length and distance between two points with start ≤ end, in units of H₀;
+        points may be arrays.
         """
         first, last = (
             np.asarray(side, dtype=np.float64) for side in np.broadcast_arrays(start, end)
@@ -154,8 +154,8 @@ class Branch:
         return total[0], total[1]
 
     def _span(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return (2, …) arc length and distance between two points on one side of the apex, 0 ≤
-        start ≤ end.
+        """Return arc length and distance, shape (2, …), between two points on one side of the apex,
+        0 ≤ start ≤ end.
         """
         # a short piece is integrated directly, since the difference of two long ones loses digits
         short = end - start <= _PANEL
@@ -175,8 +175,8 @@ class Branch:
         return total
 
     def _panel(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return (2, …) arc length and distance from `start` to `end`; the two are at most one
-        panel apart, or both are far from the apex.
+        """Return arc length and distance, shape (2, …), from `start` to `end`. These points are at
+        most one panel apart, or both are far from the apex.
         """
         width = end - start
         places = start + width * _NODES.reshape(-1, *([1] * start.ndim))

@@ -1,10 +1,10 @@
 """Search on a branch of the curve for all cables that match the given quantities.
 
-A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. With λ_B > |λ_A| its upper end is B;
-λ_A < 0 if it dips below its lower end. The ratio of two given sizes (tensions over w, height,
-distance, length) does not depend on H₀. That leaves
+A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. Its upper end is B, so λ_B > |λ_A|.
+If the cable dips below its lower end, λ_A is negative. The ratio of two given sizes (tensions
+divided by w, height, distance, length) does not depend on H₀. The search therefore has
 
-- no search if both angles, or one angle and the ratio of the tensions, are given;
+- no unknown if both angles, or one angle and the ratio of the tensions, are given;
 - one unknown if one angle, or the ratio of the tensions, is given;
 - two unknowns for length, distance and a third size: the ratio D/L then relates λ_B to λ_A.
 

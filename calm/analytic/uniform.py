@@ -75,7 +75,7 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
     Raises
     ------
     ValueError
-        p is negative. A line lighter than water is the vertical mirror image.
+        p is negative. A line lighter than water is the vertical mirror image of a heavy line.
     """
     p = np.asarray(weight_ratio, float)
     if not np.all(p >= 0.0):
@@ -249,8 +249,8 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
     Parameters
     ----------
     angle : φ, above the critical angle and up to π, of any shape [rad]; below 90° for a towed line
-        with its body at 90°. Above 90° (a moored line, whose arc is counted downwards and negative)
-        the tangential drag and the term f σ change sign.
+        with its body at 90°. Above 90° (a moored line, whose arc length is negative because it is
+        counted downwards), the tangential drag and the term f σ change sign.
     weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` gives it for a critical angle
     friction : f = F/R ≥ 0 [-]
 

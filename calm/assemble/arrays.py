@@ -311,8 +311,8 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Bisect levels until `values` is linear between them; the given levels remain, where `values`
-    may have kinks.
+    """Bisect levels until `values` is linear between them. The given levels are kept, because
+    `values` may have kinks there.
     """
     while True:
         thickness = np.diff(levels)[:, np.newaxis]

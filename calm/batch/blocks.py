@@ -32,7 +32,7 @@ class Progress:
     Attributes
     ----------
     done, total : number of finished profiles, and of all profiles
-    endings : number of finished profiles by ending
+    endings : number of finished profiles by category of their status
     """
 
     done: int
@@ -132,7 +132,7 @@ def write_solved(
     Parameters
     ----------
     layout, block, output, last : see `calm.dataset.netcdf.write_netcdf`
-    progress : called before the first block, and after each
+    progress : called before the first block, and after each block
     """
     counts = np.zeros(len(STATUSES), np.int64)
     total = layout.sizes["time"]

@@ -45,7 +45,7 @@ def run_batch(
     block : profiles in a block, which is a chunk of the result; by default `BLOCK`, or
         `BLOCK_OF_NET`
     scheduler : address of a dask scheduler whose workers solve the blocks
-    progress : called before the first block, and after each
+    progress : called before the first block, and after each block
     tell : called with messages for the user
 
     Returns

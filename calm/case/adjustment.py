@@ -179,8 +179,8 @@ _NUMBERED = re.compile(r"(.+) \d+")
 
 
 def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece]:
-    """In one copy of an item, remove the numbers from labels that differ only by them within the
-    item.
+    """Return the pieces of one copy of an item, with numbers removed from labels that differ only
+    by their numbers in the item.
     """
     stems = Counter(
         found[1] for part in parts_of(item) if (found := _NUMBERED.fullmatch(part.label))
@@ -243,8 +243,8 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """Parse the range of a parameter, whose ends have units; the default is the range of the
-    adjustment.
+    """Parse the lower and upper end of a range, each with its unit. Without texts, return the
+    default range of the parameter.
 
     Raises UsageError if an end has the wrong dimension or is not allowed, or if the ends are in the
     wrong order.

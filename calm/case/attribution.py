@@ -1,13 +1,13 @@
 """Attribution of a mooring's knockdown and excursion to the drag of each part.
 
 Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
-multiplied by λ_i. The share of drag i is that of Aumann and Shapley,
+multiplied by λ_i. The share of drag i is its Aumann–Shapley value,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
 All drags increase together from zero to full size. At every stage, each drag is attributed the
 change that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). Among the rules with
-this property, it is the only one that does not depend on the division of the line into components
+this property, it is the only one that is independent of the division of the line into components
 and attributes zero to a drag without effect (Billera & Heath, Mathematics of Operations Research 7,
 1982). Removing one component at a time does not work: the differences do not add up, since drags
 interact.
@@ -175,8 +175,8 @@ def _integral(
 
 
 def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return the function `near` of `attribute` for a single line and the top of a piece or a
-    clamp.
+    """Return a function for the parameter `near` of `attribute`, for a single line and a point at a
+    clamp or at the top of a piece.
     """
 
     def near(lines: Sequence[Line]) -> Varied:
@@ -188,7 +188,9 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
 
 
 def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return the function `near` of `attribute` for a net and the top of a piece or a clamp."""
+    """Return a function for the parameter `near` of `attribute`, for a net and a point at a clamp
+    or at the top of a piece.
+    """
 
     def near(lines: Sequence[Line]) -> Varied:
         legs, nodes = net_legs(net.with_lines(lines).legs), len(nodes_of(net.file.legs))

@@ -253,8 +253,10 @@ class Design:
         return self.together(self.water, self.near)
 
     def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
-        """Solve several legs in given water, starting from another solution if given; raises
-        NoEquilibrium.
+        """Solve several legs in given water. The search starts from another solution if one is
+        given.
+
+        Raises NoEquilibrium if there is no equilibrium.
         """
         from calm.case.net import solve_together
 
@@ -321,7 +323,10 @@ class Design:
 
 
 def solved_alone(leg: Leg) -> LegResult:
-    """Solve a leg alone, with its profilers at all positions; raises NoEquilibrium."""
+    """Solve a leg alone, and again with its profilers at several positions.
+
+    Raises NoEquilibrium if there is no equilibrium.
+    """
     solution = leg.equilibrium()
     still = leg.still_counterpart(solution)
     return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
@@ -475,7 +480,7 @@ class Result:
 
     @property
     def top(self) -> Top:
-        """Upper end of the leg."""
+        """Values at the upper end of the leg."""
         return self.leg.top
 
     @property
@@ -492,7 +497,7 @@ class Result:
 
     @property
     def body(self) -> TowedBody:
-        """Towed body; raises UsageError for a leg that is not towed."""
+        """Values at the towed body; raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.body, self.name)
 
     @property

@@ -1,7 +1,8 @@
 """Random draws of a mooring's uncertain inputs, and the mooring for each draw.
 
-The draws are a scrambled Sobol' sequence with one number for each uncertain input. All cables are
-too long by the same factor, and the current is too fast by the same factor at all depths.
+The draws are a scrambled Sobol' sequence with one number for each uncertain input. In one draw, for
+example, all cables are too long by the same factor, and the current is too fast by the same factor
+at all depths.
 """
 
 from collections.abc import Callable, Iterable, Iterator

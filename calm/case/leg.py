@@ -101,8 +101,8 @@ class Leg:
 
     @cached_property
     def water(self) -> Water:
-        """Current over the ground and density by level; the water depth is the depth at the
-        anchor.
+        """Water of the leg: current over the ground and density by level, and the water depth at
+        the anchor.
         """
         return self.given_water or assemble_water(self.file.environment)
 

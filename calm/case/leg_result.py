@@ -102,7 +102,7 @@ class LegResult:
 
     @cached_property
     def top(self) -> Top:
-        """Upper end of the leg."""
+        """Values at the upper end of the leg."""
         return top_of(self.solution, self.still)
 
     @cached_property
@@ -117,7 +117,7 @@ class LegResult:
 
     @cached_property
     def body(self) -> TowedBody | None:
-        """Towed body; None for other legs."""
+        """Values at the towed body; None for other legs."""
         return body_of(self.solution) if self.towed else None
 
     @cached_property

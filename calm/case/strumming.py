@@ -54,8 +54,8 @@ mooring lines.
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """Results for the line with the Cn of all cables multiplied by `factor`; None if there is no
-    equilibrium.
+    """Results for the line with the Cn of all cables multiplied by `factor`. Without an
+    equilibrium, they are None.
 
     Attributes
     ----------

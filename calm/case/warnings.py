@@ -192,7 +192,7 @@ def _beyond_the_table(result: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
-    """Warn about fast flow past a line (the design check does not cover tows)."""
+    """Warn about fast flow past a tow, because the design check does not cover tows."""
     fast = fast_pieces(result)
     if fast:
         row, limit = fast[0]

@@ -199,7 +199,7 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Acceptances in a mooring file on a given day, which apply only to failures and unknowns.
+    """Acceptances in a mooring file on a given day, for findings that fail or are unknown.
 
     `parts` maps labels to the pieces and clamps of the line.
     """
@@ -320,7 +320,7 @@ def estimated(leg: Leg) -> Leg:
 
 
 def estimated_result(result: LegResult) -> LegResult:
-    """Return a copy of a result whose leg is replaced by `estimated`."""
+    """Return a copy of a result whose leg is the one returned by `estimated`."""
     judged = estimated(result.leg)
     return result if judged is result.leg else replace(result, leg=judged)
 

@@ -123,8 +123,8 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
 
 
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
-    """Return the minimum and maximum breaking load of a cable or chain [N], and the values on which
-    they are based.
+    """Return the minimum and maximum breaking load of a cable or chain [N], and the names of the
+    values from which they follow.
 
     Return None for other kinds.
     """
@@ -160,7 +160,7 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
     Parameters
     ----------
     most, size : maximum load of a component other than cable or chain [N] (inf if unknown), and the
-        values on which it is based
+        names of the values from which it follows
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:

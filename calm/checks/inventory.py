@@ -21,7 +21,7 @@ class InventoryItem:
     name : name of the component; None if it has none
     clamped_on, at : label of the piece that carries a clamp, and distance from its upper end [m];
         None for a piece
-    cut_length : length along the line [m]; None for a cable without a length that fits
+    cut_length : length along the line [m]; None for a fitted cable if no length fits
     dry_mass : mass in air [kg]; None if unknown
     wet_weight : weight in water of 1025 kg/m³, with the gravity of the file, positive down [N];
         None if the length is unknown

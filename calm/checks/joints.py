@@ -1,4 +1,4 @@
-"""Rule `joints`: connecting hardware between pieces of different metals."""
+"""Rule `joints`: joints between metal pieces that lack connecting hardware."""
 
 from __future__ import annotations
 

@@ -153,7 +153,7 @@ class LegGraph:
         return parts
 
     def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """Return the pieces of each part without a fixed end, in file order."""
+        """Return the pieces of each part that is not attached to a fixed end, in file order."""
         return [
             sorted(one for one in part if isinstance(one, int))
             for part in self.parts(cut)
@@ -177,8 +177,9 @@ class LegGraph:
         """Return the breaks below every piece that surfaces, in file order.
 
         The margin of a break refers to the section that contains a release after all releases have
-        opened. `loose` is the net buoyancy of the section that drifts off before. For a break
-        inside a cable, the margin lies between the margins of the breaks at both ends of the cable.
+        opened. `loose` is the net buoyancy of the section that drifts off before the releases open.
+        For a break inside a cable, the margin lies between the margins of the breaks at both ends
+        of the cable.
 
         Consecutive floats with only connectors and chain between them form a cluster. Some breaks
         strand the release in any design and are not judged: breaks inside the last cluster above a

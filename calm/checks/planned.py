@@ -158,8 +158,8 @@ def _amount(least: float, most: float) -> str:
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
     """Name the lengths to check for a part.
 
-    They begin at the last part with the same error and end at the next part with another error, in
-    the direction of the fixed end.
+    The error lies between the last part with the same depth error and the next part with a
+    different one, in the direction of the fixed end.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning

@@ -21,8 +21,8 @@ Part = Piece | Clamp
 
 @rule("serials-and-dates", once=True)
 def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
-    """Warn about repeated labels and serial numbers, repeated or useless release codes, and dates
-    in the wrong order.
+    """Warn about repeated labels, serial numbers and release codes, codes without a release, and
+    dates in the wrong order.
     """
     file = handling.leg.file
     parts = parts_of(file.pieces)

@@ -47,8 +47,9 @@ def deck(
         Page size.
     environment
         Environment in which depths and lengths are computed: a name from the files, or an
-        environment file. Further environments are design currents. By default, the default
-        environment of the file, with its named environments as design currents.
+        environment file. Repeatable; further environments are used as design currents. By default,
+        the sheets are for the default environment of the file, and its named environments are the
+        design currents.
     order
         Deployment order.
     ship_speed

@@ -43,9 +43,9 @@ def locate(
     Parameters
     ----------
     file
-        CSV file with the columns latitude, longitude (WGS 84, of the transducer; degrees, or
-        degrees and minutes) and range[m], or the two-way time[s]; or a survey file without column
-        headings, as written for the programs of WHOI and NOC.
+        CSV file with the columns latitude, longitude, and range[m] or two-way time[s]. Positions
+        are those of the transducer in WGS 84, in degrees or in degrees and minutes. Survey files
+        without column headings, as written for the programs of WHOI and NOC, are accepted, too.
     sound_speed
         Speed of sound with which times are converted: a speed, or a CSV file with the
         columns depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges in

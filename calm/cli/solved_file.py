@@ -150,7 +150,7 @@ def _explained(result: Result) -> Explanation:
 def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
     """Return a function that computes the uncertainty of a result from many samples.
 
-    The random numbers are generated in another process from now on, because loading scipy takes as
+    Another process starts to generate the random numbers at once, because loading scipy takes as
     long as loading the compiled march.
     """
     from calm.case.draws import normals_of

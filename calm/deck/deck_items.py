@@ -264,8 +264,8 @@ def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
-    """Return whether a run of clamps consists of floats, and these are all the clamps on the cable
-    in a row.
+    """Return whether a run of clamps consists of floats and includes all clamps on the cable of
+    `row`.
     """
     first = run[0]
     if first.role != "float" or first.on is None or first.kind == (first.label,):

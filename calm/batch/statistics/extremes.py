@@ -305,11 +305,12 @@ def peaks_over(
 ) -> NDArray[np.float64]:
     """Find the maximum of each cluster of values above a threshold.
 
-    The extremal index θ is computed from the intervals T between the N exceedances, in steps: θ = 2
-    (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), at most 1. The θN - 1
-    longest intervals separate the clusters (Ferro and Segers 2003, eq. 6 and section 3), but
-    successive exceedances are never separated, since in a record of a single storm all intervals
-    are equal. An interval across a gap counts in full, as if it contained no exceedance.
+    The extremal index θ is computed from the intervals T between the N exceedances, counted in time
+    steps. θ = 2 (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)); θ is at
+    most 1. The θN - 1 longest intervals separate the clusters (Ferro and Segers 2003, eq. 6 and
+    section 3), but successive exceedances are never separated, since in a record of a single storm
+    all intervals are equal. An interval across a gap counts in full, as if it contained no
+    exceedance.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:

@@ -159,8 +159,8 @@ class ResultColumns:
         return self._read(self._columns[name][index])
 
     def at(self, name: str, time: int) -> Column:
-        """Return a variable in one profile for all components or clamps (columns,); empty if the
-        result has no such variable.
+        """Return the values of a variable for all components or clamps in one profile. The array is
+        empty if the result has no such variable.
         """
         values = []
         for column in self._columns.get(name, ()):
@@ -173,7 +173,9 @@ class ResultColumns:
         return self.column("clamp_depth" if seat.clamped else "depth_top", seat.number)
 
     def of_part(self, name: str, seat: Seat) -> Column:
-        """Return the `tilt` [degrees] or `knockdown` [m] (n,) of a component or clamp."""
+        """Return the values (n,) of `tilt` [degrees] or `knockdown` [m] for a component or
+        clamp.
+        """
         return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
 
     def greatest_tension(self, seats: Sequence[Seat]) -> Column:

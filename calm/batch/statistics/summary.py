@@ -103,7 +103,7 @@ class Summary:
     ----------
     name : name of the mooring
     count : number of profiles
-    endings : number of profiles by ending
+    endings : number of profiles by category of their status
     statuses : number of profiles for each status that occurs
     begin, end : times of the first and the last profile
     years : years represented by the solved profiles
