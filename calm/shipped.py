@@ -34,11 +34,8 @@ TEMPLATES: dict[Template, str] = {
     "slack-surface": "marker buoy on chain and floating rope, 60 m",
     "tow": "body behind a ship, at the depth wanted",
 }
-"""Kinds of template moorings, with descriptions.
-
-A template accepts no unknown figure, since that is a decision of whoever signs the design.
-
-None accepts a figure that is not known: that is for whoever signs the design.
+"""Kinds of template moorings, with descriptions. No template accepts an unknown value, because this
+is a decision of the person who signs the design.
 """
 
 

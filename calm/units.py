@@ -72,11 +72,10 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "latitude": Dimension("a latitude", "deg", {"deg": 1.0}),
     "longitude": Dimension("a longitude", "deg", {"deg": 1.0}),
 }  # fmt: skip
-"""All dimensions by name.
-
-Angles are in degrees and temperatures in degrees Celsius, as in files and reports. Salinities are
-practical salinities. A mass fraction is converted to one as for sea water of the reference
-composition, by the factor that defines it (Millero et al. 2008, Deep-Sea Research I 55, 50-72).
+"""All dimensions by name. Angles are in degrees and temperatures in degrees Celsius, as in files
+and reports. Salinities are practical salinities. A mass fraction is converted to a practical
+salinity with the factor for sea water of the reference composition (Millero et al. 2008, Deep-Sea
+Research I 55, 50-72).
 """
 
 _SPELLINGS = {
@@ -285,7 +284,7 @@ def unit_factor(text: str, dimension: str) -> float:
         # Other scales have other zeros, which no factor can express.
         raise QuantityError("is not a temperature in degC", "degC" if unit == "C" else None)
     if dimension == "salinity":
-        # Pint would make a plain number of any ratio, and that would pass for a practical salinity.
+        # Pint converts any ratio to a plain number, which would pass for a practical salinity.
         raise QuantityError(f"is not {_described(wanted)}")
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
         raise QuantityError(f"cannot be read; {_described(wanted)} is needed")
@@ -391,7 +390,7 @@ def _factor_by_pint(unit: str, wanted: Dimension) -> float:
 
     registry = _registry()
     near = [known for known in wanted.units if known.lower() == unit.lower()]
-    # Units of other kinds and texts that are no unit at all leave pint by many exceptions.
+    # Pint raises many kinds of exceptions for other units and for texts that are not units.
     try:
         quantity = registry.Quantity(1.0, registry.parse_units(unit))
         return float(quantity.to(wanted.unit).magnitude)

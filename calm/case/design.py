@@ -176,7 +176,7 @@ class Design:
         density = np.array([AIR_DENSITY, water.density_at(surface), *water.density[below]])
         return replace(water, level=level, u=u, v=v, w=w, density=density)
 
-    # with something changed
+    # changed copies
 
     def with_(
         self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
@@ -243,7 +243,7 @@ class Design:
         numbered = tuple(replace(piece, index=index) for index, piece in enumerate(listed))
         return Design(replace(self.file, pieces=numbered, legs=tuple(legs)))
 
-    # solved
+    # solutions
 
     @cached_property
     def standing(self) -> NetSolution:

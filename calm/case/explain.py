@@ -22,7 +22,7 @@ from calm.physics.line import Floats, Line, Water
 from calm.solve import CompiledPart, expect_many
 
 SOLVES = 100.0
-"""Approximate number of equilibria that one explanation costs in computing time."""
+"""Computing time of one explanation, as an approximate number of equilibria."""
 
 CHANGE = 0.1
 """Relative change of buoyancy, drag and current in the what-if cases."""

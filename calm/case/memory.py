@@ -15,7 +15,7 @@ from typing import Any, ParamSpec, TypeVar
 from calm.errors import NoEquilibrium
 
 MOST = 256
-"""Number of outcomes kept, the latest ones."""
+"""Number of outcomes that are kept; older ones are discarded."""
 
 P = ParamSpec("P")
 T = TypeVar("T")

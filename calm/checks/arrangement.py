@@ -41,9 +41,9 @@ _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
 GRAPPLED = 100.0
-"""Water depth up to which a single release is accepted [m]; a default of CALM.
-
-In shallow water, a line whose release fails can be dived or grappled for."""
+"""Water depth up to which a single release is accepted [m]; a default of CALM. In shallow water, a
+diver or a grapnel can recover a line whose release fails.
+"""
 
 LEAST_BELOW_RELEASE = 1.0
 """Minimum height of a release above its anchor [m]; a default of CALM."""
@@ -176,9 +176,7 @@ def _held_by(pieces_there: Sequence[Piece]) -> tuple[Piece, bool] | None:
 
 
 _TOUCH = 0.05
-"""Accepted overlap of neighbouring clamps [m]; clamped instruments may sit beside each other on the
-line.
-"""
+"""Accepted overlap of neighbouring clamps [m]; clamped instruments may be mounted side by side."""
 
 
 @rule("clamp-place", once=True)

@@ -23,7 +23,9 @@ from calm.physics import drag
 from calm.physics.seawater import REFERENCE_DENSITY
 
 CHAIN_BREADTH = 1.8
-"""Diameter of the cylinder that displaces as much as a chain, over its bar diameter (OrcaFlex)."""
+"""Diameter of a cylinder with the displacement of a chain, divided by the bar diameter of the chain
+(OrcaFlex).
+"""
 
 
 def grown(

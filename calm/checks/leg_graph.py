@@ -26,10 +26,9 @@ from calm.solve.solution import standing_lift
 
 SHORT_LEAD = 50.0
 """Maximum length of line between the lowest floats and the release that is exempt from break checks
-[m]; a default of CALM.
-
-Those floats are the back-up of everything above them. If all floats are so close to the release, as
-on a bottom lander or a short line below one float, they alone recover the mooring.
+[m]; a default of CALM. These floats are the back-up buoyancy for everything above them. If all
+floats are so close to the release, as on a bottom lander or a short line below one float, they
+alone recover the mooring.
 """
 
 _SEABED, _HELD = object(), object()

@@ -333,7 +333,8 @@ USUAL_CURRENT = 0.2
 """Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
-"""Ratio of the design current to the strongest current of its record, below which it is too weak.
+"""Ratio of the design current to the strongest current of its record, below which the design
+current is too weak.
 """
 
 WEAK_BESIDE_OTHERS = 0.02

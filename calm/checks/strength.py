@@ -19,7 +19,7 @@ from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
-"""Ratio of a piece's strength to that of the cables on both sides below which the piece is a weak
+"""Ratio of a piece's strength to that of the cables on both sides, below which the piece is a weak
 link.
 """
 
@@ -373,8 +373,8 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
-"""Rules that a sufficient weight of the anchor satisfies. The weight that the first requires
-satisfies all, in the same situation.
+"""Rules that a sufficiently heavy anchor satisfies. The weight required by the first rule satisfies
+all of them in the same situation.
 """
 
 

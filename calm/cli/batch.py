@@ -163,7 +163,7 @@ def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
 
 def check_output(output: Path, *inputs: Path) -> None:
     """Reject an output path that cannot be written, or that would overwrite an input."""
-    # unlike `Path.resolve`, it takes links that lead round in a circle
+    # unlike `Path.resolve`, `realpath` accepts links that form a circle
     place = os.path.realpath(output)
     if output.is_symlink() and not output.exists():
         raise UsageError(f"cannot write {output}: it is a symbolic link to a missing file")

@@ -98,7 +98,7 @@ app = App(
     result_action="return_value",
 )
 _SYNONYMS = {"run": ("tow", "solve")}
-"""Other words for commands, which the message about an unknown command answers."""
+"""Other words for commands; if one of them is typed, the message suggests the command."""
 
 _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (

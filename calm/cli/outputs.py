@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _NARROWEST = 40  # columns: below this width the terminal wraps the numbers
 _ERROR_HANDLER = "calm-written-out"  # error handler for characters that a stream cannot encode
-_SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
+_SIGNS = "°×–−→≤≥²³█▒◦≈"  # characters in the tables
 
 
 def prepare() -> None:

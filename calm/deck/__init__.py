@@ -37,7 +37,7 @@ from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 FAINT = 0.1
-"""Speed of the weak current in which a line is drawn that is slack in still water [m/s]."""
+"""Speed of the weak current in which the sheets show a line that is slack in still water [m/s]."""
 
 _Listed = TypeVar("_Listed")
 

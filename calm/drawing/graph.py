@@ -201,7 +201,7 @@ class Stroke(NamedTuple):
 
 _FRAME, _GRID = Stroke(INK, 0.7), Stroke("#e3e6ea", 0.6)
 _TICK = 3.0  # points
-_NEAREST = 0.05  # points: of two that are nearer one is drawn
+_NEAREST = 0.05  # points; a point closer to the previous one is not drawn
 
 
 _SAMPLE, _GAP = 16.0, 5.0  # points: length of the line next to a text, and the gap between them
@@ -220,7 +220,7 @@ class Graph:
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size
-        self.pen.element.set("fill", "none")  # a curve and a frame are lines
+        self.pen.element.set("fill", "none")  # curves and frames are not filled
 
     def svg(self) -> str:
         """Return the graph as an SVG element, for a file or for embedding in a page."""
