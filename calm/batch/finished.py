@@ -31,7 +31,8 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Replace exceptions while reading a finished result by helpful messages (context manager).
+    """Replace exceptions that occur while a finished result is read with helpful messages (context
+    manager).
 
     Raises UsageError instead of any exception of the libraries.
     """

@@ -225,7 +225,7 @@ class NetProfiles:
 
     @cached_property
     def slopes(self) -> tuple[Floats, Floats] | None:
-        """Jacobian of the net at the starting point, and the scales of its rows; None if each
+        """Jacobian of the net at the starting point, and the scales of its unknowns; None if each
         profile must be solved on its own.
         """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):

@@ -423,8 +423,8 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
-    """Build the results from the rows of all profiles: add the anchor, and subtract depths in still
-    water to obtain the knockdown.
+    """Build the results from the rows of all profiles. The anchor is added, and the knockdown is
+    the difference from the depths in still water.
     """
     pieces, clamps, ends = rows
     above = leg.file.pieces[:-1]

@@ -155,7 +155,7 @@ class Neighbours(NoMemory):
         self._still: Nearby | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Call a solver. `solve_mooring` is replaced by a search that starts from the known
+        """Call a solver, but replace `solve_mooring` by a search that starts from the known
         equilibrium.
         """
         if solver is solve_mooring:

@@ -170,7 +170,7 @@ class ColumnTable(Columnar, Generic[Row]):
         return pandas.DataFrame({name: getattr(self, name) for name in names})
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset with the dimension `label`, with units and meanings."""
+        """Return a dataset along the dimension `label`, including units and meanings."""
         return _dataset(self.to_pandas(), self.columns(), "label")
 
 
@@ -610,7 +610,7 @@ class Shape:
         return pandas.DataFrame(vars(self))
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset with the dimension `node`, with units and meanings."""
+        """Return a dataset along the dimension `node`, including units and meanings."""
         return _dataset(vars(self), self.columns(), "node")
 
 

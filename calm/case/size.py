@@ -142,9 +142,8 @@ def size(
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
     change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
-    between : range of the parameter; each end has a unit. By default the range begins at 0 and ends
-        at a hundred times the present buoyancy, at a length of twice the water depth, or at a count
-        of 1000
+    between : smallest and largest value, with units. By default a buoyancy may be 0 to 100 times
+        its present value, a length at most twice the water depth, and a count at most 1000
 
     Raises
     ------

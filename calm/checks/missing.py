@@ -95,7 +95,7 @@ def with_missing(
     mooring: str,
     environment: str,
 ) -> list[Finding]:
-    """Replace the findings of a mooring that lack a value by findings of the rule `missing`.
+    """Replace the findings of a mooring that lack a value with findings of the rule `missing`.
 
     Parameters
     ----------

@@ -338,8 +338,8 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
 
 
 def _too_long(leg: Leg) -> str:
-    """Return the additional remedy that the line may be too long. For a float that only floats at
-    the surface, the text is empty.
+    """Return the additional remedy that the line may be too long, unless the float has a key that
+    only surface floats have.
     """
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):

@@ -207,7 +207,7 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Replace the values of a file by the values under `deployed`. The file must not have a fitted
+    """Replace the values of a file with those under `deployed`. The file must not have a fitted
     piece.
     """
     deployed = file.deployed

@@ -1,4 +1,4 @@
-"""Read lines, and read the moorings of a design check in all their environments."""
+"""Reading of files for the commands: single designs, or moorings in all their environments."""
 
 from __future__ import annotations
 

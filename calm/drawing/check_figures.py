@@ -64,7 +64,7 @@ class Label:
 
 
 def grey(svg: str) -> str:
-    """Replace the colours of a drawing by greys of equal luminance."""
+    """Replace the colours of a drawing with greys of equal luminance."""
 
     def of(match: re.Match[str]) -> str:
         red, green, blue = (int(match[1][at : at + 2], 16) for at in (0, 2, 4))

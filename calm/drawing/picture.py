@@ -43,7 +43,7 @@ _NOT_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 def within_xml(text: str) -> str:
-    """Replace characters that XML does not allow by �."""
+    """Replace characters that XML does not allow with �."""
     return re.sub(_NOT_XML, "\ufffd", text)
 
 
@@ -64,12 +64,12 @@ _IN_ASCII = str.maketrans({
 
 
 def printable(text: str) -> str:
-    """Replace characters that XML or a terminal cannot show by a mark."""
+    """Replace characters that XML or a terminal cannot show with a mark."""
     return re.sub(_UNPRINTABLE, "\ufffd", text)
 
 
 def in_ascii(text: str) -> str:
-    """Replace the symbols of units and arithmetic by ASCII text: ``27 deg`` for ``27°``.
+    """Replace the symbols of units and arithmetic with ASCII text: ``27 deg`` for ``27°``.
 
     Letters are not changed.
     """

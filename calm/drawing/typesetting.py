@@ -57,7 +57,7 @@ def lacking(texts: Iterable[str]) -> str:
 
 
 def legible(text: str) -> str:
-    """Replace each character that the fonts lack by �.
+    """Replace each character that the fonts lack with �.
 
     A single missing character would otherwise make typst show a drawing's whole label as boxes.
     """

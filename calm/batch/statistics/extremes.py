@@ -273,8 +273,8 @@ def years_of(step: np.timedelta64, count: int) -> float:
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Return the median time between profiles, which is not affected by gaps. A single profile has
-    zero.
+    """Return the median time between profiles, which is not affected by gaps. For a single profile,
+    it is zero.
     """
     if len(time) < 2:
         return np.timedelta64(0, "ns")
