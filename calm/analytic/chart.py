@@ -146,7 +146,6 @@ def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolutio
 def _on_branch(
     branch: Branch, ends: Mapping[str, tuple[Branch, float] | None], sizes: Mapping[str, float]
 ) -> list[ChartSolution]:
-    """Find every cable that is part of one branch of the curve."""
     places = [end for end in ends.values() if end is not None]
     if any(place[0].sign != branch.sign for place in places):
         return []

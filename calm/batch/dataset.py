@@ -117,7 +117,6 @@ def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
 
 
 def _time_unit(time: NDArray[np.datetime64]) -> str:
-    """Find the coarsest unit in which all times are whole numbers."""
     since = time.astype("datetime64[ns]", copy=False).view(np.int64)
     parts = [since[start : start + 65536] for start in range(0, len(since), 65536)]
     return next(

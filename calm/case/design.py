@@ -134,7 +134,6 @@ class Design:
 
     @property
     def towed(self) -> bool:
-        """Whether a ship or an aircraft tows the design."""
         return any(leg.towed for leg in self.legs)
 
     @property
@@ -144,7 +143,6 @@ class Design:
 
     @property
     def settings(self) -> Settings:
-        """Settings of the solver."""
         return self.legs[0].settings
 
     @cached_property
@@ -455,7 +453,6 @@ class Result:
 
     @property
     def towed(self) -> bool:
-        """Whether a ship or an aircraft tows the design."""
         return self.design.towed
 
     @property

@@ -181,7 +181,6 @@ class LegResult:
 
     @property
     def towed(self) -> bool:
-        """Whether a ship or an aircraft tows the leg."""
         return self.leg.towed
 
     @property

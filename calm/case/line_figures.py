@@ -195,7 +195,6 @@ class NodeFigures:
 
     @property
     def tension(self) -> Floats:
-        """(k,) tensions [N]."""
         return self.solution.tension
 
     @property

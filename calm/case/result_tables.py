@@ -202,7 +202,6 @@ class LineEnd(NamedTuple):
 
     @property
     def height(self) -> float:
-        """Height of the anchor [m]."""
         return self.piece.length or 0.0
 
 
@@ -390,7 +389,6 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
-        """Place of the piece in the file."""
         return self.part.place
 
     @property
@@ -464,7 +462,6 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
-        """Place of the clamp in the file."""
         return self.part.place
 
     @property

@@ -83,7 +83,6 @@ class Uncertain:
 
     @property
     def failed(self) -> int:
-        """Number of samples without equilibrium."""
         return sum(self.failures.values())
 
     @property
@@ -225,7 +224,6 @@ def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
 
 
 def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution, ...]:
-    """Return the contributions of the inputs in decreasing order."""
     if indices is None:
         return ()
     found = [

@@ -212,7 +212,6 @@ def impossible(component: Component) -> Iterator[str]:
 
 
 def _of_a_load(component: Component) -> Iterator[str]:
-    """Yield the loads of a component that are impossible for its kind, size and mass."""
     most, size = inf, ""
     if not isinstance(component, Flexible) and not materials.fibre_of(component.material):
         mass, length = component.mass, component.length
@@ -352,7 +351,6 @@ def figures(handling: Handling) -> Iterator[Verdict]:
 
 
 def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
-    """Report a material that CALM does not know."""
     material = component.material
     if material and not materials_in(material):
         near = nearest(material, [each.name for each in materials.MATERIALS])

@@ -119,7 +119,6 @@ def _solved(design: Design) -> _Solved:
 
 
 def _figures_of(design: _Solved) -> _Figures:
-    """Collect the values of a whole design, in the order of printing."""
     result, assessment = design
     stands = not isinstance(result, NoEquilibrium)
     found: _Figures = {"status": ("status", "", "stands" if stands else "does not stand")}
@@ -187,7 +186,6 @@ def _figures_of_legs(result: Result) -> _Figures:
 
 
 def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """Compare depth and tilt of instruments, and cut lengths of cables and chains."""
     first, second = (
         {} if isinstance(each, NoEquilibrium) else rows_by_place(each) for each, _ in designs
     )
@@ -232,7 +230,6 @@ def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
 
 
 def _finite(value: Number | str) -> Number | str:
-    """Convert an infinite value to None, for JSON."""
     return None if isinstance(value, float) and not isfinite(value) else value
 
 

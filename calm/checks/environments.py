@@ -92,7 +92,6 @@ def _speeds(current: CurrentTable, levels: Floats) -> Floats:
 
 
 def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
-    """Warn if a surface float has a wind area but no environment has wind."""
     top = legs[0].file.pieces[0]
     area = getattr(top.component, "wind_area", None)
     calm = all(leg.file.environment.wind is None for leg in legs)

@@ -79,7 +79,6 @@ planned_depth = replace(rule("planned-depth", once=True, case="0")(_judge), coun
 
 
 def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
-    """Return the parts with a planned depth, and one verdict for each part."""
     parts = planned_parts(result)
     return parts, [
         _verdict(result.file, part, _remedy(result, parts, number))
@@ -149,7 +148,6 @@ def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) 
 
 
 def _amount(least: float, most: float) -> str:
-    """Format a depth error, or a range of depth errors."""
     direction = "too deep" if most > 0.0 else "too shallow"
     shown = dict.fromkeys(say("depth", abs(each)) for each in (least, most))
     return f"{' to '.join(shown)} {direction}"

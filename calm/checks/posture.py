@@ -276,7 +276,6 @@ def _of_the_top(
     limit: float | None,
     words: Callable[[float, str], tuple[str, str]],
 ) -> Iterator[Criterion]:
-    """Yield the criterion for a quantity of the top, if the design sets a limit."""
     if limit is not None:
         allowed = say(quantity, limit)
         top = pieces_of(leg)[0]

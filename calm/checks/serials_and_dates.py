@@ -74,7 +74,6 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _releases(file: MooringFile) -> Iterator[Verdict]:
-    """Report release codes without a release in the line, and repeated codes."""
     for message in unknown_releases(file.releases, file.pieces, file.deployed):
         yield _warning(None, message, "Check the serial numbers of the releases.")
     serials = [one.serial for one in file.releases if one.serial is not None]

@@ -119,9 +119,6 @@ def batch(
 
 
 def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> str:
-    """Describe the number of profiles with an implausible current, and give the first as an
-    example.
-    """
     from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed

@@ -64,9 +64,6 @@ def list_components(
 
 
 def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defined]:
-    """Search components with every word of a text or, with a message, components with most of the
-    words.
-    """
     from calm.assemble.catalogue_search import Index
     from calm.files.editing.user_state import Remembered
 

@@ -135,9 +135,6 @@ def import_(
 
 
 def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode:
-    """Assign a list of instruments to the line of a mooring file, and write the copy with serial
-    numbers.
-    """
     from calm.motion.assigned_instruments import assign_instruments
     from calm.report import result_files
 

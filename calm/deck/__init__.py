@@ -341,7 +341,6 @@ def lifts_of(
 
 
 def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:
-    """Compute the weight in water of each piece with its clamps [N]."""
     weights: dict[int, float | None] = {}
     for one in inventory:
         before, own = weights.get(one.index, 0.0), one.wet_weight

@@ -163,7 +163,6 @@ class DeckRow:
 
     @property
     def joints(self) -> tuple[DeckItem, ...]:
-        """All connecting hardware of the row."""
         return (*self.between, *self.after)
 
     @property
@@ -249,7 +248,6 @@ def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[Dec
 
 
 def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
-    """Yield the rows, with consecutive rows of the same cluster of floats joined."""
     joined: list[DeckRow] = []
     key: tuple[object, ...] = ()
     for row in rows:

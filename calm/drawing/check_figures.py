@@ -174,7 +174,6 @@ _MOST_LEVELS = 7
 
 
 def _longest(labels: Sequence[Label]) -> float:
-    """Return the width of the widest label, including its depth."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
     return _REAL * max(widths, default=0.0) + _FIGURES + _GAP
 
@@ -184,7 +183,6 @@ def _level(place: int, count: int, height: float) -> float:
 
 
 def _draw_flow(page: Pen, leg: LegResult, sea: float, scale: float) -> None:
-    """Draw the current speed by depth, with as many arrows as fit."""
     speed = np.hypot(leg.water.u, leg.water.v)
     fastest = float(speed.max())
     if fastest == 0.0:

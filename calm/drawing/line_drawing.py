@@ -167,7 +167,6 @@ def _draw_marks(axes: Axes, marks: Sequence[PictureMark]) -> None:
 
 
 def _write_names(axes: Axes, written: Sequence[tuple[str, PictureMark]], room: float) -> None:
-    """Write names in a column at the right edge, each with a thin line to its part."""
     left, half = axes.left + axes.width - room - 4.0, _NAME_LEADING / 2
     wanted = [float(axes.y(part.depth)) for _, part in written]
     places = line_picture.spread(

@@ -360,5 +360,4 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
 
 
 def _number(label: str) -> str:
-    """Return the digits at the end of a label."""
     return label[len(label.rstrip("0123456789")) :]

@@ -221,7 +221,6 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """Describe the gaps in a record, or return an empty string."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:

@@ -393,7 +393,6 @@ def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
 
 
 def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> None:
-    """Write the texts of a part, with a dotted line from its symbol to its values."""
     start = left + column.text[0] + (_INDENT if one.part.clamped else 0.0)
     levels = [
         one.middle + LEADING * (number - (len(one.lines) - 1) / 2)

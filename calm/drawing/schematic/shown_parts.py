@@ -190,7 +190,6 @@ def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
 
 
 def _subtitle(file: MooringFile) -> str:
-    """Describe the depth and position of a mooring, or the speed of a tow."""
     facts = []
     if file.tow is not None:
         facts.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")

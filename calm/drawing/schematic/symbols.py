@@ -133,7 +133,6 @@ def _sphere(diameter: float) -> Symbol:
 
 
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
-    """Return the first symbol whose pattern matches the words, or `other`."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
 
 
@@ -336,7 +335,6 @@ def draw_cable(pen: Pen, symbol: Symbol, x: float, top: float, bottom: float) ->
 
 
 def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
-    """Draw chain links, alternately seen from the front and from the side."""
     count = max(3, round((bottom - top) / _LINK))
     pitch = (bottom - top) / count
     for number in range(count):

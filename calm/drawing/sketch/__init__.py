@@ -228,7 +228,6 @@ def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
 def _weakest(
     loads: list[tuple[float, float, float]], length: float, dots: int
 ) -> list[tuple[int, float]]:
-    """Return the smallest allowable load at each dot down the line."""
     least: dict[int, float] = {}
     for start, end, load in loads:
         first, last = (round(each / length * (dots - 1)) for each in (start, min(end, length)))
