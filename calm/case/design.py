@@ -134,6 +134,7 @@ class Design:
 
     @property
     def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the design."""
         return any(leg.towed for leg in self.legs)
 
     @property
@@ -143,6 +144,7 @@ class Design:
 
     @property
     def settings(self) -> Settings:
+        """Settings of the solver."""
         return self.legs[0].settings
 
     @cached_property
@@ -441,18 +443,22 @@ class Result:
 
     @property
     def file(self) -> MooringFile:
+        """Contents of the design file."""
         return self.design.file
 
     @property
     def name(self) -> str:
+        """Name of the design."""
         return self.file.name
 
     @property
     def water(self) -> Water:
+        """Water depth, and current and density by level."""
         return self.design.water
 
     @property
     def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the design."""
         return self.design.towed
 
     @property

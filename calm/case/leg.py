@@ -86,10 +86,12 @@ class Leg:
 
     @property
     def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the leg."""
         return self.file.tow is not None
 
     @property
     def anchored(self) -> bool:
+        """Whether the leg ends in an anchor."""
         return self.bottom.anchor is not None
 
     @property
@@ -106,6 +108,7 @@ class Leg:
 
     @property
     def settings(self) -> Settings:
+        """Settings of the solver."""
         solver = self.file.solver
         friction = 0.0 if self.towed else solver.seabed_friction
         return Settings(solver.angle_step, solver.tolerance, friction)

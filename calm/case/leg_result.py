@@ -56,6 +56,7 @@ class LegResult:
 
     @property
     def name(self) -> str:
+        """Name of the leg."""
         return self.leg.name
 
     @property
@@ -172,6 +173,7 @@ class LegResult:
 
     @property
     def water(self) -> Water:
+        """Water of the leg."""
         return self.leg.water
 
     @property
@@ -181,6 +183,7 @@ class LegResult:
 
     @property
     def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the leg."""
         return self.leg.towed
 
     @property
