@@ -70,7 +70,7 @@ class Attribution:
 
     Attributes
     ----------
-    parts : the p parts
+    parts : leg, piece and clamp (-1 for none) to which each drag belongs
     start : (3,) values without drag, or with the smallest drag
     shares : (p, 3) contribution of each drag; the sums are the total change
     miss : (3,) relative error of the sums before they were scaled to the total change

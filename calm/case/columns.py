@@ -50,9 +50,9 @@ _LAST = 1000
 class ResultColumn:
     """A column of a result table.
 
-    Each column is computed in one of four ways: `of_part` reads the piece or clamp of the file;
-    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor;
-    `derived` combines earlier columns; `of_row` is evaluated when an output shows a row.
+    Each column is computed in one of four ways. `of_part` reads the piece or clamp of the file.
+    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor.
+    `derived` combines earlier columns. `of_row` is evaluated when an output shows a row.
 
     Attributes
     ----------
