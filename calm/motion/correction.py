@@ -85,8 +85,9 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the times of the block that begins at `start`; append its extreme depths to
-    `extent` [m].
+    """Estimate the block of times that begins at `start`, ready to be written.
+
+    The smallest and largest depth of the block [m] are appended to `extent`.
     """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
@@ -100,10 +101,10 @@ def solve_times(
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
-    """Return the layout of the result: a batch result with the motion estimates, for archives.
+    """Return the layout of the result file: a batch result plus the estimates of motion.
 
-    The layout includes depth flags, serial numbers and archive attributes. Only SOURCE_DATE_EPOCH
-    sets its date, so equal inputs give equal bytes.
+    The layout includes depth flags, serial numbers and archive attributes. Its date is set only if
+    SOURCE_DATE_EPOCH is set, so equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -173,7 +174,7 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return depth flags: measured at points with a valid pressure, else estimated or missing."""
+    """Return flags of all depths: measured (points with a valid pressure), estimated or missing."""
     clamps = profiles.clamp_depth.shape[1]
     depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
@@ -186,12 +187,12 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Return (n, m) depths of several points and their deviations [m], without writing a file.
+    """Estimate (n, m) depths of m points and their standard deviations [m], without writing a file.
 
     Parameters
     ----------
-    task : task of the estimate
-    points : indices of the points of the line
+    task : input of the estimate
+    points : indices of the m points
     workers : number of threads
     """
     starts = range(0, len(task.measured.time), BLOCK)
@@ -213,10 +214,10 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """Input of the estimate; `measured` contains only the sensors that are used.
+    """Input of the estimate of depths. `measured` contains only the sensors in use.
 
     `smoother` is the solution for the whole record if currents were measured, else None. `faults`
-    are the diagnosed faults; None if they are still to be diagnosed.
+    are the diagnosed faults; None means that the diagnosis has not been made.
     """
 
     mooring: Design
@@ -226,12 +227,12 @@ class Task:
     faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Return the line in the most likely currents at several times, and the other estimates.
+        """Estimate the line at the times from `start` to `stop`, in the most likely currents.
 
         Returns
         -------
-        The profiles with the estimated depths, and a dictionary of `clamp_depth_sd`, `depth_sd`,
-        `residual`, and for measured currents `current_factor`, `current_doubt`, `plain_depth`.
+        The profiles with the estimated depths, and a dictionary with `clamp_depth_sd`, `depth_sd`,
+        `residual` and, for measured currents, `current_factor`, `current_doubt` and `plain_depth`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -287,7 +288,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Blank the times (n,) that are far from any current; their status depends on `false`."""
+    """Replace results by NaN at times that are too far from any current (mask `lost`, (n,)).
+
+    Their status becomes "implausible-current" where `false` is set, otherwise "no-current".
+    """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
         status = np.where(lost & false, STATUSES.index("implausible-current"), status)
@@ -300,7 +304,7 @@ def without_current(
 
 
 class MeasuredRecord(Record):
-    """Measured currents in the form of a record, as input for a result."""
+    """Measured currents in the form of a `Record`, to write them to a result."""
 
     def __init__(
         self,

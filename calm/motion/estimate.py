@@ -1,6 +1,6 @@
 """Estimate of unmeasured currents from pressures, independently at each time.
 
-The line is linearised at a state of the currents.
+The line is linearised about a state of the currents.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class Posterior:
 
     Attributes
     ----------
-    logs : (n, g) of the factors on the currents
+    logs : (n, g) changes in the logarithms of the factors on the currents, from the prior mean
     sea : (n,) height of the sea surface above its mean [m]
-    depth, variance : (n, p) of the points [m], [m²]
-    evidence : (n,) logarithm of the density of the pressures
+    depth, variance : (n, p) depths of the points [m] and their variances [m²]
+    evidence : (n,) log probability density of the measured depths
     innovation : (n, s) measured depths less their predictions [m]
     expected : (n, s, s) covariance of the innovation
     """
@@ -47,11 +47,14 @@ def posterior(
     common: Common,
     still: Floats,
 ) -> Posterior:
-    """Return the best state in the linear model, and the posterior of all depths.
+    """Return the posterior of the currents and of all depths in the linear model.
 
     Parameters
     ----------
-    spread : (g, g) prior covariance of the logarithms
+    one : measurements at n times
+    at : depths linearised about a state of the currents
+    spread : (g, g) prior covariance of the logarithms of the factors on the currents
+    common : common unknowns
     still : (p,) depths in still water [m]
     """
     n, p, g = at.slope.shape
@@ -106,7 +109,7 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """Currents, the line in these currents, and the posterior at this linearisation."""
+    """Currents at several times, with the linearised line and the posterior there."""
 
     read: ReadCurrents
     at: Linear
