@@ -1,6 +1,6 @@
 """Published and independently computed values that CALM must reproduce, for `calm verify`.
 
-Each `Source` holds the cases of one publication or derivation. The figures are part of the code, so
+Each `Source` holds the cases of one publication or derivation. The values are part of the code, so
 that no file is read.
 """
 
