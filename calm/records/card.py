@@ -122,7 +122,10 @@ def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
 
 
 def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of a file's instruments; medians are medians of the instruments' medians."""
+    """Merge the cards of a file's instruments.
+
+    The median of a variable is the median of the instruments' medians.
+    """
     variables = {}
     for role in {role: None for card in cards for role in card.variables}:
         each = [card.variables[role] for card in cards if role in card.variables]

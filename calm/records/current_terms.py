@@ -32,8 +32,8 @@ class Terms:
     declination : magnetic declination, positive to the east [degrees]; rotates currents that the
         file refers to magnetic north
     maximum_speed : speed above which a current is a mistake of the file [m/s]
-    on_the_line : read instruments on a mooring line: level labels may name parts of the line, and
-        bad currents are kept with their flags instead of being excluded
+    on_the_line : whether the file holds instruments on a mooring line. Level labels may then name
+        parts of the line, and bad currents are kept with their flags instead of being excluded
     """
 
     water_depth: float = inf

@@ -35,8 +35,8 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
 
     Parameters
     ----------
-    given : a record, several records, or a mapping from labels to records, which returns
-        ``LABEL=PATH``
+    given : a record, several records, or a mapping from labels to records; for a mapping,
+        ``LABEL=PATH`` is returned
     folder, name : output folder, and prefix of the file names
 
     Raises

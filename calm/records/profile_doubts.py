@@ -58,7 +58,9 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 
 
 def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
-    """Yield remarks on doubtful levels of one profile, without a full stop.
+    """Yield remarks on doubtful levels of one profile.
+
+    The remarks do not end with a full stop.
 
     Parameters
     ----------
@@ -78,9 +80,9 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
 
 
 def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[str]:
-    """Yield levels whose current opposes both neighbours although its speed lies between theirs.
+    """Yield a remark on each level whose current opposes the currents above and below.
 
-    A real undercurrent is usually slower or faster than both neighbours.
+    Its speed must lie between theirs. A real undercurrent is usually slower or faster than both.
     """
     for i in range(1, len(depth) - 1):
         three = speed[i - 1 : i + 2]

@@ -287,15 +287,15 @@ def _direction_doubts(table: QuantityTable) -> tuple[str, ...]:
 def read_currents(
     table: QuantityTable, terms: Terms, profile: Integers | None = None
 ) -> Floats | None:
-    """Convert a table as for `read_current` to an array (n, 4) of depth [m] and u, v, w [m/s].
+    """Convert a table of currents to an array (n, 4) of depth [m] and u, v, w [m/s].
 
     If the table has mistakes, they are added to its `problems`, and None is returned.
 
     Parameters
     ----------
-    table, terms : see `read_current`
-    profile : (n,) increasing index of the profile of each row, for a record, in which gaps become
-        NaN; None if all rows form one profile
+    table, terms : as in `read_current`
+    profile : for a record, the index of the profile of each row (n,), increasing; values missing in
+        a record become NaN. None if all rows form one profile
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)

@@ -100,7 +100,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
 
 
 def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
-    """Yield doubts about levels below the seabed, levels without values and uncovered water.
+    """Yield doubts about levels below the seabed, levels without values, and water without levels.
 
     Parameters
     ----------

@@ -345,7 +345,7 @@ def exceedance_figure(summary: Summary) -> str:
 
 
 def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
-    """Draw the same curves for the components with the largest knockdown and tilt, as SVG."""
+    """Draw exceedance curves of the components with the largest knockdown and tilt, as SVG."""
     panels = []
     for name in ("knockdown", "tilt"):
         known = [(part.label, getattr(part, name)) for part in parts]

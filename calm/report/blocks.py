@@ -23,8 +23,8 @@ class Column:
     ----------
     heading, unit : title, and unit below the title
     numeric : whether the cells are numbers
-    share : share of the width that numbers and short words leave over: 0 for short words, 1 for
-        names, more for sentences; for numbers, 1 has no effect
+    share : weight of the column when the remaining width is distributed: 0 for short words, 1 for
+        names, more for sentences. A numeric column takes no part in this if its share is 1
     short : shorter title for narrow tables, which may have several lines
     narrow : whether narrow tables include the column
     marked : whether cells may carry a mark
@@ -368,7 +368,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt columns of items to rows that are sequences, whose first member is such an item."""
+    """Convert columns of items to columns of rows whose first member is the item."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])

@@ -37,10 +37,10 @@ def listed_findings(
     """Yield the findings to list for a mooring, each with a flag that is true if it governs its
     rule.
 
-    The list contains the governing finding of each rule, and of each rule on each component over
-    all environments, unless it passes with a utilisation below `MUCH_USED`. Failures, unknowns and
-    warnings are listed for each environment. A cluster of equal floats counts as one component.
-    With `every`, all findings of all situations are listed.
+    The list contains the governing finding of each rule. It also contains the governing finding of
+    each rule on each component over all environments, unless this finding passes with a utilisation
+    below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment. A cluster of
+    equal floats counts as one component. With `every`, all findings of all situations are listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -56,7 +56,7 @@ def listed_findings(
 
 
 def _listed_as(finding: Finding) -> Hashable:
-    """Return the key of findings that share one entry of the list."""
+    """Return a key that is equal for findings with a common entry in the list."""
     if finding.state not in GRAVE:
         return finding.rule, finding.state, finding.place
     place = finding.case if finding.case == "0" else finding.environment

@@ -85,10 +85,10 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """Return a key that is equal for findings to be counted once.
+    """Return a key that is equal for findings that count as one.
 
-    Findings with a state in `GRAVE` count once for equal pieces from one row of the file, such as a
-    cluster of floats.
+    Findings with a state in `GRAVE` count as one for equal pieces from one row of the file, such as
+    a cluster of floats.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:

@@ -125,7 +125,7 @@ _FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
 def _station(deck: Deck, day: str) -> Table:
-    """Create the station table; values missing in the file are left blank for handwriting."""
+    """Create the station table; values missing in the file are left blank."""
     document = deck.file.document
     known = {
         "ship": document.ship if document else None,

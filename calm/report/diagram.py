@@ -225,7 +225,10 @@ class _Diagram:
             page.letters(x + 18.0, y, symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
-        """Draw the title block, with blank fields for unknown values; `sheet` is as "2 of 5"."""
+        """Draw the title block, with blank fields for unknown values.
+
+        `sheet` is a text such as "2 of 5".
+        """
         step, y = (self.page_size.size[0] - 2 * _MARGIN) / _COLUMNS[self.page_size], self.bottom
         for row in self.fields:
             height = _height(row)

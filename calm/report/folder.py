@@ -27,10 +27,10 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 
 
 def check_folder(folder: Path) -> None:
-    """Raise UsageError if a folder cannot be written; to be called before any computation.
+    """Raise UsageError if a folder cannot be written.
 
-    The reasons are that the path, or its nearest existing parent, is not a folder or is not
-    writable, or that a new folder would have the suffix of a file.
+    Call this before any computation. The reasons are that the path, or its nearest existing parent,
+    is not a folder or is not writable, or that a new folder would have the suffix of a file.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -106,9 +106,10 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 
 
 def check_destination(path: Path) -> None:
-    """Raise UsageError if a file cannot be written; to be called before any computation.
+    """Raise UsageError if a file cannot be written.
 
-    The reasons are that the folder does not exist, or that the file or its folder is not writable.
+    Call this before any computation. The reasons are that the path is a folder, that its folder
+    does not exist, or that the file or its folder is not writable.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):

@@ -56,8 +56,8 @@ def missing_block(
 
     For each component, comments name its pieces and locate its definition in the file. For each key
     they give an example, the meaning, the checks that need it, and the estimate for the class of
-    component if there is one. If a file has a section `components:`, the block has no heading of
-    its own, to be added to this section. Optional keys follow as comments. If nothing is missing,
+    component if there is one. Optional keys follow as comments. If a file already has a section
+    `components:`, the block has no heading, so that it can be pasted there. If nothing is missing,
     or nothing can be checked, the text consists of comments only.
 
     Parameters

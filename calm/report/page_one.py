@@ -310,7 +310,7 @@ def governing_table(signed: SignedMooring) -> Table:
 def check_fields(longest: int) -> tuple[blocks.Field, ...]:
     """Return the columns of a table of findings, with bars.
 
-    The text of the last column is cut to `longest` characters and the case.
+    The component in the last column is cut to about `longest` characters.
     """
     return (
         words("", lambda one: Cell(state=one.state), 0.0),

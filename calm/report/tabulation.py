@@ -93,7 +93,7 @@ class Tabulation:
 def by_speed(
     tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
-    """Combine ship speeds over the ground [m/s] and the outcomes of the solver to a tabulation."""
+    """Combine the solver's outcomes at ship speeds over the ground [m/s] into a tabulation."""
     rows = map(TabulationRow, speeds, outcomes)
     return Tabulation(tow.file.name, tuple(rows))
 

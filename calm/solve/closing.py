@@ -346,7 +346,7 @@ def near_root(
     small: float,
     narrow: float,
 ) -> Root:
-    """Find the root near a known root.
+    """Find the root of the miss near a known root.
 
     If there is none and the free end reaches the surface, the search continues with the buoyancy of
     the top float as unknown, and vice versa. The last march is the march at the root.

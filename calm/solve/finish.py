@@ -195,7 +195,7 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
 
 
 def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
-    """Return the exception for a march that stopped, with the reason by its number."""
+    """Return the exception for a march that stopped, with the reason that its number stands for."""
     return Status.NOT_CONVERGED.because(f"The march stopped: {FAILURES[int(failure)]}.", piece)
 
 

@@ -133,8 +133,9 @@ class LeastChange:
         return None
 
     def _nearest(self, start: float, good: float) -> float:
-        """Return the value nearest to the start that meets the condition, between it and a `good`
-        value.
+        """Return the value nearest to the start that meets the condition.
+
+        It is sought between the start and `good`, a value that meets the condition.
         """
         between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
         bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))

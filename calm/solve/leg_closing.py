@@ -171,7 +171,10 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net on the segments of its last march, from that march on (see `close_net`)."""
+    """Close a net on the segments of its last march (see `close_net`).
+
+    The first step starts from the residual of that march.
+    """
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
@@ -243,7 +246,7 @@ def drifts(net: NetProblem) -> bool:
 
 
 def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
-    """Convert the records of legs that were marched upwards to the order of the other legs."""
+    """Convert the records of legs that were marched upwards to downward order."""
     for i in range(len(net.legs)):
         if net.legs[i].kind == ANCHORED:
             record_down(net, i, x, how)

@@ -221,7 +221,7 @@ def lay(
 
 
 def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
-    """Convert the record of an anchored leg to the order of other legs.
+    """Convert the record of an anchored leg to downward order.
 
     The record then holds the pull at the upper end, the suspended part, and the part on the seabed.
     """

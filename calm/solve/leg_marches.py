@@ -230,8 +230,9 @@ def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, sl
 
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
-    """Add the derivatives of the residual by a leg's unknowns to the Jacobian, and return the
-    outcome.
+    """Add the derivatives of the residual with respect to a leg's unknowns to the Jacobian.
+
+    Return the outcome of the marches.
     """
     leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
     start, end = nodes + 3 * leg.start, nodes + 3 * leg.end

@@ -64,8 +64,9 @@ class LegRow(NamedTuple):
         of the leg there; 0 for a leg that does not strum
     past_east, past_north, past_up : current there [m/s]
     weight : sum of the absolute net forces of its pieces [N], the scale of forces on a slack leg
-    stages, landing, cables, surfacing, rows, pieces : lengths of these lists, and the first stage
-        that may lie on the seabed, see `Course`
+    stages, cables, surfacing, rows, pieces : numbers of stages, cables, buoyant pieces, rows of
+        the hull table, and pieces
+    landing : first stage that may lie on the seabed, see `Course`
     """
 
     kind: int

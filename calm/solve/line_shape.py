@@ -126,7 +126,10 @@ def extent_of(closed: Closed) -> Extent:
 
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
-    """Close a line by `polish`; if `hangs`, reject it if it is far below the seabed."""
+    """Close a line by `polish`.
+
+    If it must hang clear of the seabed (`hangs`), reject it if it is far below the seabed.
+    """
     return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
 
 

@@ -289,8 +289,7 @@ class Nearby:
         Raises
         ------
         NoEquilibrium
-            No shape passes every check, or no shape nearby has a touchdown exactly if this line has
-            one.
+            No shape passes every check, or only one of the two lines has a touchdown.
         """
         search, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled

@@ -181,7 +181,7 @@ class _Lumps:
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
     """List the bodies on a line for the lumped masses.
 
-    Each has a distance from the top [m], a net force [N], and two drag factors, by squared speed:
+    Each has a distance from the top [m], a net force [N], and two drag factors per squared speed:
     for flow across the axis only, and for flow in any direction.
     """
     found, top = [], 0.0

@@ -66,7 +66,10 @@ def fill_starts(search: Search) -> int:
 
 
 def start_of(search: Search, lands: bool) -> Root:
-    """Return the start of a search, which is not `found` if the complete search is needed."""
+    """Return the approximate root from which a search starts.
+
+    It is not `found` if the line needs the complete search.
+    """
     problem, limits = search.problem, search.problem.limits
     unknown = whole_line(problem, lands)
     nowhere = Root(False, unknown, nan, nan, nan)

@@ -4,7 +4,7 @@ Both give the same digits. Compiled code is loaded from the cache as soon as thi
 cache has none, a child process compiles the solver as soon as compilation pays. Meanwhile this
 process continues with the interpreted solver, and switches when the child has finished.
 `CALM_COMPILED=never` and `always`, and the attribute `compiled` of `Settings`, override this
-choice; with `always`, this process compiles by itself.
+choice. With `always`, this process compiles the solver itself.
 """
 
 import os

@@ -142,7 +142,7 @@ class LineTable(TableCells, can_focus=True):
         return self.rows[number].texts.get(column.name, "")
 
     def row_style(self, number: int) -> Style:
-        """Return the style of a row, which may be clamped, under the cursor, wrong or marked."""
+        """Return the style of a row, which marks a clamp, the cursor, a mistake or a selection."""
         row = self.rows[number]
         base = "line-table--clamp" if row.spot.is_clamp else "line-table--row"
         style = self.get_component_rich_style(base)

@@ -1,4 +1,4 @@
-"""References to labels in a file, which follow the labels; choice of the environment."""
+"""References to labels in a file, which are updated with the labels; choice of the environment."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping

@@ -187,7 +187,7 @@ def _mooring(
 def _holds(
     result: LegResult, worst: Finding | None, pending: bool, held: Sequence[HeldLine]
 ) -> VerdictLine:
-    """Return the line with the required and the actual anchor weight.
+    """Return the verdict line on the required and the actual anchor weight.
 
     Without an anchor, it gives the required weight only, which is the largest of all situations
     once these are solved.

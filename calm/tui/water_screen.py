@@ -157,7 +157,7 @@ class WaterScreen(screen.DraftScreen):
             grid.show_profile(*water.table(*_place(grid)), water.depth)
 
     def _is_gone(self, part: Widget) -> bool:
-        """Return whether a widget is hidden, as the property is given in another form."""
+        """Return whether a widget is hidden because its property is given in another form."""
         form = _FORMS.get(type(part))
         if form is None:
             return False

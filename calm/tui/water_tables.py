@@ -81,9 +81,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
     Returns
     -------
-    columns : depth [m]; speed [m/s] and direction [degrees], or eastward and northward velocity
-        [m/s], whichever needs fewer digits, usually the form of the file; with an upward velocity
-        [m/s] if it is not zero
+    columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
+        velocity [m/s], whichever needs fewer digits (usually as in the file). If the current has
+        an upward velocity, all three components of the velocity follow the depth.
     rows : one row per level, from the top, with all digits of the file
 
     Raises
@@ -137,11 +137,11 @@ _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
 
 
 class NoRows(ValueError):
-    """Error of a text that is not a table; the message gives the row and the mistake."""
+    """Raised for a text that is not a table; the message gives the row and the mistake."""
 
 
 class UnknownColumns(NoRows):
-    """Error of headings that do not identify the columns; the message gives the mistake."""
+    """Raised for headings that do not identify the columns; the message gives the mistake."""
 
 
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
@@ -206,7 +206,7 @@ def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tupl
 def _by_name(
     columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]
 ) -> dict[str, Sequence[float]]:
-    """Return copied values in SI units, by the names of all columns that can be derived."""
+    """Return the copied values in SI units by column name, for all columns that can be derived."""
     problems: list[tuple[bool, str]] = []
 
     def report(location: Sequence[str | int], message: str) -> Problem:

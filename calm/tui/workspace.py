@@ -105,7 +105,10 @@ class Workspace:
         )
 
     def judged(self, otherwise: str) -> View | None:
-        """Return the view if it is up to date; else show `otherwise` as a message, return None."""
+        """Return the view if it is up to date.
+
+        Otherwise show the message `otherwise`, and return None.
+        """
         if not self.is_fresh:
             self.tell(otherwise)
             return None

@@ -309,7 +309,12 @@ _LENGTH, _UNIT = 1.25, 0.5
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """Return the end of the cable under unit load, with angles α₀ and α_d [degrees]."""
+    """Return the end of the cable under unit load.
+
+    Parameters
+    ----------
+    start, mean : angles α₀ and α_d [degrees]
+    """
     angle = radians(mean)
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 

@@ -80,7 +80,10 @@ class Case:
     kind: Kind
 
     def check(self) -> CaseOutcome:
-        """Compute the value with CALM; an exception is the reason for a missing value."""
+        """Compute the value with CALM, and return the outcome.
+
+        If the computation raises an exception, the outcome has this exception as its reason.
+        """
         try:
             return CaseOutcome(self, float(self.got()))
         except Exception as error:

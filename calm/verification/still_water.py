@@ -285,8 +285,9 @@ def _plumb() -> float:
 
 @cache
 def _alone() -> float:
-    """Return the terminal speed of a heavy sphere, hardly affected by a light thread and a cork
-    [m/s].
+    """Return the terminal speed of a heavy sphere on a light thread with a cork [m/s].
+
+    The thread and the cork hardly affect it.
     """
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)

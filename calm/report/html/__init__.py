@@ -89,7 +89,7 @@ def _breakable(text: str) -> str:
 
 
 def _kinds(columns: Sequence[Column]) -> list[str]:
-    """Return the HTML class of the cells in each column, for numbers or for text of some width."""
+    """Return the HTML class of the cells in each column, which sets their alignment or width."""
     from markupsafe import Markup
 
     def kind(column: Column) -> str:
