@@ -33,7 +33,7 @@ _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _MOST_LISTED = 5
 MOST_VALUES = 50_000_000
-"""Maximum number of values read at once: readings every second for a year and a half."""
+"""Maximum number of values read at once, enough for a reading every second for 18 months."""
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )

@@ -288,7 +288,7 @@ PRESSURE = (
 """Standard and usual names of quantities used to compute others."""
 PASCALS_PER_DBAR = 1e4
 _LATITUDE = 45.0  # default; it changes the pressure at a depth by 0.3 % at most
-_FEWEST = 6  # least length of a series of zeros alone that is a fault
+_FEWEST = 6  # a series of zeros alone is a fault from this length on
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ UNSEEN = 1e-3
 """Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
 PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
-"""The ratio follows from the moments of the forms: 1.408 and 1.286."""
+"""Ratios of the peak period to Tz, from the spectral moments: 1.408, and 1.286 for jonswap."""
 
 SHARES = 0.02
 """Tolerance for the sum of shares of time, which may be rounded."""

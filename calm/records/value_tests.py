@@ -23,9 +23,9 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the water depth, and depth [m]: a profile may omit the larger at either end.
+"""Share of the water depth, and depth [m].
 
-A level may be as far below the seabed.
+A profile may omit the larger of the two at either end, and a level may be as far below the seabed.
 """
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""
@@ -39,7 +39,7 @@ UNCHANGED = 0.1
 """Share of a record beyond which a series with a constant value is doubtful."""
 _FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
-_SLOWEST = np.timedelta64(3, "h")  # longest step at which a tide does not mimic two series
+_SLOWEST = np.timedelta64(3, "h")  # at longer steps, a tide looks like two interleaved series
 _BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # fill value: ratio to the others, distinct others, repeats
 _DAY = np.timedelta64(1, "D")
 _FIRST_YEAR = 1950
@@ -229,7 +229,7 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
     if np.unique(u[moving]).size >= _VARIED and (u == v).all():
         yield f"all {u.size} currents have equal components to the east and to the north"
     zeros, smallest = int((~moving).sum()), speed[moving].min(initial=np.inf)
-    # twelve steps of a resolution surround zero within 2.5 steps
+    # rounded currents have 20 nonzero values within 2.5 steps of zero, more frequent than zero itself
     if zeros > max(int((speed[moving] <= 2.5 * smallest).sum()), _VARIED):
         yield (
             f"{zeros} of {u.size} currents are exactly 0, and hardly any are nearly 0: a fill "

@@ -32,10 +32,12 @@ if TYPE_CHECKING:
 _ROWS = 6
 """Number of rows in the table of the anchor's descent."""
 _DEEPER = 0.5
-"""Extra depth during the descent, relative to equilibrium, above which a mere float is listed [m].
+"""Extra depth during the descent, relative to equilibrium, above which a component without an
+instrument is listed [m].
 """
 _REPRESENTED = 0.02
-"""Share of the fall time from which the fall speed is drawn: before, inertia limits it."""
+"""Share of the fall time after which the fall speed is drawn; until then, inertia limits the speed.
+"""
 
 
 def drop_part(plan: DropPlan) -> ReportPart:

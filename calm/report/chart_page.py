@@ -217,7 +217,7 @@ class Labels:
 
         line = self.axes.transData.transform(np.column_stack([x, y]))
         lengths = _lengths(line)
-        half = self._points  # one typographic point on each side
+        half = self._points  # one typographic point, in pixels
         for at in np.arange(0.0, lengths[-1], half):
             place = [np.interp(at, lengths, line[:, axis]) for axis in (0, 1)]
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))

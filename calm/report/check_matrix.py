@@ -171,9 +171,10 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
-    """List all environments, and the most severe of them, which are shown.
+    """Return all environments, those that have a column in the matrix, and their codes.
 
-    The third result maps every environment to its code, such as E1.
+    The columns are the most severe environments. The codes, such as E1, are by name of the
+    environment.
     """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}

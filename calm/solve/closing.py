@@ -224,7 +224,7 @@ def changed(
     push_east: float,
     push_north: float,
 ) -> Load:
-    """Return a copy of a load with other forces and with its drag coefficients times `drag`."""
+    """Return a load with other forces, and with its drag coefficients multiplied by `drag`."""
     return Load(
         load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume,
         drag * load.normal_drag, drag * load.tangential_drag, load.directional, lift, push_east,

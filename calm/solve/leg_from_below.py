@@ -136,7 +136,8 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
         east = north = 0.0
     # the pull at a touchdown is parallel to the seabed
     along = -bed.east * east - bed.north * north
-    lowest = leg.stages - max(leg.landing, 1)  # the highest stage, from below, that may lie
+    # the highest stage that may lie on the seabed, counted from below
+    lowest = leg.stages - max(leg.landing, 1)
     lies = borne > 0.0 and lowest > 0
     height = x[at + 3] if leg.own > 3 else end_height(leg, lies, -borne)
     level = interval_at(how.sea.levels, -height, 0)
@@ -158,7 +159,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
             hanging = whole * (1.0 - left / weight)
             set_row(cables, here.first, of_length(cables[here.first], hanging))
         else:
-            up, hanging = left, inf  # the seabed bears on its lower end
+            up, hanging = left, inf  # the seabed supports its lower end
             if here.kind == ROD:
                 below: State = (0.0, 0.0, height, east, north, along + up, 1.0, level)
                 tx, ty, tz = rod_axis(here, loads, how.sea, below, problem.limits.near)

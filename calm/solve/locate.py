@@ -259,7 +259,10 @@ def growth_below(sea: Sea, depth: float) -> float:
 
 
 def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
-    """Return an upper bound of the knockdown [m]: the strongest current acts at all levels."""
+    """Return an upper bound of the knockdown [m].
+
+    It assumes that the strongest current acts at all levels.
+    """
     problem, sea = search.problem, search.problem.sea
     greatest, fastest = 1, -1.0
     for k in range(1, len(sea.intervals)):
@@ -470,7 +473,7 @@ def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:
-    """Return the height of the top of a float (`lower`) above the surface [m], at a root."""
+    """Return the height above the surface of the top of the float `lower` [m], at a root."""
     miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
     return nan if isnan(miss) else search.problem.work.left[Z]
 

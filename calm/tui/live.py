@@ -52,8 +52,8 @@ class View:
     text, path, environment : the judged text, its path and its environment
     problems : mistakes in the text; if there are any, it has no solution
     missing : names of missing parts of the line
-    file : the file as read; None if there are mistakes or missing parts, except an anchor or a
-        float. A line without an anchor is solved with an anchor that holds any load.
+    file : the file as read; None if it has mistakes, or if a part other than an anchor or a float
+        is missing. A line without an anchor is solved with an anchor that holds any load.
     result : the solution, or None
     failure : the reason if there is no solution
     findings : findings of the design check; none for a tow

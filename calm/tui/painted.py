@@ -30,9 +30,11 @@ _TOKEN = re.compile(
     r"|(?P<other>\x1b\[[\x20-\x3f]*[\x40-\x7e]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[^\[\]]|.)",
     re.DOTALL,
 )
-"""Position, style, mark of a frame, text, and any other sequence or control character."""
+"""Pattern of a position, style, frame mark, text, or any other sequence or control character."""
 _INCOMPLETE = re.compile(r"\x1b(\[[\x20-\x3f]*|\][^\x07\x1b]*\x1b?)?$")
-"""Beginning of a sequence at the end of a text; on Windows, Textual writes 8192 characters a time.
+"""Beginning of a sequence at the end of a text.
+
+On Windows, Textual writes 8192 characters at a time.
 """
 _NEW_SCREENS = re.compile(r"\x1b\[(\?1049[hl]|[23]J)")
 

@@ -94,7 +94,7 @@ _ON_LIGHT = {0: 0, 1: 1, 4: 4}
 """Replacement for each of the sixteen terminal colours; any other colour becomes the terminal's
 text colour.
 
-A terminal of eight colours does not know the bright ones, and also keeps its own colours.
+A terminal with eight colours lacks the bright ones, and also keeps its own colours.
 """
 
 

@@ -34,8 +34,8 @@ from calm.verification.published_case import (
 _TIGHT = Settings(tolerance=1e-9)
 _DRAG = sphere_drag(1.25, 0.6)
 
-# A line with something of everything: floats, wire, rope that stretches, instruments that follow
-# the line or not, clamps, chain; it hangs below the surface in a current that veers.
+# A line with all kinds of components: floats, wire, elastic rope, instruments that align with the
+# line and others that do not, clamps, and chain. It is below the surface in a veering current.
 _PIECES = (
     LinePiece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
     replace(

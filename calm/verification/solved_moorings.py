@@ -126,7 +126,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
         _rope(10.0, 0.007, 0.12, 1.38e11, ct),
         meter, kevlar[0], meter, kevlar[1], meter, kevlar[2],
         *[_sphere(0.51, 23.0, 0.95)] * 10,
-        meter,  # the release has the meters' figures
+        meter,  # the release has the same values as a meter
         _rope(4.8, 0.022, 2.33, 0.0, ct),
         anchor_height=0.55,
     )  # fmt: skip
