@@ -191,10 +191,10 @@ def nearest(text: str, known: Iterable[str]) -> str | None:
     """
     given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)
-    alike = difflib.get_close_matches(given, names, 50)
-    if not alike and any(len(word) > 2 and word.isalpha() for word in wanted):
-        alike = [name for name in names if {*wanted} <= {*_parts(name)}]
-    return max(alike, key=lambda name: _likeness(wanted, _parts(name)), default=None)
+    candidates = difflib.get_close_matches(given, names, 50)
+    if not candidates and any(len(word) > 2 and word.isalpha() for word in wanted):
+        candidates = [name for name in names if {*wanted} <= {*_parts(name)}]
+    return max(candidates, key=lambda name: _likeness(wanted, _parts(name)), default=None)
 
 
 def _parts(name: str) -> list[str]:
@@ -205,11 +205,11 @@ def _parts(name: str) -> list[str]:
 
 def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
     """Mean similarity between the wanted parts and the parts of a name; 1 if all are equal."""
-    best = [max((_alike(one, other) for other in parts), default=0.0) for one in wanted]
+    best = [max((_similarity(one, other) for other in parts), default=0.0) for one in wanted]
     return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
 
 
-def _alike(one: str, other: str) -> float:
+def _similarity(one: str, other: str) -> float:
     """Similarity of two words by their letters, or of two numbers by their ratio."""
     if one.isdecimal() and other.isdecimal():
         least, greatest = sorted((float(one), float(other)))

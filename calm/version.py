@@ -26,7 +26,7 @@ def commit_of(checkout: Path) -> str:
         return ""
     describe = ["git", "-C", str(checkout), "describe", "--always", "--exclude=*", "--dirty"]
     try:
-        asked = subprocess.run(describe, capture_output=True, text=True, check=False, timeout=10)
+        found = subprocess.run(describe, capture_output=True, text=True, check=False, timeout=10)
     except (OSError, subprocess.TimeoutExpired):
         return ""
-    return asked.stdout.strip()
+    return found.stdout.strip()

@@ -105,14 +105,14 @@ def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> Moor
     at : unstretched distance from the top of its wire [m]
     """
 
-    def stays(clamp: Clamp) -> Clamp:
+    def unmoved(clamp: Clamp) -> Clamp:
         return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
 
     def moves(clamp: Clamp) -> bool:
         return clamp.travel is not None or clamp.place == place
 
     pieces = (
-        piece.with_clamps(stays) if any(map(moves, piece.clamps)) else piece
+        piece.with_clamps(unmoved) if any(map(moves, piece.clamps)) else piece
         for piece in file.pieces
     )
     return replace(file, pieces=tuple(pieces))

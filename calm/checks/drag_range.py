@@ -22,11 +22,11 @@ NOTICED = 1.05
 which the rule warns.
 """
 
-_Told = tuple[LegResult, Verdict]
+_LegVerdict = tuple[LegResult, Verdict]
 
 
 @rule("drag-coefficient")
-def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
+def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
     """Check that the constant drag coefficients of spheres and cylinders cover their Reynolds
     numbers.
 

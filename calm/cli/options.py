@@ -72,10 +72,10 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 
     if given is None:
         systems = [file.units for file in files]
-        alike = all(one == systems[0] for one in systems)
-        if not alike:
+        all_equal = all(one == systems[0] for one in systems)
+        if not all_equal:
             narrate("the files set different units; results are in SI (use --units to choose)")
-        show_in(systems[0] if systems and alike else {})
+        show_in(systems[0] if systems and all_equal else {})
         return
     chosen: dict[str, str] = {}
     for part in given.split(","):

@@ -215,9 +215,11 @@ def deck_of(
         rising = set(range(released))
     if order is Order.ANCHOR_LAST and not first.several:
         try:
-            stands = result if result.design is first else None
+            same_design = result if result.design is first else None
             times = _deck_times(first.file)
-            plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
+            plan = drop_plan(
+                first, ship_speed, streamed, course, result=same_design, deck_time=times
+            )
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop could not be computed: {failure}")

@@ -312,7 +312,7 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
     runs: list[list[PictureMark]] = []
     for part in parts:
         last = runs[-1][-1] if runs else None
-        same = last and last.use == part.use and alike(last.text, part.text)
+        same = last and last.use == part.use and differ_by_number(last.text, part.text)
         if last and same and abs(part.depth - last.depth) <= near:
             runs[-1].append(part)
         else:
@@ -320,7 +320,7 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
     return [(together([part.text for part in run]), run[len(run) // 2]) for run in runs]
 
 
-def alike(label: str, other: str) -> bool:
+def differ_by_number(label: str, other: str) -> bool:
     """Return whether two labels differ only by a number at the end."""
     stems = [text.removesuffix(_number(text)) for text in (label, other)]
     return stems[0] == stems[1] and bool(_number(other))

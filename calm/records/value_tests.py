@@ -229,7 +229,7 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
     if np.unique(u[moving]).size >= _VARIED and (u == v).all():
         yield f"all {u.size} currents have equal components to the east and to the north"
     zeros, smallest = int((~moving).sum()), speed[moving].min(initial=np.inf)
-    # rounded currents have 20 nonzero values within 2.5 steps of zero, more frequent than zero itself
+    # rounded currents have 20 nonzero values within 2.5 steps of zero, more common than zero
     if zeros > max(int((speed[moving] <= 2.5 * smallest).sum()), _VARIED):
         yield (
             f"{zeros} of {u.size} currents are exactly 0, and hardly any are nearly 0: a fill "

@@ -315,8 +315,8 @@ def _greatest(values: Column) -> list[int]:
         least = known[len(known) - WORST]
     above = np.flatnonzero(values > least)  # fewer than `WORST`, even if many are equal
     above = above[np.argsort(-values[above], kind="stable")]
-    alike = np.flatnonzero(values == least)[: WORST - len(above)]
-    return [int(index) for index in (*above, *alike)]
+    ties = np.flatnonzero(values == least)[: WORST - len(above)]
+    return [int(index) for index in (*above, *ties)]
 
 
 def _profile(series: ResultColumns, legs: _LegColumns, index: int) -> WorstProfile:

@@ -6,10 +6,11 @@ of a mooring diagram hold several columns. Lengths are in points (1/72 inch).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
-from math import isnan, log10
+from math import inf, isnan, log10
 from typing import NamedTuple
 
 from calm.case.design import AnyResult
@@ -30,6 +31,7 @@ HEAD = 38.0
 _PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
 _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
+_NEAR_THE_END = 0.3  # of a group of parts: range of the places where it may end
 
 # A4 leaves 180 by 267 mm; a long line is reduced to fit this height, but stays legible
 _WIDTH, _MARGIN = 508.0, 3.0
@@ -43,7 +45,7 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
-    """Draw a line as an SVG picture that prints on A4 up to about 50 parts, and on a longer sheet
+    """Draw a line as one SVG picture, which prints on A4 up to about 50 parts and on a longer sheet
     otherwise.
 
     The picture has no external references, identifiers or style sheets, so that it can be placed on
@@ -51,7 +53,19 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     result, depths are under load and in the current; without a result, they refer to the upright,
     unstretched line, and are unknown for a tow and for a float at the surface.
     """
-    shown = schematic_of(file, result)
+    (drawn,) = _drawn(schematic_of(file, result), inf)
+    return drawn
+
+
+def schematic_sheets(file: MooringFile, result: AnyResult | None = None) -> list[str]:
+    """Draw the same picture as `schematic_svg`, divided between parts so that each sheet is legible
+    on A4.
+    """
+    return _drawn(schematic_of(file, result), _PRINTED_HEIGHT / _LEAST_SCALE)
+
+
+def _drawn(shown: Schematic, most: float) -> list[str]:
+    """Draw the sheets of a schematic, each at most `most` high."""
     rows = [row for part in shown.parts for row in part.rows]
     rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
     headings = [(*HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
@@ -60,32 +74,56 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     words = [(text, _TITLE, INK) for text in wrapped(shown.title, room, _TITLE, bold=True)]
     words += [(text, FONT, SOFT) for text in wrapped(shown.subtitle, room, FONT)]
     head = _MARGIN + sum(_TITLE_LEADING if size > FONT else LEADING for _, size, _ in words)
-    surface, line = _hung(shown, column, head + HEAD)
-    bottom = line[-1].top + line[-1].height + (_BELOW_BODY if shown.towed_by else 0.0)
-    foot = bottom + (SEABED_ROOM if shown.seabed else 0.0) + LEADING
     notes = wrapped(shown.note, room, FONT)
-    height = foot + LEADING * len(notes)
-    scale = min(max(_PRINTED_HEIGHT / height, _LEAST_SCALE), 1.0) / _MILLIMETRE
-    printed = f"{_WIDTH * scale:.2f}mm", f"{height * scale:.2f}mm"
-    page = picture(_WIDTH, height, shown.title, printed)
-    y = _MARGIN
-    for text, size, colour in words:
-        leading = _TITLE_LEADING if size > FONT else LEADING
-        page.letters(_MARGIN, y + leading / 2, text, size=size, colour=colour, bold=size > FONT)
-        y += leading
-    draw_headings(page, column, 0.0, head)
-    _draw_scene(page, shown, column, surface, bottom)
-    draw_parts(page, line, column, 0.0)
-    for number, text in enumerate(notes):
-        page.letters(_MARGIN, foot + LEADING * number, text, size=FONT, colour=SOFT)
-    return svg_text(page)
+    ends = _MAST + _SHIP + SEABED_ROOM + LEADING * (1 + len(notes))  # above and below the line
+    groups = _evenly(measured(shown.parts, column), most - head - HEAD - ends)
+    sheets = []
+    for number, group in enumerate(groups):
+        first, last = number == 0, number + 1 == len(groups)
+        surface, line = _placed(shown, group, head + HEAD, first=first)
+        if shown.towed_by is not None and last:
+            *others, body = line
+            line = (*others, replace(body, ends=(body.ends[0], body.middle)))
+        bottom = line[-1].top + line[-1].height + (_BELOW_BODY if shown.towed_by else 0.0)
+        foot = bottom + (SEABED_ROOM if shown.seabed and last else 0.0) + LEADING
+        height = foot + LEADING * len(notes)
+        scale = min(max(_PRINTED_HEIGHT / height, _LEAST_SCALE), 1.0) / _MILLIMETRE
+        printed = f"{_WIDTH * scale:.2f}mm", f"{height * scale:.2f}mm"
+        page = picture(_WIDTH, height, shown.title, printed)
+        y = _MARGIN
+        for text, size, colour in words:
+            leading = _TITLE_LEADING if size > FONT else LEADING
+            page.letters(_MARGIN, y + leading / 2, text, size=size, colour=colour, bold=size > FONT)
+            y += leading
+        draw_headings(page, column, 0.0, head)
+        _draw_scene(page, shown, column, (surface, bottom), first=first, last=last)
+        draw_parts(page, line, column, 0.0)
+        for place, text in enumerate(notes):
+            page.letters(_MARGIN, foot + LEADING * place, text, size=FONT, colour=SOFT)
+        sheets.append(svg_text(page))
+    return sheets
 
 
-def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:
-    """Level of the sea surface, or of a helicopter's hook, and the placed parts below."""
-    parts = measured(shown.parts, column)
+def _evenly(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
+    """Divide parts into as few groups as `room` allows, all of about the same height."""
+    fewest = len([*divided(parts, room)])
+    each = sum(one.height for one in parts) / fewest
+    while len(groups := [*divided(parts, each)]) > fewest:
+        each += LEADING
+    return groups
+
+
+def _placed(
+    shown: Schematic, parts: Sequence[PlacedPart], top: float, *, first: bool
+) -> tuple[float, tuple[PlacedPart, ...]]:
+    """Level of the sea surface, or of a helicopter's hook, and the placed parts below.
+
+    On a sheet that is not the first, the level is that of its top.
+    """
+    if not first:
+        return top, placed(parts, top)
+    middle = parts[0].height / 2
     if shown.towed_by is None:
-        middle = parts[0].height / 2
         surface = top + (_MAST if shown.surface else _SKY)
         start = surface - middle if shown.surface else surface + _SUBMERGED
         return surface, placed(parts, start, start + middle)
@@ -94,19 +132,27 @@ def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tupl
     else:
         surface = top + _SHIP
         line_top, start = surface - _SHEAVE, surface + _SUBMERGED
-    *others, last = placed(parts, start, line_top)
-    return surface, (*others, replace(last, ends=(last.ends[0], last.middle)))
+    return surface, placed(parts, start, line_top)
 
 
 def _draw_scene(
-    page: Pen, shown: Schematic, column: LineColumn, surface: float, bottom: float
+    page: Pen,
+    shown: Schematic,
+    column: LineColumn,
+    levels: tuple[float, float],
+    *,
+    first: bool,
+    last: bool,
 ) -> None:
     """Draw water, surface, seabed and the towing vehicle, with their texts."""
-    if shown.sea is not None:
-        draw_sea(page, column, 0.0, (surface, bottom), None if shown.surface else shown.sea)
-    if shown.seabed is not None:
+    surface, bottom = levels
+    if shown.sea is not None and first:
+        draw_sea(page, column, 0.0, levels, None if shown.surface else shown.sea)
+    elif shown.sea is not None:
+        symbols.draw_water(page.group(0.0, 0.0), 2.0 * column.line_at, *levels)
+    if shown.seabed is not None and last:
         draw_ground(page, column, 0.0, bottom, shown.seabed)
-    if shown.towed_by is not None:
+    if shown.towed_by is not None and first:
         pen = page.draw("g", stroke=INK, stroke_width=1.2)
         if shown.sea is None:
             symbols.draw_helicopter(pen.group(column.line_at, surface, SYMBOL_SCALE))
@@ -235,6 +281,27 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
     ]
     lines += [TextLine(text, SOFT) for text in wrapped(row.name, room, FONT)]
     return [lines[0]._replace(cells=row.cells), *lines[1:]] if lines else [TextLine("")]
+
+
+def divided(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
+    """Divide parts into groups at most `room` high.
+
+    A group ends above a junction if there is one near its end, else between two pieces, else
+    between two clamps.
+    """
+    rest = [*parts]
+    while rest:
+        heights = [*accumulate(one.height for one in rest)]
+        fits = max(bisect_right(heights, room), 1)
+        if fits < len(rest):
+            least = (1.0 - _NEAR_THE_END) * room
+            near = [
+                each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least
+            ]
+            next_parts = {each: rest[each].part for each in near}
+            fits = min(near, key=lambda at: (not next_parts[at].junction, next_parts[at].clamped))
+        yield rest[:fits]
+        rest = rest[fits:]
 
 
 def placed(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 
 from calm.case.design import AnyResult
-from calm.drawing.line_picture import alike, together
+from calm.drawing.line_picture import differ_by_number, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Clamp, MooringFile, Piece, Place, Rigid
@@ -142,7 +142,7 @@ def _goes_with(run: list[Piece], piece: Piece, levels: Levels) -> bool:
     if sign.symbol is Symbol.RELEASE:
         return len(run) == 1
     same = above.use == piece.use and above.component == piece.component
-    return sign.symbol in _JOINED and same and alike(run[0].label, piece.label)
+    return sign.symbol in _JOINED and same and differ_by_number(run[0].label, piece.label)
 
 
 def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
