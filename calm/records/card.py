@@ -78,7 +78,7 @@ class ReadCard:
     declination: float | None = None
 
     def sentence(self) -> str:
-        """Format the card as one line for the `history` attribute."""
+        """Format the card as a single line for the `history` attribute."""
         rows = card_rows(self.to_dict())
         texts = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
         return f"read {self.file}: {texts}"

@@ -171,7 +171,7 @@ def _refuse_many(name: object, count: int) -> None:
 
 
 def engine_of(path: Path) -> str:
-    """Return the xarray engine for a NetCDF file by its first bytes; empty for any other file."""
+    """Return the xarray engine for a NetCDF file by its first bytes, or "" for any other file."""
     with path.open("rb") as file:
         return _ENGINES.get(file.read(4), "")
 
@@ -199,7 +199,7 @@ def holdings(dataset: xr.Dataset) -> str:
 
 
 def groups_of(path: Path) -> list[str]:
-    """Return the names of the groups of a NetCDF 4 file; empty for any other file."""
+    """Return the names of the groups of a NetCDF 4 file, or an empty list for any other file."""
     import h5netcdf
 
     if not path.is_file() or engine_of(path) != "h5netcdf":
@@ -254,7 +254,7 @@ def refuse_other_salinity(variable: xr.DataArray) -> None:
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Return those of the names that are variables of the dataset, in order, without duplicates."""
+    """Return the names that are variables of the dataset, in order and without duplicates."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]
 
 

@@ -263,7 +263,7 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
 def _single_levels(
     dataset: xr.Dataset, current: velocity.Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
-    """Drop dimensions of length one; return the level dimension and the reduced dataset."""
+    """Drop dimensions of length one, and return the level dimension and the reduced dataset."""
     name = current.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))

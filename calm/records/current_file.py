@@ -40,7 +40,7 @@ EXAMPLE = "depth[m],u[m/s],v[m/s]"
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a file at a time, and notices about it.
+    """Return the profile of a file at a time, and notices about this profile.
 
     Parameters
     ----------

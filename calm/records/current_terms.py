@@ -104,8 +104,8 @@ def time_text(time: np.datetime64) -> str:
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
     """Return the index of the time nearest to the requested one, and a notice if they differ.
 
-    Raise TimeChoiceError if the file has no times, if it has several and none is requested, or if
-    the requested time lies outside the record.
+    Raise TimeChoiceError if the file has no times, if a choice between several times is missing, or
+    if the requested time lies outside the record.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

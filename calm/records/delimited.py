@@ -86,7 +86,7 @@ class Dialect:
         return placed[cell][0] + 1 if cell < len(placed) else 1
 
     def with_point(self, cell: str) -> str:
-        """Replace the decimal comma of a number by a point; return other cells unchanged."""
+        """Replace the decimal comma of a number by a point, and return other cells unchanged."""
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
@@ -330,7 +330,10 @@ def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:
-    """Return the first `MOST_PROBLEMS` mistakes in file order, and a count of the others."""
+    """Return the first `MOST_PROBLEMS` mistakes in file order.
+
+    If there are more, the last entry states their number.
+    """
     ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
     hidden = len(ordered) - MOST_PROBLEMS
     if hidden <= 0:
@@ -340,7 +343,10 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Yield the lines that are not empty; a quoted cell that spans lines becomes one line."""
+    """Yield the lines that are not empty.
+
+    A quoted cell that spans several lines becomes a single line.
+    """
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):

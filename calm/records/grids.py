@@ -155,7 +155,7 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
 def _box(
     latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
 ) -> dict[str, NDArray[Any]]:
-    """Return indices, by dimension, of the grid points around a position."""
+    """Return the indices of the grid points around a position, by dimension."""
     if len(horizontal) == 1:  # a list of places, in any order
         return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
     north = latitude.values.astype(np.float64) - wanted[0]

@@ -56,7 +56,7 @@ def column_unit(
 ) -> tuple[str, float]:
     """Return the dimension of a column, and the factor from its unit to SI (angles: degrees).
 
-    Latitudes and longitudes need no unit, as they are in degrees, or in degrees and minutes.
+    Latitudes and longitudes need no unit. They are in degrees, or in degrees and minutes.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def read_named_columns(
     *,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
-    """Find the known columns of a table; mistakes in headings and row lengths go to `problems`.
+    """Find the known columns of a table, and add mistakes in headings and rows to `problems`.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
 
 
 def _number_of(cell: str, factor: float, quantity: QuantityRange) -> float:
-    """Convert a cell to SI; a gap becomes NaN.
+    """Convert a cell to SI, or a gap to NaN.
 
     Raise QuantityError if the cell is not a quantity.
     """

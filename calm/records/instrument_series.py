@@ -464,10 +464,11 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 
 
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
-    """Return the variables with the first standard name present, else those with a usual name.
+    """Return the variables with the first standard name that is present.
 
-    Raise UnreadableError if several variables have the standard name and none of them a usual name,
-    or if a variable with a usual name has another standard name.
+    If none is present, return the variables with a usual name. Raise UnreadableError if several
+    variables have the standard name and none of them a usual name, or if a variable with a usual
+    name has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]

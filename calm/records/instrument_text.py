@@ -122,7 +122,7 @@ def _dataset(
 def _depths(
     columns: dict[tuple[str, str], Floats], count: int, nominal: float, latitude: float
 ) -> Floats:
-    """Convert pressures to depths [m]; gaps get the nominal depth."""
+    """Convert pressures to depths [m], and gaps to the nominal depth."""
     import gsw
 
     pressure = columns.get(("pressure", "dbar"), np.full(count, np.nan))

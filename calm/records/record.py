@@ -96,8 +96,8 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Parse a period ``A/B`` of ISO 8601 times.
 
-    If B is a year, a month or a day, the whole of it is included. Either end may be left open, as
-    in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or ends
+    If B is a year, a month or a day, the period includes it completely. Either end may be missing,
+    as in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or ends
     before it begins.
     """
     first, slash, last = text.partition("/")

@@ -252,7 +252,7 @@ def _most_probable(height: float) -> SeaState:
     """Return the most probable sea state of Ochi and Hubble (1976) for a significant height [m].
 
     It consists of a swell and a wind sea. The constants are from secondary sources, not from the
-    paper itself. Raise UsageError if the height exceeds that of any real sea.
+    original article. Raise UsageError if the height exceeds that of any real sea.
     """
     if height > HIGHEST:
         raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
@@ -389,7 +389,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
 
 
 def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float, ...]]]:
-    """Read the named columns of a table; return the line number and the values of each row."""
+    """Return the line number and the values of the named columns of each row."""
     example = ",".join(names)
     table = read_table(path, example)
     header = [cell.strip() for cell in table.header.cells]

@@ -1,7 +1,7 @@
 """General tests of measured values, which yield sentences about suspicious values.
 
-The tests use values alone and ignore free text. They neither exclude nor reject values, but leave
-the decision to a person.
+The tests use values alone and ignore free text. They do not exclude or reject values, but leave
+this decision to the user.
 """
 
 from __future__ import annotations
@@ -323,7 +323,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Minimum and maximum of a sea-water quantity, its unit, and units often confused with it.
+    """Limits of a sea-water quantity, its unit, and other units that are often used by mistake.
 
     Each value of `likely` is the factor and the offset that convert the confused unit to `unit`.
     """

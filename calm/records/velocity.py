@@ -192,7 +192,7 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
-    """Return whether a standard name is a sought one with the word ``magnetic`` added."""
+    """Return whether a standard name without ``magnetic`` is one of the wanted names."""
     plain = re.sub(r"_?magnetic_?(north)?", "", own)
     return plain != own and plain in sought.standard
 

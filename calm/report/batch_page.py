@@ -37,8 +37,8 @@ def summary_html(summary: Summary) -> str:
 def summary_report(summary: Summary) -> blocks.Report:
     """Build the report of a summary.
 
-    It contains the frequency of exceeded limits, distributions, the worst profiles, return levels
-    and drawings.
+    It contains the frequency of exceeded limits, distributions, the most severe profiles, return
+    levels and drawings.
     """
     lost = State.WARN if summary.count - summary.solved else None
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
@@ -229,10 +229,10 @@ _ALL = (
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """Build the summary of a batch for a terminal of 80 columns; long labels wrap.
+    """Build the summary of a batch for a terminal of 80 columns, with long labels wrapped.
 
-    It lists components and clamps with the 99th percentile and the maximum of each quantity, the
-    failure rate of each rule, the worst profile by each response, and return levels.
+    It lists components and clamps with the 99th percentile and the maximum of each quantity. The
+    failure rate of each rule, the worst profile for each response, and return levels follow.
     """
     lost = State.FAIL if summary.count - summary.solved else None
     ended = blocks.Span(batch_summary.standing(summary), lost)

@@ -156,7 +156,7 @@ Line = str | tuple[Span, ...]
 
 @dataclass(frozen=True)
 class Prose:
-    """Paragraphs of one sentence each; a `state` highlights all of them."""
+    """Paragraphs of a single sentence each, highlighted if they have a `state`."""
 
     lines: tuple[Line, ...]
     state: State | None = None
@@ -457,7 +457,7 @@ def _cell(shown: Any) -> Cell:
 
 
 def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]:
-    """Return a block with warnings, or nothing if there are none."""
+    """Return a block with the warnings, if any."""
     lines = tuple(texts)
     return (Prose(lines, state),) if lines else ()
 

@@ -24,7 +24,7 @@ class StrongestCurrent:
 
 @dataclass(frozen=True)
 class LeastFactor:
-    """Minimum safety factor over all environments, and the piece that has it.
+    """Minimum safety factor over all environments, and the piece with this factor.
 
     The safety factor is the breaking load over the tension; `unknown` counts the pieces without a
     breaking load.

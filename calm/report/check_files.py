@@ -40,7 +40,8 @@ def listed_findings(
     The list contains the governing finding of each rule. It also contains the governing finding of
     each rule on each component over all environments, unless this finding passes with a utilisation
     below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment. A cluster of
-    equal floats counts as one component. With `every`, all findings of all situations are listed.
+    equal floats counts as a single component. With `every`, all findings of all situations are
+    listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}

@@ -171,7 +171,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
-    """Return all environments, those that have a column in the matrix, and their codes.
+    """Return all environments, the environments that have a column in the matrix, and all codes.
 
     The columns are the most severe environments. The codes, such as E1, are by name of the
     environment.

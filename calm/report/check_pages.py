@@ -373,7 +373,7 @@ _UNJUDGED = 11
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:
-    """Tabulate the limits used; those set by the mooring file are bold."""
+    """Tabulate the limits used, with the limits that the mooring file sets in bold."""
 
     def own(key: LimitKey) -> bool:
         return key.departs or key.default is None
@@ -478,7 +478,7 @@ def _water_note(water: Water, tides: Sequence[tuple[float, float]]) -> str:
 
 
 def _history(file: MooringFile) -> Iterator[Table]:
-    """Yield a table of all revisions, if page one has no room for them."""
+    """Yield a table of all revisions if page one cannot show them all."""
     given = file.document
     if given is not None and len(given.history) > MOST_REVISIONS:
         first = words("Revision", "revision", 0.0), words("Date", "date", 0.0)

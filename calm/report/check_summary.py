@@ -217,7 +217,7 @@ def _in_short(item: OpenItem) -> OpenItem:
 
 
 def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> blocks.OpenItems:
-    """Select the first `most` open items or, if None, those that fit into `room` lines."""
+    """Select the first `most` open items or, if None, as many as fit into `room` lines."""
     kept: list[OpenItem] = []
     for item in items:
         room -= len(wrap(f"{item.head} {item.text}", _WIDTH - 3))

@@ -43,7 +43,7 @@ def _wording(finding: Finding) -> str:
 def named(labels: Iterable[str], most: int = 3) -> str:
     """Join labels, with consecutive numbers as a range, such as ``glass 1 to 4, cable``.
 
-    A range counts as one name. After `most` names, the number of omitted labels follows.
+    A range counts as a single name. After `most` names, the number of omitted labels follows.
     """
     numbered: dict[str, list[int]] = {}
     for label in labels:
@@ -72,8 +72,8 @@ def named_components(findings: Iterable[Finding]) -> str:
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     """Count the results of rules on components by state, for one or several moorings.
 
-    For each rule, the worst state of a component counts. A missing value of a component counts
-    once. A cluster of equal floats counts once if every float fails or warns.
+    For each rule, the most severe state of a component counts. A missing value of a component
+    counts once. A cluster of equal floats counts once if every float fails or warns.
     """
     by_mooring = grouped_by(findings, attrgetter("mooring")).values()
     groups = (grouped_by(worst_by_part(each), counted_as).values() for each in by_mooring)
@@ -85,10 +85,10 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """Return a key that is equal for findings that count as one.
+    """Return a key that is equal for findings that are counted together.
 
-    Findings with a state in `GRAVE` count as one for equal pieces from one row of the file, such as
-    a cluster of floats.
+    Findings with a state in `GRAVE` are counted together for equal pieces from one row of the file,
+    such as a cluster of floats.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -98,7 +98,7 @@ def counted_as(finding: Finding) -> tuple[Hashable, ...]:
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
-    """Tabulate limits with their defaults and sources; changed limits come first."""
+    """Tabulate limits with their defaults and sources, beginning with the changed limits."""
     departs = Cell("changed", state=State.WARN)
     return table_of(
         title,

@@ -76,8 +76,8 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
     """Create the card of a definition, with all values in display units and their source.
 
-    Derived values follow the specified ones. If several definitions of the catalogue describe the
-    same product, the card ends with a comparison that recommends one of them.
+    Derived values follow the specified values. If the catalogue has several definitions of the same
+    product, the card ends with a comparison that recommends the best definition.
     """
     following = _following(datasheet(definition, catalogue), _per_metre(definition))
     pairs = Pairs((*_figures(definition), *following))
@@ -204,7 +204,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def in_words(missing: MissingFigures) -> str:
-    """List the missing values of a component; values known to be unpublished come last."""
+    """List the missing values of a component, ending with values known to be unpublished."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"lacks {', '.join(open_yet)}"] if open_yet else []
@@ -222,7 +222,7 @@ def summarised(missing: Sequence[MissingFigures]) -> str:
 def to_objects(
     findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
 ) -> list[dict[str, Any]]:
-    """Return JSON objects of catalogue findings, followed by those of missing values.
+    """Return JSON objects of catalogue findings, followed by findings on missing values.
 
     The keys are `id`, `finding`, `message`, `missing` and `searched`.
     """

@@ -1,4 +1,4 @@
-"""Deck lists: cutting list, hardware bill, shipping list, lifts and instrument sheet."""
+"""Lists for the deck: cutting, hardware, shipping, lifts and instruments."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
@@ -181,7 +181,7 @@ def shipping_part(deck: Deck) -> ReportPart:
 
 
 def lifts_part(deck: Deck) -> ReportPart:
-    """Build the table of lifts for deployment and recovery, with a summary of the heaviest ones."""
+    """Build the table of lifts for deployment and recovery, and a summary of the heaviest lifts."""
     sentences, heaviest, unknown = [], deck.lifts.heaviest, deck.lifts.unknown
     if heaviest is not None:
         of_known = " of known mass" if unknown else ""

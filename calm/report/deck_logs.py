@@ -244,7 +244,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
 
 def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str, list[DeckItem]]]:
-    """Split a list by legs, with a title for each."""
+    """Split a list by legs, and give the list of each leg a title."""
     legs = leg_titles(deck.result)
     return [
         (f"{title}: {legs[name]}" if name else title, own)

@@ -246,7 +246,7 @@ def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     """Draw the pages of the diagram as SVG pictures in final size; no text is smaller than 8 pt.
 
     Pages end above a junction if one is near the page end, else between two pieces, else between
-    two clamps. Where a line continues, both ends carry the same letter. Long texts wrap and are
+    two clamps. If a line is interrupted, both ends carry the same letter. Long texts wrap and are
     never cut. The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, page_size)

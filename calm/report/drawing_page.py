@@ -15,7 +15,7 @@ from calm.report.page_one import SignedMooring, afloat, drawn_parts
 from calm.report.sheet import leg_title
 
 _SHEET = {"a4": 688.0, "letter": 648.0}
-"""Height available for the rows of a drawing [pt], by paper size."""
+"""Height available for the rows of a drawing [pt], by page size."""
 _WORDS, _DEPTHS = (
     322.0,
     38.0,

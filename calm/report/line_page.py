@@ -60,7 +60,10 @@ def _known(value: float | None) -> float | None:
 
 
 def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """Tabulate cables, instruments, floats, releases and the anchor; equal floats share a row."""
+    """Tabulate cables, instruments, floats, releases and the anchor.
+
+    Equal floats share a row.
+    """
     groups: list[list[PieceEnvelope]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
@@ -196,7 +199,10 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
-    """Yield the table of anchor loads by load case; for a net, the worst case of each anchor."""
+    """Yield the table of anchor loads, with a row for each load case.
+
+    If there are several anchors or many cases, it has only the most severe case of each anchor.
+    """
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored
     ]

@@ -66,7 +66,7 @@ class LoadCase:
 
     @property
     def as_given(self) -> bool:
-        """Whether the environment is that of the file, without changes."""
+        """Whether the case has the environment of the file, without changes."""
         return self.situation == AS_GIVEN
 
     @property
@@ -119,7 +119,7 @@ class LoadCase:
 
     @cached_property
     def strength(self) -> tuple[float, str] | None:
-        """Maximum ratio of tension to allowable load, and the piece that has it."""
+        """Maximum ratio of tension to allowable load, and the piece with this ratio."""
         shares = []
         for result in self.results:
             leg = estimated(result.leg)
@@ -132,7 +132,7 @@ class LoadCase:
 
     @cached_property
     def anchor(self) -> tuple[float, str] | None:
-        """Maximum ratio of required to actual anchor weight, and the anchor that has it."""
+        """Maximum ratio of required to actual anchor weight, and the anchor with this ratio."""
         loads = [
             (one.anchor_load.required_weight / one.anchor_load.weight, one.file.pieces[-1].label)
             for one in self.results
@@ -142,7 +142,7 @@ class LoadCase:
 
     @cached_property
     def tilt(self) -> tuple[float, str] | None:
-        """Maximum tilt of an instrument, and the instrument that has it."""
+        """Maximum tilt of an instrument, and the instrument with this tilt."""
         tilts = (
             (row.tilt, label)
             for label, row in self.rows.items()

@@ -31,10 +31,9 @@ Places = Mapping[str, Sequence[str]]
 
 
 def definition_places(paths: Iterable[Path]) -> Places:
-    """Locate the components that mooring files define; return texts such as "line 12 of a.yaml" by
-    id.
+    """Return the places where mooring files define components, by id.
 
-    Raise InputError if a file cannot be read.
+    A place is a text such as "line 12 of a.yaml". Raise InputError if a file cannot be read.
     """
     found: dict[str, list[str]] = {}
     for path in paths:

@@ -88,7 +88,7 @@ def motion_report(
 
 
 MOST_PANELS = 12
-"""Maximum number of sensors drawn; withheld sensors take precedence."""
+"""Maximum number of sensors drawn, of which withheld sensors take precedence."""
 
 
 def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple[str, ...]:

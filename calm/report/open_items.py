@@ -78,7 +78,7 @@ def limit_text(finding: Finding) -> str:
 
 
 def percent_text(utilisation: float | None) -> str:
-    """Format a utilisation in percent, rounded up; a dash for None."""
+    """Format a utilisation in percent, rounded up, or None as a dash."""
     if utilisation is None:
         return "–"
     percent = percent_used(utilisation)
@@ -129,6 +129,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     lacking = {(label, one.quantity) for one in figures for label in one.pieces}
 
     def is_covered(finding: Finding) -> bool:
+        """Return whether an item on missing values also covers this estimated pass."""
         own = {(finding.component, one.quantity) for one in finding.estimates}
         return finding.state is State.ESTIMATED and own <= lacking
 
@@ -165,7 +166,7 @@ STATES = {
     Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
     Conclusion.PASSES: State.PASS,
 }  # fmt: skip
-"""State whose colour and sign a conclusion has."""
+"""State that determines the colour and the sign of a conclusion."""
 
 
 def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
@@ -259,7 +260,7 @@ def _item_text(group: Sequence[Finding], worst: Finding) -> str:
 
 
 def advice(finding: Finding) -> str:
-    """Return the recommended action for a finding in short form."""
+    """Return a short form of the recommended action for a finding."""
     if finding.state in (State.PASS, State.NOT_JUDGED):
         return ""
     if finding.accept is not None:
@@ -270,7 +271,7 @@ def advice(finding: Finding) -> str:
 
 
 def _once(group: Iterable[Finding]) -> list[Finding]:
-    """Drop all but the last finding of each component."""
+    """Keep only the last finding of each component."""
     return list({one.component: one for one in group}.values())
 
 

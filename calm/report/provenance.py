@@ -95,7 +95,7 @@ def input_hash(files: Sequence[MooringFile]) -> str:
 
 
 def canonical(value: Any) -> str:
-    """Serialise a value as JSON with sorted keys and no blanks; models become objects."""
+    """Serialise a value as JSON with sorted keys and no blanks, and models as objects."""
     return json.dumps(
         value, sort_keys=True, separators=(",", ":"),
         default=lambda one: one.model_dump() if isinstance(one, BaseModel) else vars(one),
@@ -172,14 +172,14 @@ def current_listing(name: str, water: Water) -> Listing:
 
 
 def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """Create the title block and the revision history; nothing if the file has no `document`."""
+    """Create the title block and the revision history, if the file has a `document`."""
     if file.document is None:
         return ()
     return (ReportPart("Document", (blocks.Pairs(tuple(title_pairs(file))),)), *history_part(file))
 
 
 def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """Create the revision history; nothing if the file has none."""
+    """Create the revision history, if the file has any revisions."""
     if file.document is None or not file.document.history:
         return ()
     first = words("revision", share=0.0), words("date", share=0.0)

@@ -43,9 +43,9 @@ _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 def result_part(
     result: Result, facts: Sequence[tuple[str, str]] = (), *, verbose: bool = False
 ) -> ReportPart:
-    """Build the short report of a result for 80 columns; long labels wrap.
+    """Build the short report of a result, with long labels wrapped to fit 80 columns.
 
-    Values beyond a limit carry ``!`` and values close to a limit ``~``, so that colour is not
+    Values beyond a limit are marked ``!`` and values close to a limit ``~``, so that colour is not
     needed.
 
     Parameters
@@ -340,7 +340,7 @@ def leg_title(leg: LegResult) -> str:
 
 
 def leg_titles(result: Result) -> dict[str, str]:
-    """Return the titles of legs by name; empty for a single line."""
+    """Return the titles of legs by name, or an empty mapping for a single line."""
     return {leg.name: f"leg {leg_title(leg)}" for leg in result.legs if result.several}
 
 

@@ -32,7 +32,7 @@ class BatchAccessor:
         self._dataset = dataset
 
     def depth(self, label: str) -> xr.DataArray:
-        """Return the depth of a clamp, or of the upper end of a component, over time [m]."""
+        """Return the depth of a clamp, or of a component's upper end, over time [m]."""
         return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
@@ -44,8 +44,9 @@ class BatchAccessor:
         return self._of(label, "tilt", "tilt")
 
     def tension(self, label: str) -> xr.DataArray:
-        """Return the tension over time at a clamp, or at the end of a component where it is larger
-        [N].
+        """Return the tension over time [N].
+
+        It is the tension at a clamp, or the larger tension at the two ends of a component.
         """
         upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)

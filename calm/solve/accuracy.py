@@ -158,7 +158,7 @@ def thirds_at(
 
 
 def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int) -> None:
-    """Extrapolate the position and force of a node that both shapes have.
+    """Extrapolate the position and force of a node that occurs in both shapes.
 
     Positions are taken relative to the end of the line.
     """

@@ -17,7 +17,7 @@ Numbers = NDArray[Any]
 CHUNK = 6
 """Number of blocks eliminated together; the block after them stays in the reduced system."""
 DENSE = 16
-"""Largest number of blocks of a system that is solved as one dense matrix."""
+"""Largest number of blocks of a system that is solved as a single dense matrix."""
 
 
 def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:

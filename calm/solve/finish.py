@@ -240,7 +240,7 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
 
 
 def _longer_than_deep(line: Line, water: Water) -> str:
-    """Return a sentence on a line that is longer than the water depth; empty for other lines."""
+    """Return a sentence on a line that is longer than the water depth, or "" for other lines."""
     depth, length = water.depth, float(line.length.sum())
     if length <= depth:
         return ""

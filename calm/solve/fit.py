@@ -49,6 +49,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
     def excess(_: None, length: float) -> float:
+        """Return the depth of the free end, minus the wanted depth [m]."""
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
         except NoEquilibrium as refusal:

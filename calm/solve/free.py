@@ -129,15 +129,14 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
 
 SHORTEST_LOOP = 2.0
 """Length of the shortest loop that may tangle [m], a default of CALM. A shorter loop is usually a
-shackle that leans on the float below.
+shackle that touches the float below.
 """
 
 
 def looped(
     line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
 ) -> tuple[int, ...]:
-    """Find the pieces that form loops in a line; none if the loops are shorter than
-    `SHORTEST_LOOP`.
+    """Find the pieces that form loops in a line, unless the loops are shorter than `SHORTEST_LOOP`.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from calm.solve.problem import REACH
 
 @dataclass(frozen=True)
 class Meeting:
-    """Imbalance where the marches from the two ends of a line meet.
+    """Imbalance at the point at which the marches from the two ends of a line meet.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ class Rising:
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
-        """March the line from both ends in the flow relative to it, and return the imbalance.
+        """March the line from both ends in the flow relative to the line, and return the imbalance.
 
         Parameters
         ----------

@@ -111,6 +111,7 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
     ]
 
     def lifted(_: None, squared: float) -> float:
+        """Return the vertical imbalance [N]; the squared speed has the sign of the velocity."""
         drag = across.copy()
         for place, curve, reynolds in smooth:
             drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
@@ -157,7 +158,7 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
 
 
 _FOLLOWED = 8
-"""Largest number of updates of the lower end's depth for a vertical line; two or three suffice."""
+"""Largest number of updates of the lower end's depth for a vertical line. Two or three suffice."""
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:

@@ -313,7 +313,10 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate all legs and nodes to vanishing segment length; return the estimated errors."""
+    """Extrapolate all legs and nodes to vanishing segment length.
+
+    Return the estimated errors.
+    """
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = relative = 0.0
     for k in range(len(x)):

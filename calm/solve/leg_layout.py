@@ -96,8 +96,9 @@ class LaidLeg:
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns of the leg; on a sloping seabed the height of its touchdown is one of
-        them.
+        """Number of unknowns of the leg.
+
+        On a sloping seabed, the height of its touchdown is also unknown.
         """
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])

@@ -75,7 +75,7 @@ def load_leg(
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from its unknowns, and return the outcome, one of those in `calm.physics.line`.
+    """March a leg from its unknowns, and return an outcome defined in `calm.physics.line`.
 
     A strumming leg is marched until its frequency equals the vortex shedding frequency at its end.
     The shedding frequency falls as the assumed frequency rises, since more drag raises the line.

@@ -44,7 +44,7 @@ above the seabed at which an anchored leg begins.
 
 
 class LegRow(NamedTuple):
-    """The numbers of a leg that compiled code needs.
+    """Numbers that compiled code needs for a leg.
 
     Attributes
     ----------
@@ -64,8 +64,8 @@ class LegRow(NamedTuple):
         of the leg there; 0 for a leg that does not strum
     past_east, past_north, past_up : current there [m/s]
     weight : sum of the absolute net forces of its pieces [N], the scale of forces on a slack leg
-    stages, cables, surfacing, rows, pieces : numbers of stages, cables, buoyant pieces, rows of
-        the hull table, and pieces
+    stages, cables, surfacing, rows, pieces : numbers of stages, cables, buoyant pieces, rows of the
+        hull table, and pieces
     landing : first stage that may lie on the seabed, see `Course`
     """
 

@@ -68,7 +68,7 @@ Sample = tuple[float, float]
 
 
 class CoarseRoots(NamedTuple):
-    """Approximate roots for a line that is clear of the seabed, or for one with a touchdown.
+    """Approximate roots for a line that is clear of the seabed, or that has a touchdown.
 
     Attributes
     ----------
@@ -350,7 +350,7 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
 def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
     """Find the equilibrium of a line with one or several floats at the surface.
 
-    The root is the used fraction of buoyancy of the lowest of these floats. The top float is tried
+    The root is the fraction of the lowest float's buoyancy that is in use. The top float is tried
     first. If the line closes only with the next float out of the water, or not at all, the next
     float is at the surface too. The used fraction of the upper float then follows from the part of
     the line between them, and that of the next float closes the line. A single float rides at its

@@ -332,7 +332,10 @@ class Nearby:
 
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line on segments chosen at its angle step; write the shape to the record `FINE`."""
+    """Close a line on segments chosen at its angle step.
+
+    The shape is written to the record `FINE`.
+    """
     located, step = locate(search, lands, False), search.problem.limits.angle_step
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)

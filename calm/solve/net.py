@@ -69,7 +69,7 @@ class NetSolution:
 
 
 class LacksRoom(Exception):
-    """Error of a leg that needs more segments than the work arrays hold."""
+    """Raised if a leg needs more segments than the work arrays hold."""
 
 
 class NetSearch:
@@ -290,9 +290,9 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
     """Return approximate unknowns of a net in equilibrium.
 
     If another solution is given, the search starts near it. Otherwise the current is raised from
-    still water in steps, which leads to the highest of several equilibria. If that fails, the
-    search starts from the rest positions of lumped masses released in the current
-    (`calm.solve.net_start`). `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
+    still water in steps, which leads to the highest equilibrium. If that fails, the search starts
+    from the rest positions of lumped masses released in the current (`calm.solve.net_start`).
+    `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)

@@ -1,4 +1,4 @@
-"""Approximate start for a net: lumped masses on springs are released and come to rest.
+"""Approximate start for a net, from the rest positions of lumped masses on springs.
 
 The march then solves the net accurately from this start. Here, cables stretch by some hundredths,
 and tangential friction is ignored.

@@ -89,7 +89,7 @@ class Referee(NamedTuple):
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
-    """Find a shape clear of the seabed, or one with a touchdown; try the likelier kind first."""
+    """Find a shape clear of the seabed or with a touchdown, trying the likelier kind first."""
     problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
@@ -115,8 +115,8 @@ def rising(search: Search, referee: Referee) -> FoundShape:
     """Find the shape of a line in a batch that may touch the seabed but clearly rises from its
     anchor.
 
-    The search requires that the line descends nowhere. A line with a sag, for example, is rejected
-    here, since it could also lie on the seabed.
+    A line that descends anywhere, such as a line with a sag, is rejected here, since it could also
+    lie on the seabed.
     """
     problem = search.problem
     lying, start = start_of(search, True), start_of(search, False)
@@ -201,7 +201,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
-    """Copy a shape, with the used buoyancy of its surface floats, from one record to another."""
+    """Copy a shape and the used buoyancy of its surface floats to another record."""
     source, kept = problem.work.records[of], problem.work.records[to]
     shares = problem.work.shares
     for k in range(found.closed.root.unknown.sought):
@@ -215,7 +215,7 @@ def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
 
 
 def load_again(problem: LineProblem, found: FoundShape) -> None:
-    """Set the loads of the pieces at the surface as they are in a shape."""
+    """Set the loads of the pieces at the surface to the loads that they have in a shape."""
     root = found.closed.root
     place(problem, root.unknown, root.x)
 

@@ -314,7 +314,7 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
 def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | None:
     """Diagnose a rigid piece or a clamp that would be half out of the water, or return None.
 
-    Such a body is treated as either in the water or out of it, by the position of its midpoint.
+    Such a body is treated as either in the water or in air, by the position of its midpoint.
     When the midpoint crosses the surface, the miss or the frequency jumps. If the line closes in
     neither state, the body would be half out of the water.
 

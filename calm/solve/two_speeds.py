@@ -55,7 +55,7 @@ class _Pace:
         self.child: Popen[bytes] | None = None
 
     def consider(self) -> None:
-        """Switch to compiled code if it is ready; else start to compile it if that pays."""
+        """Switch to compiled code if it is ready, or start to compile it if that pays."""
         if self.compiled:
             return
         if self.child is not None:

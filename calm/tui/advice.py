@@ -74,7 +74,7 @@ def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()
 
 
 def _needs_an_anchor(view: View) -> bool:
-    """Return whether a single moored line has no anchor, or one that is too light."""
+    """Return whether the anchor of a single moored line is missing or too light."""
     if (
         view.file is None
         or view.file.legs
@@ -178,7 +178,7 @@ def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -
 def _anchors_of(catalogue: Catalogue) -> Iterator[tuple[str, Anchor]]:
     """Yield the anchors whose weight in water is known.
 
-    Of several entries for one product, only the recommended one is considered.
+    If a product has several entries, only the recommended entry is considered.
     """
     for id in catalogue.ids():
         entry = catalogue.entry(id)

@@ -1,4 +1,4 @@
-"""The application: it handles key presses in order, runs workers, and ends the builder.
+"""The application, which handles key presses in order, runs workers, and ends the builder.
 
 The screens display the draft.
 """
@@ -160,7 +160,7 @@ class BuildApp(App[int]):
         self.set_interval(_DISK_INTERVAL, self.saving.check_external_change)
 
     def _begin(self) -> None:
-        """Read the catalogue, solve the line, and report what the user must know at the start.
+        """Read the catalogue, solve the line, and show the messages for the start.
 
         This begins after the line is on the screen.
         """
@@ -184,9 +184,7 @@ class BuildApp(App[int]):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return a filter that removes colours, or Textual's filters and one that keeps text
-        legible.
-        """
+        """Return a filter that removes colours, or Textual's filters and one for legibility."""
         if self.no_color:
             return [_COLOURLESS]
         theme = self.current_theme
@@ -230,6 +228,7 @@ class BuildApp(App[int]):
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def show_replaced_draft(self, message: str) -> None:
+        """Update all screens after another text has replaced the draft."""
         for screen in self.draft_screens():
             screen.replaced()
         self.tell(message)
@@ -323,7 +322,7 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save unsaved work to its backup copy; return the reason for a failure, else ""."""
+        """Save unsaved work to its backup copy, and return the reason for a failure, else ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -366,7 +365,10 @@ class BuildApp(App[int]):
         self._exit_answered()
 
     def _exit_answered(self) -> None:
-        """End once the terminal has answered; the shell would otherwise read the answer as keys."""
+        """End once the terminal has answered.
+
+        The shell would otherwise read the answer as keys.
+        """
         if self.output.is_out and self._ends_at > time.monotonic():
             self.set_timer(0.02, self._exit_answered)
         else:

@@ -133,7 +133,7 @@ number = quantity(QuantityField("number"))
 
 
 def count(text: str) -> Reading:
-    """Accept a number of pieces, which is whole; an empty text means 1."""
+    """Accept a whole number of pieces, or an empty text for 1."""
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")

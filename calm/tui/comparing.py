@@ -68,8 +68,9 @@ class ComparingScreen(line_screen.LineScreen):
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _effects(self, before: View, after: View) -> list[str]:
-        """Return the differences between two lines, after a full check of both; for use in a
-        thread.
+        """Return the differences between two lines after a full check of both lines.
+
+        This is called in a thread.
         """
         from calm.tui.advice import differences
         from calm.tui.live import judge_fully

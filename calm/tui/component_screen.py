@@ -1,6 +1,6 @@
 """Form for a component defined in the file.
 
-Each value is checked as it is typed, and the component as a whole on completion.
+Each value is checked during typing, and the whole component on completion.
 """
 
 from collections.abc import Collection
@@ -112,6 +112,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         return id, others | values_of(texts)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Show a message in the last line until the next key."""
         self.query_one(KeyBar).tell(text, wrong=wrong)
 
     @on(Field.Judged)

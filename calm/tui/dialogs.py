@@ -40,7 +40,10 @@ Then = Callable[[], object]
 
 
 def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
-    """Open a screen on top of the others; call `take` with its result unless it is cancelled."""
+    """Open a screen on top of other screens.
+
+    Call `take` with its result, unless it is cancelled.
+    """
 
     def taken(given: T | None) -> None:
         if given is not None:
@@ -50,7 +53,7 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
 
 
 def choose(app: App[Any], question: Question) -> None:
-    """Ask a question, and run the action of the chosen answer."""
+    """Show a question, and run the action of the chosen answer."""
     ask(app, question, lambda then: then())
 
 
@@ -61,7 +64,7 @@ def enter(
     fields: Sequence[FormField],
     take: Callable[[dict[str, str]], object],
 ) -> None:
-    """Ask for several texts on an `InputSheet`, and call `take` with them."""
+    """Request several texts on an `InputSheet`, and call `take` with the texts."""
     ask(app, InputSheet(title, text, fields), take)
 
 
@@ -149,7 +152,7 @@ class Question(ModalScreen[Then | None]):
 class Form(Screen[T | None]):
     """Fields that are entered together.
 
-    Enter moves to the next field; on the last field it accepts all of them.
+    Enter moves to the next field; on the last field it accepts all fields.
     """
 
     @property
@@ -180,6 +183,7 @@ class Form(Screen[T | None]):
                 yield Field(each)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Show a message below the fields."""
         raise NotImplementedError
 
     @on(Field.Entered)
@@ -204,7 +208,7 @@ _TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ g
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     """Sheet with several text fields, which Esc discards.
 
-    The sheet is wide if the fields have notes next to them.
+    The sheet is wide if there are notes next to the fields.
     """
 
     BINDINGS = key_table.bindings("sheet")

@@ -52,7 +52,7 @@ class Part(Protocol):
 
     @property
     def text(self) -> str:
-        """Entered text, as written to the file."""
+        """Entered text in the form of the file."""
 
     @property
     def input(self) -> Widget:
@@ -146,7 +146,7 @@ class Field(Horizontal):
 
     @property
     def text(self) -> str:
-        """Typed text as written to the file, or the initial text if unchanged."""
+        """Typed text in the form of the file, or the initial text if unchanged."""
         return self.reading.text if self.is_typing else self.begun
 
     @property

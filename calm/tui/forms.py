@@ -124,7 +124,7 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the table columns for a list of models or of rows of fixed length, else ()."""
+    """Return the table columns for a list of models or of rows with a fixed length, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]
@@ -156,7 +156,7 @@ def _is_model(member: Any) -> bool:
 
 
 def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
-    """Return the words that a field allows, if it allows only certain words, else ()."""
+    """Return the allowed words of a field, or () if the field allows other texts."""
     if members == (bool,):
         return "true", "false"
     if all(get_origin(each) is Literal for each in members):
@@ -186,7 +186,7 @@ def text_of(value: Value | None) -> str:
 
 
 def value_of(text: str) -> Value | None:
-    """Parse a typed value; an empty text becomes None."""
+    """Parse a typed value, or return None for an empty text."""
     value = read_inline(text) if text[:1] in ("[", "{") else text
     return None if value in ("", [], {}) else value
 

@@ -240,8 +240,8 @@ class LinePane(LineSearch):
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
         """Return the selected rows, unless pieces are mixed with clamps of other pieces.
 
-        Such clamps have no position among pieces that are pasted or moved; for them, a message is
-        shown and () returned.
+        Such clamps have no position among pieces that are pasted or moved. If there are any, a
+        message is shown and () is returned.
         """
         chosen = self.table.chosen
         pieces = {spot.item for spot in chosen if not spot.is_clamp}

@@ -1,4 +1,4 @@
-"""Rows of the line table, built from the file and its results; editing of values and columns."""
+"""Rows of the line table from the file and its results, and editing of their values and columns."""
 
 from __future__ import annotations
 
@@ -282,7 +282,7 @@ class ColumnFilling:
         )
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write all changed values to the file, as one step of the history."""
+        """Write all changed values to the file in a single step of the history."""
         begun, draft = {each.key: each.text for each in self._form_fields}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"

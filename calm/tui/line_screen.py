@@ -101,6 +101,7 @@ class LineScreen(screen.DraftScreen):
         self.verdict.set_class(self.workspace.is_old, "-old")
 
     def titles(self) -> tuple[str, str]:
+        """Return name and file with unsaved changes, and environment with verdict."""
         name = " ".join(self.session.draft.text_at(("name",)).split())
         standing, parts = self.session.standing, []
         here = standing.environment
@@ -132,6 +133,7 @@ class LineScreen(screen.DraftScreen):
     # components from the catalogue
 
     def search(self, purpose: Purpose) -> None:
+        """Search the catalogue for a component for the row under the cursor."""
         self.remove_class("-zoomed")
         self.add_class("-searching")
         spot = self.line.table.spot

@@ -1,4 +1,4 @@
-"""References to labels in a file, which are updated with the labels; choice of the environment."""
+"""References to labels, which are updated with the labels, and the choice of the environment."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
@@ -73,7 +73,9 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 
 
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
-    """Update the references to labels after an edit; return the draft and messages on the updates.
+    """Update the references to labels after an edit.
+
+    Return the draft, and messages on the updates.
 
     Parameters
     ----------

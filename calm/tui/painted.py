@@ -44,7 +44,7 @@ _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
 _PATIENCE = 3.0  # seconds to wait for an answer
 _GAP = 8
-"""Minimum length of a run of unchanged cells that is skipped; sending a shorter run costs less."""
+"""Minimum length of a run of unchanged cells that is skipped, as a shorter run costs little."""
 
 
 class Painted:
@@ -145,7 +145,7 @@ class Pace:
         self._since: float | None = None
 
     def holds(self, now: float) -> bool:
-        """Return whether a frame must wait; the next frame then contains all changes."""
+        """Return whether a frame must wait, so that the next frame contains all changes."""
         return self._answers and self._since is not None and now - self._since < _PATIENCE
 
     def question(self, now: float) -> str:
@@ -161,7 +161,10 @@ class Pace:
 
     @property
     def is_out(self) -> bool:
-        """Whether the answer to a request is pending; the shell would read it as keys."""
+        """Whether the answer to a request is pending.
+
+        If the builder ended now, the shell would read the answer as keys.
+        """
         return self._answers and self._since is not None
 
 

@@ -29,7 +29,7 @@ class Actions(Provider):
         return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
 
     async def discover(self) -> Hits:
-        """Yield all actions as long as nothing is typed."""
+        """Yield all actions until a text is typed."""
         for action in self._offered:
             yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
 

@@ -136,6 +136,7 @@ class Pictures(Vertical):
         self._show()
 
     def show(self, view: View | None, note: str = "") -> None:
+        """Draw the line of a view, with a note."""
         self._view, self._note = view, note
         self._show()
 
@@ -156,7 +157,7 @@ class Pictures(Vertical):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
-        """Show the tabs, with the current one in reverse video, and a cursor if the picture has the
+        """Show the tabs: the current tab in reverse video, and a cursor if the picture has the
         focus.
         """
         parts = [theme.CURSOR if self._picture.has_focus else " "]

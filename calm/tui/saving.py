@@ -94,7 +94,7 @@ class Saving:
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
-        """Ask for a new file name, suggesting `begin`, and save."""
+        """Save under a new file name, for which `begin` is suggested."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
@@ -114,8 +114,9 @@ class Saving:
         enter(self._app, "Save as", text, fields, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
-        """Ask before overwriting another file, a write-protected file, or a file changed on the
-        disk.
+        """Request a confirmation before another file is overwritten.
+
+        A confirmation is also needed if the file is write-protected or has changed on the disk.
         """
         session, file = self._session, self._session.file
         is_own, stamp = path == file.path, file.stamp
@@ -263,7 +264,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _is_writable(text: str) -> Reading:
-    """Check that a typed name can be that of a file, in an existing folder."""
+    """Check that a typed name is a possible name of a file in an existing folder."""
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")

@@ -79,6 +79,7 @@ class DraftScreen(Screen[None]):
     # shared by all screens
 
     def show_title(self) -> None:
+        """Update the title bar; a verdict on an earlier draft is dimmed."""
         self.query_one(TitleBar).show(*self.titles(), old=not self.workspace.is_fresh)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:

@@ -193,6 +193,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         return ()
 
     def text_of(self, number: int, column: TableColumn) -> str:
+        """Return the text of a cell."""
         raise NotImplementedError
 
     def lead(self, number: int, style: Style) -> list[Segment]:
@@ -204,6 +205,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         return self.get_component_rich_style(name, partial=True)
 
     def row_style(self, number: int) -> Style:
+        """Return the style of a row."""
         return self.rich_style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:

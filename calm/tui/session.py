@@ -124,7 +124,10 @@ class Session:
         self.added = frozenset(new.difference(moved.values()))
 
     def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
-        """Replace the text; with `further`, merge the change with the last step of the history."""
+        """Replace the text.
+
+        With `further`, merge the change with the last step of the history.
+        """
         if further:
             self.history.undo()
         self.do(Draft(text), label)
@@ -167,8 +170,9 @@ class Session:
         return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
-        """Delete rows, and with pieces also their clamps; return the new row of the cursor, or
-        None.
+        """Delete rows, and with pieces also their clamps.
+
+        Return the new row of the cursor, or None.
         """
         chosen = _whole(spots)
         if not chosen:
@@ -188,7 +192,7 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Insert copies of rows below the last of them; return the first copy.
+        """Insert copies of rows below the last of these rows, and return the first copy.
 
         The references in `also` are extended to the copies.
         """
@@ -206,15 +210,16 @@ class Session:
         return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
 
     def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
-        """Insert clamps on a piece, beginning at index `first` of its clamps; return their rows."""
+        """Insert clamps on a piece at index `first` of its clamps, and return their rows."""
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
         return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
-        """Move pieces, or a single clamp, up (-1) or down (1); return their new rows.
+        """Move pieces or a single clamp up (-1) or down (1), and return their new rows.
 
-        Rows at the end of the line, or of the clamps of a piece, do not move.
+        Pieces at the end of the line do not move. Nor does a clamp that is the first or last on its
+        piece.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -240,7 +245,7 @@ class Session:
         return tuple(map(there, moved))
 
     def copy(self, spots: Iterable[Place]) -> int:
-        """Copy rows for pasting; return the number of copied rows."""
+        """Copy rows for pasting, and return the number of copied rows."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
         if chosen:
@@ -251,7 +256,8 @@ class Session:
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
         """Paste the copied rows next to a row.
 
-        Return the last pasted row if pasted below, else the first; None if nothing was copied.
+        Return the last pasted row if pasted below, and the first if pasted above. Return None if
+        the clipboard is empty.
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
@@ -275,7 +281,7 @@ class Session:
     # saving
 
     def save(self) -> str:
-        """Save the file and delete its backup copy; return a note on lost file attributes.
+        """Save the file, delete its backup copy, and return a note on lost file attributes.
 
         Raises
         ------
@@ -290,7 +296,7 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Save to another path and continue with this file; return the note of `save`."""
+        """Save to another path, continue with this file, and return the note of `save`."""
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -303,7 +309,7 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Store the unsaved text for the next backup copy; return the file."""
+        """Store the unsaved text for the next backup copy, and return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 _TURN = 0.001  # seconds
 _GRACE = 3
-"""Maximum time for an orderly exit [s]; a blocked terminal accepts no output."""
+"""Maximum time for an orderly exit [s], since a blocked terminal accepts no output."""
 
 
 def open_session(
     path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()
 ) -> tuple[Session, KeptWork | None]:
-    """Open a session for a file; also return unsaved work of an earlier session, if any.
+    """Open a session for a file, and return it with any unsaved work of an earlier session.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def _refuse_other_files(session: Session) -> None:
 
 
 def build(path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()) -> int:
-    """Run the line builder on a file; return the exit code of the command.
+    """Run the line builder on a file, and return the exit code of the command.
 
     Raises
     ------

@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns, which are named by number because headings may be equal."""
+        """Columns, with numbers as names because headings may be equal."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -76,7 +76,10 @@ class GridCells(TableCells, can_focus=True):
         return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
 
     def go_on(self, by: int) -> bool:
-        """Move to the next or previous value, across rows; return whether there is one."""
+        """Move to the next or previous value, across rows.
+
+        Return whether there is such a value.
+        """
         count = len(self.headings)
         row, column = divmod(self.cursor * count + self.column + by, count)
         if is_there := 0 <= row < len(self.rows):
@@ -206,8 +209,9 @@ class Grid(cell_editor.EditableTable):
     # typed text
 
     def go_on(self, then: cell_editor.Then, text: str | None) -> None:
-        """Move up, down, or to the next value; after the last value of an added row, add another
-        row.
+        """Move up, down, or to the next value.
+
+        After the last value of an added row, another row is added.
         """
         cells = self.cells
         if text is not None:
@@ -242,7 +246,7 @@ class Grid(cell_editor.EditableTable):
         self.take_text(event.text)
 
     def take_text(self, text: str) -> None:
-        """Replace all rows by those of a pasted text with the same number of columns."""
+        """Replace all rows by the rows of a pasted text with the same number of columns."""
         try:
             copied = copied_table(text).rows
         except NoTableError as error:

@@ -100,6 +100,7 @@ class TextScreen(screen.DraftScreen):
         self.show_title()
 
     def titles(self) -> tuple[str, str]:
+        """Return the title, and the number of mistakes."""
         return f"The text of {self.workspace.called}", mistakes(self._problems, self.workspace.path)
 
     @property
@@ -130,7 +131,7 @@ class TextScreen(screen.DraftScreen):
         return retyped(self._begun, self.text_area.document.lines)
 
     def show_draft(self) -> None:
-        """Load the draft again; the cursor stays on its line."""
+        """Load the draft again, with the cursor on the same line."""
         area, text = self.text_area, self.session.draft.text
         self._begun, self._edited, self._next = text, False, 0
         row, column = area.cursor_location

@@ -73,7 +73,7 @@ PICTURE_LIGHT = _palette(
 
 
 def choose_theme(environ: Mapping[str, str]) -> str:
-    """Choose the theme for a terminal; return its name.
+    """Choose the theme for a terminal, and return its name.
 
     A terminal with 256 colours or more gets the colours of the builder. Any other keeps its own
     sixteen colours, which the user has chosen to be legible. The background is light if the last
@@ -112,6 +112,7 @@ class Legible(LineFilter):
         self._dark, self._sixteen = dark, sixteen
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return text segments with legible colours."""
         ground = background.rich_color
 
         def style(given: Style) -> Style:
@@ -136,8 +137,9 @@ def legible(dark: bool, sixteen: bool) -> Legible:
 
 @lru_cache(1024)
 def _of_sixteen(style: Style, dark: bool) -> Style:
-    """Convert a style to the terminal's own colours, without dimming; backgrounds become reverse
-    video.
+    """Convert a style to the terminal's own colours, without dimming.
+
+    Backgrounds become reverse video.
     """
     ink = style.color or _OWN
     if style.bgcolor is not None and not style.bgcolor.is_default:

@@ -69,6 +69,7 @@ class WaterForm:
         self.place: Location = ("environments", variant) if variant else ("environment",)
 
     def at(self, *keys: str) -> Location:
+        """Return the location of an environment key in the file."""
         return (*self.place, *keys)
 
     def own(self, *keys: str) -> Any:
@@ -128,9 +129,9 @@ class WaterForm:
     # changes, which return the new draft
 
     def put(self, keys: Sequence[str], text: str, *, is_needed: bool = False) -> Draft:
-        """Set the value of a key; an empty text deletes the key.
+        """Set the value of a key, or delete the key if the text is empty.
 
-        If the key is required, its parent is deleted with it.
+        If the key is required, its parent is deleted, too.
         """
         if is_needed and len(keys) > 1 and not text:
             return self.draft.put_at(self.at(*keys[:-1]), None)
@@ -139,7 +140,7 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """Write a table; unchanged rows keep their text in the file."""
+        """Write a table to the file, in which unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None

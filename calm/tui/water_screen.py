@@ -110,6 +110,7 @@ class WaterScreen(screen.DraftScreen):
         return None if here in standing.environments or draft.problems else here
 
     def titles(self) -> tuple[str, str]:
+        """Return the title, and the verdict in the environment shown."""
         state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
@@ -179,7 +180,7 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file; return whether this succeeded, and show any failure."""
+        """Change the file, return whether this succeeded, and show the reason for a failure."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -199,7 +200,7 @@ class WaterScreen(screen.DraftScreen):
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
-        """Write typed text to the draft; return whether all of it is valid.
+        """Write typed text to the draft, and return whether all values are valid.
 
         The first invalid value stays in its field, with a message.
         """

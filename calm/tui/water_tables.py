@@ -296,7 +296,7 @@ def check_of(column: str) -> Check:
 
 
 def half_way(column: str, one: float, other: float) -> float:
-    """Return the mean of two values; for directions, the middle of the shorter arc."""
+    """Return the mean of two values or, for directions, the middle of the shorter arc."""
     name, unit = heading(column)
     half = (one + other) / 2
     if name != "toward":

@@ -129,7 +129,7 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change; return whether it succeeded, and the resulting row.
+        """Make a change, and return whether it succeeded and the resulting row.
 
         A failure is shown as a message.
         """

@@ -1,4 +1,4 @@
-"""Verification against three papers on cables: Braconnot, Bourget & Marichal, Villain-Guillot.
+"""Verification against publications on cables by Braconnot, Bourget & Marichal and Villain-Guillot.
 
 From Braconnot's charts (EDF), a buoy, towed cables and a point of the curve are compared; from
 Bourget & Marichal, a towed cable that strums; from Villain-Guillot, the closed form of a cable with

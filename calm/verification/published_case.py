@@ -25,7 +25,7 @@ PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
 
 
 class Kind(StrEnum):
-    """Origin of an expected value, which determines how strong an agreement is as evidence."""
+    """Origin of an expected value, which determines the strength of an agreement as evidence."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"
@@ -300,7 +300,7 @@ def stream(depth: float, speed: float, density: float = REFERENCE_DENSITY) -> Wa
 
 
 def deep_water(density: float = REFERENCE_DENSITY) -> Water:
-    """Return still water without a seabed, for tows; the ship's speed creates their flow."""
+    """Return still water without a seabed, for tows."""
     return stream(inf, 0.0, density)
 
 

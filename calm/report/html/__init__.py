@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
-"""Pattern for the positions where a long word may break: after a separator, else every ten
+"""Pattern for the positions at which a long word may break: after a separator, else every ten
 characters.
 """
 
@@ -72,7 +72,7 @@ def _environment() -> Environment:
 
 
 def _css_text(text: str) -> str:
-    """Convert text to a style-sheet string; all but letters and digits are escaped."""
+    """Convert text to a style-sheet string, with all characters but letters and digits escaped."""
     signs = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
     return f'"{"".join(signs)}"'
 
