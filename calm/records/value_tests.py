@@ -325,7 +325,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 class WaterLimits:
     """Limits of a sea-water quantity, its unit, and other units that are often used by mistake.
 
-    Each value of `likely` is the factor and the offset that convert the confused unit to `unit`.
+    Each value of `likely` is the factor and the offset that convert another unit to `unit`.
     """
 
     least: float

@@ -208,9 +208,10 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the coordinates with bounds and their dimensions.
+    """Return the names of coordinates that describe layers, and of their dimensions.
 
-    A mean over such a layer counts as a value of the layer.
+    Such a coordinate has the attribute `bounds`. A mean over a layer is accepted as a value of this
+    layer.
     """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
@@ -332,7 +333,7 @@ def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
 
 
 def _flag(value: Any) -> str:
-    """Return a numeric or text flag in one notation."""
+    """Convert a numeric or text flag to a common notation."""
     text = value.decode() if isinstance(value, bytes) else str(value)
     text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
     return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text

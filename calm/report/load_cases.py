@@ -113,7 +113,7 @@ class LoadCase:
 
     @cached_property
     def factor(self) -> tuple[float, str] | None:
-        """Minimum safety factor, and the piece that has it; None if none is known."""
+        """Minimum safety factor, and the piece with this factor; None if no factor is known."""
         known = ((row.safety_factor, row.label) for row in self._pieces())
         return min((one for one in known if not isnan(one[0])), default=None)
 

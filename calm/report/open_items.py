@@ -36,7 +36,7 @@ _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 
 
 def plain(text: str, *, keys: bool = False) -> str:
-    """Format a message for print: keys become words in quotes, and no line breaks before a unit.
+    """Format a message for print, with keys as words in quotes and no line break before a unit.
 
     With `keys`, for a terminal, the keys stay as in the file, in backticks.
     """

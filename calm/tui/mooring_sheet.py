@@ -159,7 +159,7 @@ def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check a serial number, or one number for each item of a row with a count or a pair."""
+    """Check the serial numbers of a row, separated by commas."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")

@@ -131,6 +131,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, Renderab
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """Return the headline of the verdict with its sign, an ellipsis if it is `old`."""
+    """Return the headline of the verdict, after its sign or, if it is `old`, after an ellipsis."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()
