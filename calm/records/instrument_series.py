@@ -450,7 +450,7 @@ _FRESH = 5.0
 
 
 def _salinity_notes(salinity: Floats, taken: Mapping[str, str]) -> Iterator[str]:
-    """Yield how salinity was computed, and any doubt about the unit of the conductivity."""
+    """Yield remarks on the computed salinity, and any doubt about the unit of conductivity."""
     if not np.isfinite(salinity).any():
         yield "salinity is not computed: there is neither a pressure nor a nominal depth"
         return
