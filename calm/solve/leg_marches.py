@@ -1,4 +1,4 @@
-"""Residual and Jacobian of a net of legs, as compiled laws.
+"""Residual and Jacobian of a net of legs, as functions that can be compiled.
 
 The unknowns are the depths of free ends, the pulls on other ends, and the positions of nodes. The
 residual (`found`) holds the distance by which each leg misses its end, and the sum of the pulls at

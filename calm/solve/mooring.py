@@ -263,8 +263,8 @@ class Nearby:
 
         Returns
         -------
-        Positions (k+1, 3) east and north of the anchor and up from the surface [m]; and the share
-        in use of the buoyancy of the floats at the surface, 1 below it.
+        Positions (k+1, 3) east and north of the anchor and up from the surface [m]. The second
+        result is the used fraction of the surface floats' buoyancy, 1 without such floats.
 
         Raises
         ------
