@@ -416,9 +416,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
 
 
 def _no_date(times: xr.DataArray) -> UnreadableError:
-    """Build the error for times whose unit is valid but whose values lie outside the supported
-    years.
-    """
+    """Build the error for times with a valid unit but values outside the supported years."""
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(

@@ -158,8 +158,9 @@ class TextTable:
     rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
-        """Return the rows with as many cells as the header, and add a mistake to `problems` for the
-        others.
+        """Return the rows with as many cells as the header.
+
+        Mistakes in other rows are added to `problems`.
         """
         whole = []
         for row in self.rows:

@@ -331,8 +331,9 @@ class SeabedGrid:
 
     @property
     def slope(self) -> float:
-        """Slope of the seabed at the point, from the steepest gradients over one node spacing
-        [degrees].
+        """Slope of the seabed at the point [degrees].
+
+        It is computed from the steepest gradients over one node spacing.
         """
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))

@@ -209,9 +209,7 @@ class _Levels:
         return LevelDepths(self.variable, factor, 0.0, zero, (note,))
 
     def _stated_orientation(self, words: str) -> str:
-        """Return the stated orientation of an instrument, ``"up"`` or ``"down"``; empty if
-        unstated.
-        """
+        """Return the stated orientation of an instrument, ``"up"`` or ``"down"``, else ""."""
         for word, orientation in (("above", "up"), ("below", "down")):
             if word in words.split():
                 return orientation

@@ -445,8 +445,9 @@ def _gaps(times: Times) -> Iterator[str]:
 
 
 def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
-    """Yield a doubt about series that keep one value for a tenth of the record, or mostly repeat
-    values.
+    """Yield a doubt about series with values that hardly change.
+
+    Such a series keeps one value for a tenth of the record, or mostly repeats values.
     """
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
     known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)

@@ -155,9 +155,7 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
 
 
 def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Yield tables of return levels with their confidence intervals, and the reasons for missing
-    levels.
-    """
+    """Yield tables of return levels with confidence intervals, and reasons for missing levels."""
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
         fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]

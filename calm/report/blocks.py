@@ -1,5 +1,4 @@
-"""Building blocks of all reports, which are printed on a terminal, as HTML or PDF, and in
-notebooks.
+"""Building blocks of all reports: on a terminal, in HTML or PDF, and in notebooks.
 
 All texts are plain text without markup; each output format escapes them as required.
 """

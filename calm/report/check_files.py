@@ -34,8 +34,7 @@ MUCH_USED = 0.5
 def listed_findings(
     assessment: Assessment, *, every: bool = False
 ) -> Iterator[tuple[Finding, bool]]:
-    """Yield the findings to list for a mooring, each with a flag that is true if it governs its
-    rule.
+    """Yield the findings to list for a mooring, each with a flag: whether it governs its rule.
 
     The list contains the governing finding of each rule. It also contains the governing finding of
     each rule on each component over all environments, unless this finding passes with a utilisation

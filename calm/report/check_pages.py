@@ -57,9 +57,7 @@ from calm.report.sheet import accuracy_text
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the table of all rules, with the governing component and case, the limit and the
-    remedy.
-    """
+    """Yield the table of all rules, with governing component and case, limit and remedy."""
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
     yield blocks.Heading("Accuracy of these values")
@@ -222,8 +220,9 @@ _MOST_BREAKS = 10
 
 
 def _breaks(assessment: Assessment) -> Table:
-    """Tabulate the net buoyancy after the most critical break of each section, and after the loss
-    of a float.
+    """Tabulate the net buoyancy after a break or the loss of a float.
+
+    Only the most critical break of each section is listed.
     """
     parts = {piece.index: piece for piece in assessment.file.pieces}
     groups: dict[str, list[Break]] = {}

@@ -114,8 +114,9 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def component_text(name: str, units: int) -> str:
-    """Format the name of a component, and its number of units if there are several, as in a pair of
-    releases.
+    """Format the name of a component, and its number of units if it has several.
+
+    An example is a pair of releases.
     """
     return f"{name}, {units} units each" if units > 1 else name
 

@@ -1,5 +1,6 @@
-"""Files and folders of reports, checked before any computation, and written completely or not at
-all.
+"""Files and folders of reports.
+
+They are checked before any computation, and written completely or not at all.
 
 PDF files are typeset by typst.
 """

@@ -48,9 +48,7 @@ def grid_report(output: Path, record: GriddedRecord) -> Report:
 
 
 def grid_document(record: GriddedRecord) -> dict[str, Any]:
-    """Return the JSON object with the scales of each quantity [m, s] and the cards of the files
-    read.
-    """
+    """Return the JSON object with the scales of each quantity [m, s] and the cards of the files."""
     return {
         "quantities": {
             name: {

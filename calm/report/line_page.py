@@ -156,9 +156,7 @@ def _bar(finding: Finding | None) -> Cell | None:
 
 
 def _use(finding: Finding | None) -> Cell | None:
-    """Format the utilisation of a load, with a sign if it is accepted, unknown, failed or a
-    warning.
-    """
+    """Format the utilisation of a load, with a sign unless its finding passes."""
     if finding is None:
         return None
     signs = {State.ACCEPTED: "○", State.UNKNOWN: "?", State.FAIL: "✗", State.WARN: "▲"}

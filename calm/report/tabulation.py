@@ -99,11 +99,11 @@ def by_speed(
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
-    """Return the JSON object with `calm`, `name`, `type` and `speeds`, a list with one object per
-    speed.
+    """Return the JSON object of a table.
 
-    Such an object has `speed`, `status` and the keys of `FIGURES` (SI and degrees; `frequency` only
-    if the cable strums). Its `warnings` follow or, without an equilibrium, `message` and `advice`.
+    The keys are `calm`, `name`, `type` and `speeds`, a list with one object per speed. Such an
+    object has `speed`, `status` and the keys of `FIGURES` (SI and degrees; `frequency` only if the
+    cable strums). Its `warnings` follow or, without an equilibrium, `message` and `advice`.
     """
     return {
         "calm": __version__,

@@ -34,9 +34,7 @@ class Errors(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Number of nodes of a recorded shape, number of its elements off the seabed, and whether it
-    has a touchdown.
-    """
+    """Numbers of nodes and of suspended elements of a shape, and whether it has a touchdown."""
 
     nodes: int
     hanging: int
@@ -170,8 +168,9 @@ def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int
 
 
 def fill_between(record: Record, first: int, last: int) -> None:
-    """Correct the nodes between two extrapolated nodes, interpolating the correction along the
-    line.
+    """Correct the nodes between two extrapolated nodes.
+
+    The correction is interpolated along the line.
     """
     length = distance = 0.0
     for m in range(first + 1, last + 1):

@@ -138,8 +138,9 @@ def amplification(solution: Solution) -> Floats:
 
 
 def flow_across(solution: Solution) -> Floats:
-    """Return the speed (k,) of the current normal to every element [m/s]; 0 for an element without
-    length.
+    """Return the speed (k,) of the current normal to every element [m/s].
+
+    It is 0 for an element without length.
     """
     chord = np.diff(solution.position, axis=0)
     size = sizes(chord)

@@ -1,5 +1,6 @@
-"""Fit of the length of a piece, so that a mooring has a given top depth in still water, or a towed
-body a given depth.
+"""Fit of the length of a piece to a wanted depth.
+
+This is the top depth of a mooring in still water, or the depth of a towed body.
 """
 
 from dataclasses import replace
@@ -26,8 +27,9 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
-    """Find the unstretched length [m] of a piece for which the free end has a given depth in still
-    water.
+    """Find the unstretched length [m] of a piece for a wanted depth of the free end.
+
+    The line is in still water.
 
     Parameters
     ----------

@@ -93,8 +93,9 @@ class LeastChange:
         return below, above
 
     def _outward(self, start: float) -> float | None:
-        """Return the first value that meets the condition, in growing steps on both sides of the
-        start.
+        """Return the first value that meets the condition.
+
+        Values are tried in growing steps on both sides of the start.
         """
         upward = [start + step for step in self._steps(self.high - start)]
         downward = [start - step for step in self._steps(start - self.low)]
@@ -112,8 +113,9 @@ class LeastChange:
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
     def _around_the_least(self) -> float | None:
-        """Search around the smallest excess, by repeatedly halving the wider of the two adjacent
-        gaps.
+        """Search around the smallest excess.
+
+        The wider of the two adjacent gaps is halved repeatedly.
 
         This finds a dip between two steps, and solutions next to values without a computable
         excess.

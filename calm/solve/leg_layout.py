@@ -111,9 +111,7 @@ class LaidLeg:
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number over diameter at the end of the leg [1/m], and the current there
-        (`LegRow`).
-        """
+        """Strouhal number over diameter [1/m], and the current, at the leg's end (see `LegRow`)."""
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -157,8 +155,7 @@ class LaidLeg:
 
     @property
     def surface_range(self) -> float:
-        """Range of the unknown over which a surface float goes from immersed to out of the water
-        [m].
+        """Range of the unknown over which a surface float rises out of the water [m].
 
         The range equals the leg's length, so that a Newton step does not skip it.
         """

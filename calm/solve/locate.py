@@ -312,11 +312,10 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest root with a float at the surface, for a line that also closes below the
-    surface.
+    """Find the highest root with a float at the surface, if the line also closes below it.
 
-    This happens if the float has less drag at the surface, or if the wind acts against the current.
-    If a march stops, the root is `found` but its miss is NaN.
+    Both are possible if the float has less drag at the surface, or if the wind acts against the
+    current. If a march stops, the root is `found` but its miss is NaN.
 
     Parameters
     ----------

@@ -169,8 +169,7 @@ class NetSearch:
         return trace
 
     def solution(self, x: Floats) -> NetSolution:
-        """Return the equilibrium settled last, after the audit of every leg and of the forces at
-        every node.
+        """Return the equilibrium settled last, after the audit of every leg and every node.
 
         Raise NoEquilibrium if the solution fails a check.
         """
@@ -362,8 +361,7 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Return the nodes of a leg, and its used fraction of buoyancy, if one leg has another
-        line.
+        """Return the nodes and the used fraction of buoyancy of a leg, if one leg has another line.
 
         Two Newton steps with the slopes of the original net leave an error of third order in the
         change. Raise NoEquilibrium if a march stops.

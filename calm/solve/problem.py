@@ -186,8 +186,7 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """The unknown that closes a line: the depth of its free end, or the used share of a float's
-    buoyancy.
+    """Unknown that closes a line: depth of its free end, or used share of a float's buoyancy.
 
     Attributes
     ----------

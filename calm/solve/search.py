@@ -112,11 +112,10 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
 
 
 def rising(search: Search, referee: Referee) -> FoundShape:
-    """Find the shape of a line in a batch that may touch the seabed but clearly rises from its
-    anchor.
+    """Find the shape of a line that may touch the seabed but clearly rises from its anchor.
 
-    A line that descends anywhere, such as a line with a sag, is rejected here, since it could also
-    lie on the seabed.
+    The line belongs to a batch. A line that descends anywhere, such as a line with a sag, is
+    rejected here, since it could also lie on the seabed.
     """
     problem = search.problem
     lying, start = start_of(search, True), start_of(search, False)
@@ -286,8 +285,9 @@ def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundS
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
-    """Return the relative force imbalance and the moment residual of the shape in the record
-    `FINE`.
+    """Return two residuals of the shape in the record `FINE`.
+
+    They are the relative force imbalance and the moment residual.
     """
     record, elements = problem.work.records[FINE], problem.work.elements
     shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)

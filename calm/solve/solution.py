@@ -263,8 +263,9 @@ def standing_lift(line: Line, water: Water) -> Floats:
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
-    """Return the net force (n,) of every piece, without its clamps, in surface water [N], positive
-    up.
+    """Return the net force (n,) of every piece in surface water [N], positive up.
+
+    The clamps of the pieces are not included.
     """
     excess = float(water.density_at(np.zeros(()))) - REFERENCE_DENSITY
     return line.buoyancy + excess * water.gravity * line.volume

@@ -157,8 +157,7 @@ def between(row: Sequence[float], k: int, share: float) -> float:
 
 
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
-    """Return the approximate knockdown [m] of a line, assuming that the current inclines it
-    slightly.
+    """Return the approximate knockdown [m] of a line that the current inclines slightly.
 
     The inclination is the drag on the part above divided by its tension, and the knockdown grows
     with the square of the inclination. In a uniform current it is thus proportional to the fourth

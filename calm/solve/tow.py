@@ -205,9 +205,7 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
 
 
 def _lacking(net: NetSearch) -> bool:
-    """Return whether the strumming frequency did not converge to the shedding frequency at the
-    ship.
-    """
+    """Return whether the strumming and shedding frequencies at the ship still differ."""
     return bool(abs(net.net.state[0][LACKING]) > SAME * net.net.state[0][FREQUENCY])
 
 

@@ -45,8 +45,9 @@ class Offer:
 
 
 def single(view: View) -> LegResult | None:
-    """Return the solution of a mooring with a single line; None for a tow, a net, or no
-    equilibrium.
+    """Return the solution of a mooring with a single line.
+
+    Return None for a tow, a net, or a mooring without equilibrium.
     """
     result = view.result
     return None if result is None or result.several or result.towed else result.leg

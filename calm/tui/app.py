@@ -119,11 +119,11 @@ class BuildApp(App[int]):
             self._wait_for_listeners(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """Return the widgets that a key press may affect: the focused widget, its ancestors, and
-        the screen.
+        """Return the widgets that a key press may affect.
 
-        Screens below are excluded, as each message would repaint the whole screen. Lists are
-        included, as they post their selection without having the focus.
+        They are the focused widget, its ancestors, and the screen. Screens below are excluded, as
+        each message would repaint the whole screen. Lists are included, as they post their
+        selection without having the focus.
         """
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
         lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
@@ -149,8 +149,9 @@ class BuildApp(App[int]):
     # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
-        """Return the line screen as the lowest screen, since a screen below it would be painted,
-        too.
+        """Return the line screen as the lowest screen.
+
+        Any screen below it would be painted, too.
         """
         return self.builder
 
@@ -178,8 +179,9 @@ class BuildApp(App[int]):
             self.tell(f"{self.session.name} is open elsewhere{who}, {what}", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Yield the command to choose colours; the other commands of Textual have keys in the
-        builder.
+        """Yield the command to choose colours.
+
+        The other commands of Textual have keys in the builder.
         """
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 

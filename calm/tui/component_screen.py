@@ -172,9 +172,7 @@ def form_fields(kind: str) -> list[FormField]:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Return a check for the id of a new component, which must differ from the ids `own` in the
-    file.
-    """
+    """Return a check for the id of a new component, which must not be among the ids `own`."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()

@@ -83,8 +83,9 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Return the model in a type annotation; None if there is none, or a choice between several
-    types.
+    """Return the model in a type annotation.
+
+    Return None if there is no model, or a choice between several types.
     """
     members = _members(annotation)
     return members[0] if len(members) == 1 and _is_model(members[0]) else None

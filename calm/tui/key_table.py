@@ -1,5 +1,6 @@
-"""All actions of the builder with their keys, from which bindings, key bar, help and palette
-derive.
+"""All actions of the builder with their keys.
+
+Key bindings, key bar, help and command palette derive from this table.
 """
 
 from collections.abc import Iterable

@@ -157,8 +157,9 @@ class Pictures(Vertical):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
-        """Show the tabs: the current tab in reverse video, and a cursor if the picture has the
-        focus.
+        """Show the tabs, with the current tab in reverse video.
+
+        A cursor precedes it if the picture has the focus.
         """
         parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):

@@ -221,10 +221,10 @@ _ACCEPT_HINT = "Enter accepts"
 
 
 class FormChoice(Cycle):
-    """Selector of the form of a property; arrows show other forms, and Enter accepts the form
-    shown.
+    """Selector of the form of a property.
 
-    If the focus leaves without Enter, the current form is shown again.
+    The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
+    Enter, the current form is shown again.
     """
 
     BINDINGS = key_table.bindings("given")
