@@ -65,10 +65,12 @@ class Adjustment:
 
     @property
     def unit(self) -> str:
+        """SI unit of the parameter."""
         return DIMENSIONS[self.dimension].unit
 
     @property
     def labels(self) -> tuple[str, ...]:
+        """Labels of the parts that the parameter changes."""
         return tuple(part.label for part in self.parts)
 
 

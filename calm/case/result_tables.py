@@ -83,6 +83,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def names(cls) -> list[str]:
+        """Return the names of the columns, in table order."""
         return [each.name for each in fields(cls.record)]
 
     @classmethod
@@ -148,6 +149,7 @@ class ColumnTable(Columnar, Generic[Row]):
         return tuple(map(self.record, *plain))
 
     def head(self, count: int) -> Self:
+        """Return the first rows."""
         return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
 
     def with_row(self, row: Row) -> Self:
@@ -202,6 +204,7 @@ class LineEnd(NamedTuple):
 
     @property
     def height(self) -> float:
+        """Height of the anchor [m]."""
         return self.piece.length or 0.0
 
 
@@ -389,6 +392,7 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
+        """Place of the piece in the file."""
         return self.part.place
 
     @property
@@ -462,6 +466,7 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
+        """Place of the clamp in the file."""
         return self.part.place
 
     @property

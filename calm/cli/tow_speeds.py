@@ -41,11 +41,13 @@ class TabulatedTow:
         return ExitCode.NO_EQUILIBRIUM if failed else ExitCode.DONE
 
     def document(self) -> dict[str, Any]:
+        """The JSON object."""
         from calm.report.tabulation import to_document
 
         return to_document(self.tabulation)
 
     def parts(self) -> list[TerminalPart]:
+        """The table, a row for each speed."""
         from calm.report.tabulation import tabulation_part
 
         return [tabulation_part(self.tabulation)]

@@ -126,6 +126,7 @@ class PartLoad:
     along: float = 0.0
 
     def merge(self, other: PartLoad) -> None:
+        """Add another sum."""
         self.names += other.names
         self.net += other.net
         self.mass += other.mass

@@ -154,6 +154,7 @@ class _Entry:
 
     @property
     def is_anchor(self) -> bool:
+        """Whether the entry is an anchor."""
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:

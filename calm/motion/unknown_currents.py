@@ -208,6 +208,7 @@ class _Fit:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
+        """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.read, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
@@ -215,6 +216,7 @@ class _Fit:
         return replace(at, logs=logs, depth=self.moments.depths(self.read, logs))
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
+        """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
         return posterior(one, at, self.law.covariance, common or self.common, still)
 

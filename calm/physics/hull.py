@@ -137,6 +137,7 @@ class Riding(NamedTuple):
 
     @property
     def push(self) -> tuple[float, float]:
+        """East and north component of the wind force [N]."""
         return self.push_east, self.push_north
 
 

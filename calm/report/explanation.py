@@ -87,6 +87,7 @@ class _Shown(NamedTuple):
         return max(usual, min(2 - floor(log10(abs(whole * self.scale))), 4))
 
     def text(self, figures: Figures) -> str:
+        """Format the value."""
         value = getattr(figures, self.name)
         return f"{value * self.scale:z.{self.decimals(value)}f}"
 

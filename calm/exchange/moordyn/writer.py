@@ -97,6 +97,7 @@ class _System:
         self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
+        """Return the rows of the point table and of the line table."""
         points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
         for number, point in enumerate(self.points, 1):
             load, (x, y, depth) = point.load, point.place

@@ -74,6 +74,7 @@ class ListRow:
 
     @property
     def is_anchor(self) -> bool:
+        """Whether the component of the row is an anchor."""
         anchor = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
         return anchor is not None or is_called(self.name, "anchor")
 
