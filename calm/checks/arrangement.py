@@ -144,9 +144,9 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
         beside = turning or ends[0][0]
         ending = f"{piece.label} is not torque-balanced and ends at {beside.label}"
         if turning is not None:
-            yield verdict_on(piece, State.PASS, f"{ending}, with a swivel between them.")
+            yield verdict_on(piece, State.PASS, f"{ending}, but there is a swivel between them.")
         else:
-            message = f"{ending}, which tilts in the current, without a swivel between them."
+            message = f"{ending}, which tilts in the current, and there is no swivel between them."
             remedy = "Insert a swivel there, or use wire that is `torque_balanced`."
             yield verdict_on(piece, State.WARN, message, remedy)
 

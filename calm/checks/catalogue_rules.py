@@ -142,7 +142,7 @@ def _sources(component: Component | Outline) -> Iterator[str]:
     if not component.source:
         yield _NO_SOURCE
     if absent := [name for name in component.sources or () if name not in given]:
-        yield f"has a source of {_listed(absent)} but no value"
+        yield f"has a source for {_listed(absent)} but no value"
     searched = component.searched or ()
     if found := [name for name in searched if name in given]:
         yield f"lists {_listed(found)} under `searched`, but has a value"
@@ -157,14 +157,14 @@ def impossible(component: Component) -> Iterator[str]:
     yield from heavy
     dense = mass is not None and volume is not None and mass > ROUNDING * LEAD_DENSITY * volume
     if dense and not heavy:
-        yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
+        yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, which is denser than lead"
     net = component.net_buoyancy
     if component.role == "float" and net < 0.0:
         yield f"has `role: float` but weighs {say('load', -net)} in water"
     if mass is not None and mass * STANDARD_GRAVITY < LIGHTEST_FLOAT * net:
         yield f"weighs {mass:.4g} kg with a buoyancy of {say('load', net)}; no float is so light"
     if rating is not None and rating > DEEPEST_WATER:
-        yield f"has a depth rating of {rating:.5g} m; the deepest sea has {DEEPEST_WATER:g} m"
+        yield f"has a depth rating of {rating:.5g} m; the deepest sea is {DEEPEST_WATER:g} m deep"
     if isinstance(component, Cable):
         yield from _of_a_rope(component)
     elif isinstance(component, Chain) and component.density is None:

@@ -51,7 +51,7 @@ def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[m
     for note in design.notes:
         page.remark(one_line(note))
     if design.dropped:
-        page.add("# Left out:")
+        page.add("# Omitted:")
         for remark in design.dropped:
             page.remark(f"- {one_line(str(remark))}")
     page.add()

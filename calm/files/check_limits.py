@@ -159,7 +159,7 @@ class Checks(definition.Model):
     )
     accept: tuple[AcceptKeys, ...] = definition.described(
         "findings that this design accepts, each with its reason",
-        [{"rule": "strength", "component": "glass *", "reason": "hung on chain"}],
+        [{"rule": "strength", "component": "glass *", "reason": "the chain carries the load"}],
         default=(),
     )
 
@@ -260,7 +260,7 @@ class AcceptKeys(definition.Model):
         definition.described("rule of the design check", "knockdown")
     )
     reason: Reason = definition.described(
-        "reason for accepting the finding", "no load is published; hung on chain"
+        "reason for accepting the finding", "no load is published; the chain carries the load"
     )
     component: definition.Text | None = definition.optional(
         "label of the line, or a pattern of labels; by default all", "glass *"

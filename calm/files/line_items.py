@@ -158,7 +158,7 @@ class LineReader:
         elif "length_at" in item.data:
             length, load = self._measured(item, component)
         else:
-            need = "a cable or chain needs it"
+            need = "every cable or chain needs a length"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
             message = (
@@ -195,7 +195,7 @@ class LineReader:
         """Return the unstretched length [m] of a cable measured under a load, and the load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
-            item.refuse(("length_at",), f"`length_at` must be as `{example}`")
+            item.refuse(("length_at",), f"`length_at` must have the form `{example}`")
             return math.nan, 0.0
         measured = validate(item_keys.LengthAt, item.child("length_at"))
         if measured is None:
@@ -214,12 +214,12 @@ class LineReader:
         if self._towed:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
         if foreign in item.data:
-            message = f"`{foreign}` belongs to {home}; here it is `{key}`"
+            message = f"`{foreign}` is only for {home}; use `{key}` here"
             item.refuse((foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
             # depths count from the surface; a tow in air may end above it
             kind = QuantityField("length") if self._in_air else LENGTH
-            return self._quantity(item, key, kind, "`length: fit` needs it")
+            return self._quantity(item, key, kind, "`length: fit` needs a depth")
         if key in item.data:
             item.refuse((key,), f"`{key}` is only for `length: fit`", key=True)
         return None

@@ -76,7 +76,9 @@ def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
         except (TypeError, ValueError):
             at = 0.0
         if not 0.0 < at < inf:
-            raise ValueError(f"`{key}` is no angular frequency in rad/s, such as `0.5: [1, 0 deg]`")
+            raise ValueError(
+                f"`{key}` is not an angular frequency in rad/s, such as `0.5: [1, 0 deg]`"
+            )
         if not isinstance(row, list) or len(row) not in (2, 4):
             raise ValueError(
                 "a row has two figures, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
@@ -176,7 +178,7 @@ class Rigid(definition.Definition):
             if abs(self.buoyancy - computed) > definition.DISAGREEMENT * largest:
                 raise ValueError(
                     f"`buoyancy` is {self.buoyancy:g} N but `mass` and `volume` give "
-                    f"{computed:.5g} N, more than 1 % apart; leave one of the three out"
+                    f"{computed:.5g} N, more than 1 % apart; remove one of the three"
                 )
         definition.refuse_weight_above_mass(self.mass, self.net_buoyancy)
         if isinstance(self.hull, Displacement):

@@ -166,7 +166,7 @@ def read_series(
             continue
         for name, series in mine.items():
             if label and len(series) > len({one.below for one in series}):
-                raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` names one")
+                raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` is for one")
             found[name] += [replace(one, label=label or one.label) for one in series]
     if problems:
         raise InputError(problems)
@@ -380,8 +380,8 @@ class _SeriesFile:
             return None
         if current.magnetic:
             raise UnreadableError(
-                f"`{current.names[-1]}` is relative to magnetic north; turn it to true north "
-                "before it is gridded"
+                f"`{current.names[-1]}` is relative to magnetic north; rotate it to true north "
+                "before you grid it"
             )
         return current
 

@@ -155,7 +155,7 @@ def choose_profiles(
     again = np.flatnonzero(times[1:] == times[:-1])
     if len(again):
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
-        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
+        message = f"has two profiles of {time_text(times[again[0]])}{more}; remove one of them"
         raise refused(path, message)
     start, stop = period or (None, None)
     first = 0 if start is None else int(np.searchsorted(times, start, "left"))
@@ -256,8 +256,8 @@ def made_record() -> bytes:
         },
         {
             "Conventions": "CF-1.11",
-            "title": "A made record of currents: a tide, a mean flow and a storm surge",
-            "comment": "Made by a formula, not measured.",
+            "title": "An artificial record of currents: a tide, a mean flow and a storm surge",
+            "comment": "Computed from a formula, not measured.",
         },
     )
     dataset["time"].attrs["calendar"] = "standard"

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 _BARE = "Instruments without a pressure: depths estimated, with the 95 % band"
-_DEPTHS = "Depths measured (black), estimated (blue, 95 % band), by the currents alone (orange)"
+_DEPTHS = "Depths measured (black), estimated (blue, 95 % band), from the currents alone (orange)"
 _FALSE = "Times when a current is probably wrong"
 _WHOLE = "Depths of all instruments, with 95 % bands; hidden ones and those without pressure dashed"
 _ASSUMED = (
@@ -206,7 +206,7 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """Tabulate the common factors with their intervals."""
     rows = [
-        (TITLES[name] + (": not drag, see below" if no_drag(name, value) else ""),
+        (TITLES[name] + (": not a plausible drag, see below" if no_drag(name, value) else ""),
          f"{value:.3f}", f"{low:.3f}–{high:.3f}")
         for name, (value, low, high) in factors.items()
     ]  # fmt: skip

@@ -287,7 +287,9 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
     """Diagnose why a tow does not close near a rough root; `last` is the depth tried last [m]."""
     net, nearly_out = rough.net, LEAVING_DEPTH * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
-    failure = Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
+    failure = Status.NOT_CONVERGED.because(
+        "No exact equilibrium was found near the approximate shape."
+    )
     if stopped != GOES_ON:
         failure = march_stopped(stopped)
     elif lacking:

@@ -141,7 +141,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
         done = calm("batch", "m.yaml", "--currents", f"{name if more else 'record'}.csv",
                     "-o", f"{name}.nc", *more)  # fmt: skip
         assert done.code == 0, done.err
-    assert "`u` and `v` were relative to magnetic north, turned by 90°" in done.err
+    assert "`u` and `v` were relative to magnetic north, and were rotated by 90°" in done.err
     true, other = (
         xarray.load_dataset(folder / f"{name}.nc", engine="h5netcdf") for name in ("r", "magnetic")
     )

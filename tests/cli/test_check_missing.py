@@ -59,7 +59,7 @@ def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, un
     assert (
         "    depth_rating:  # e.g. 2000 m: maximum depth of use\n      # needed for depth rating\n"
     ) in done.out
-    assert "working_load:  # e.g. 20 kN: load it may carry in use, or `breaking_load`" in done.out
+    assert "working_load:  # e.g. 20 kN: maximum load in use, or `breaking_load`" in done.out
     assert "is estimated: at least 10 N, probably 9.00 kN (its chain)\n" in done.out
 
 

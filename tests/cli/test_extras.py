@@ -184,7 +184,7 @@ def test_the_extras_of_the_package_hold_the_libraries_that_are_named():
     ("name", "advice"),
     [
         ("xarray.core", "this needs xarray: in CALM's checkout, pip install '.[records]'"),
-        ("scipy", "this needs scipy, which is not installed: pip install scipy"),
+        ("scipy", "scipy is not installed; run pip install scipy"),
         ("calm.lost", None),
         (None, None),
     ],

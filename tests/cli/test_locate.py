@@ -299,11 +299,11 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "position 0, 0 is a fill value",
             "is a fill value; leave the cell blank",
             "the row has 2 values, 3 are needed",
-            "has 60 minutes or seconds, or more",
+            "has minutes or seconds of 60 or more",
             "is no number",
             "must be above 0",
             "km from the others",
-            "farther than a transponder replies",
+            "beyond the reach of a transponder",
         ],
         strict=True,
     ):

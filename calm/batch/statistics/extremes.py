@@ -146,7 +146,7 @@ def _censored(statuses: Mapping[str, int]) -> str:
             ended[ending_of(status)] += count
     outcomes = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
     return outcomes and (
-        f"of the profiles with a current {outcomes}: the largest values may be among these, and "
+        f"of the profiles with a current, {outcomes}; the largest values may be among these, and "
         "levels from the remaining profiles would be too low"
     )
 
@@ -155,7 +155,7 @@ def _unfit(time: Times, values: Column) -> str:
     """Return the reason why no distribution can be fitted, or an empty string."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
-        return f"there are {count} values"
+        return f"the number of values is {count}, too few"
     if not bool((time[1:] > time[:-1]).all()):
         return "the times do not increase"
     if np.fmax.reduce(values) == np.fmin.reduce(values):

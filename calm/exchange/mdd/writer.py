@@ -66,7 +66,7 @@ def write_mdd(exported: ExportedDesign) -> Exported:
             "buoyancy; its Cd gives the same drag as in CALM in this current"
         )
     losses = design.losses(lost)
-    variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *losses])
+    variables["lost"] = _texts([f"{design.name}, exported by CALM without:", *losses])
     content = io.BytesIO()
     savemat(content, variables, format="5", oned_as="row")
     return Exported(content.getvalue(), losses)

@@ -204,7 +204,7 @@ def test_a_fit_at_the_bound_of_the_search_is_refused():
     values = np.random.default_rng(13).uniform(size=len(time))
     _, pot = return_levels(time, values, {})
     assert isinstance(pot, LevelsRefused)
-    assert "a bound of the search" in pot.reason
+    assert "at the limit of the search" in pot.reason
 
 
 @pytest.mark.parametrize("searches", [0, 1])

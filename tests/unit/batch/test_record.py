@@ -121,7 +121,7 @@ def test_a_place_that_drifts_is_told(tmp_path: Path) -> None:
     with opened(path) as record:
         # 0.6 degrees of latitude are 66.7 km
         assert record.notes[0] == (
-            "its place changes with time, by up to 67 km; all profiles are taken"
+            "its position changes with time, by up to 67 km; all profiles are used"
         )
 
 
@@ -281,7 +281,7 @@ def test_a_block_that_is_damaged_names_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["nowhere.nc", "folder"])
 def test_no_record_at_all(tmp_path: Path, name: str) -> None:
     (tmp_path / "folder").mkdir()
-    with pytest.raises(InputError, match=r"no such file|is a folder, and not a zarr store"):
+    with pytest.raises(InputError, match=r"no such file|is a folder but not a zarr store"):
         opened(tmp_path / name)
 
 

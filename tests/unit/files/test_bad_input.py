@@ -159,7 +159,7 @@ ONE_MISTAKE = {
     ),
     "negative speed": (
         changed("0.35", "-0.35"),
-        (8, 15, "`speed` -0.35 m/s is negative; turn `toward`"),
+        (8, 15, "`speed` -0.35 m/s is negative; reverse `toward` instead"),
     ),
     "row too short": (
         changed("[200, 0.35, 80]", "[200, 0.35]"),
@@ -190,7 +190,7 @@ ONE_MISTAKE = {
     ),
     "cable without a length": (
         changed("length: 480 m, ", ""),
-        (11, 5, "`length` is missing: a cable or chain needs it"),
+        (11, 5, "`length` is missing: every cable or chain needs a length"),
     ),
     "clamp beyond its piece": (
         changed("at: 20 m", "at: 481 m"),
@@ -304,7 +304,12 @@ ONE_MISTAKE = {
     "elongation without breaking load": (
         GOOD + "components:\n  own: {kind: cable, diameter: 8 mm, weight: 1 N/m, "
         "elongation: [[0.1, 0.02]]}\n",
-        (15, 8, "`elongation` needs `breaking_load`: its loads are shares of that"),
+        (
+            15,
+            8,
+            "`elongation` needs `breaking_load`, because its loads are fractions of the breaking "
+            "load",
+        ),
     ),
     "elongation beside stiffness": (
         changed("length: 480 m", "length: 480 m, stiffness: 2 MN, elongation: [[0.1, 0.02]]"),
@@ -324,7 +329,7 @@ ONE_MISTAKE = {
     ),
     "elongation of loads that do not grow": (
         changed("length: 480 m", "length: 480 m, elongation: [[0.2, 0.02], [10 %, 0.03]]"),
-        (11, 47, "`elongation`: point 2: the load 0.1 does not grow"),
+        (11, 47, "`elongation`: point 2: the load 0.1 is not above that of the point before"),
     ),
     "elongation at no load": (
         changed("length: 480 m", "length: 480 m, elongation: [[0, 0.02], [0.2, 0.04]]"),
@@ -620,7 +625,9 @@ def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "large.yaml"
     with path.open("wb") as file:
         file.truncate(100_000_000)
-    with pytest.raises(InputError, match=r"large.yaml: is 100.0 MB; more than 1 MB is not read"):
+    with pytest.raises(
+        InputError, match=r"large.yaml: has 100.0 MB; the largest size allowed is 1 MB"
+    ):
         read_mooring(path)
 
 

@@ -205,7 +205,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     attributes = {"units": "m", "positive": "down"}
     wide = profile().expand_dims(member=2)
     assert problem(wide, tmp_path).startswith(
-        "`uo` is not a single profile, but spreads over member (2), depth (3); it holds "
+        "`uo` is not a single profile; it has the dimensions member (2), depth (3); it holds "
     )
     unit = profile()
     unit["uo"].attrs["units"] = "kg"
@@ -265,7 +265,7 @@ def test_a_zarr_folder_is_a_file_too(read: Callable[..., MooringFile], tmp_path:
     text = GOOD[:start] + "  current: {file: current.zarr}\n" + GOOD[end:]
     assert read(text).environment.current.u == tuple(U)
     (tmp_path / "folder").mkdir()
-    with pytest.raises(InputError, match="folder: is a folder, and not a zarr store"):
+    with pytest.raises(InputError, match="folder: is a folder but not a zarr store"):
         read(text.replace("current.zarr", "folder"))
 
 
