@@ -42,9 +42,9 @@ def batch(
     """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
 
     Each profile replaces the current of the file. The result has every
-    component and every clamped instrument at every time; a profile without
-    equilibrium is NaN, with its status. Statistics are printed, and written as
-    RESULT.summary.json and .html.
+    component and every clamped instrument at every time. A profile without
+    equilibrium has a status that says why, and NaN for its values. Statistics
+    are printed, and written as RESULT.summary.json and .html.
 
     The result is written completely or not at all; an interrupted run starts again from the
     beginning.

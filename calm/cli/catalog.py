@@ -191,7 +191,7 @@ def add(
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     """Find impossible and missing values in a catalogue.
 
-    Impossible are, for example, a sphere with more buoyancy than its volume
+    Examples of impossible values are a sphere with more buoyancy than its volume
     allows, a rope heavier than a solid bar of its diameter, and a cable stiffer
     than steel. Values without a source are findings, too. The exit code is 1 if
     there is a finding.

@@ -40,9 +40,9 @@ def grid(
     depths
         A result of calm motion.
     values
-        NetCDF files of instruments, by label, serial number or nominal depth;
-        files of one instrument as LABEL=FILE, if they do not say which; or
-        folders of files.
+        NetCDF files of instruments, which are matched by label, serial number or
+        nominal depth; LABEL=FILE for a file of one instrument that has none of
+        these; or folders of files.
     output
         The gridded file, .nc.
     levels
@@ -56,7 +56,8 @@ def grid(
     method
         depth-time, or depth, which treats each time separately.
     flags
-        Quality flags of the values that count as measured; 8 never does.
+        Quality flags of the values that count as measured; 8, interpolated, is not
+        allowed.
     report
         Write a page and a PDF, grid.html and grid.pdf, in this folder.
     json

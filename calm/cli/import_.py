@@ -33,10 +33,11 @@ def import_(
 ) -> ExitCode:
     """Make mooring files from designs of other programs.
 
-    The program is recognised from the content of the file. All values come
-    from the file. Guesses are marked as comments on their lines, and reported
-    together with omissions. A file that CALM cannot represent is rejected
-    with the reason, and nothing is written.
+    The program is recognised from the content of the file, and the values are
+    those of the file. If the file lacks a value, CALM guesses it, marks the
+    guess with a comment on its line, and reports it. Omissions are reported,
+    too. A file that CALM cannot represent is rejected with the reason, and
+    nothing is written.
 
     Parameters
     ----------

@@ -60,11 +60,11 @@ def motion(
     ----------
     pressures
         Pressures of sensors on the line, one file or more: NetCDF or CSV with their
-        labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.
+        labels; a file of one sensor may be LABEL=FILE, also in RODB or Sea-Bird's .cnv.
     output
         The result, .nc.
     currents
-        Records of the current, one or more: NetCDF, zarr or CSV; one of a single meter
+        Records of the current, one or more: NetCDF, zarr or CSV; a file of one meter
         may be LABEL=FILE.
     match
         How sensors are found on the line: by label, or by nominal height or depth.
@@ -91,8 +91,8 @@ def motion(
         A NetCDF file of instruments, or a folder of files: OUTPUT is then a
         copy of it with depths, their deviations and flags added (`depth` of
         several instruments, `DEPTH` of one), and the result itself is written
-        beside it, with a name ending in .motion.nc. Found by label, serial
-        number or nominal depth.
+        next to it, with a name ending in .motion.nc. Instruments are matched by
+        label, serial number or nominal depth.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json

@@ -140,8 +140,8 @@ RULES = {
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
         "`fishbite_depth`, 1000 m: a warning",
-        "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more, far "
-        "from the shores; the limits of water depth and latitude are defaults of CALM",
+        "Berteaux, Prindle & May, OCEANS '87: fish bite ropes from the surface to 1000 m and "
+        "deeper, far from the shores; the limits of water depth and latitude are defaults of CALM",
         "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -171,8 +171,8 @@ RULES = {
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
-        "Practice of mooring groups, 50 to 100 kgf above the release; no value is published, so "
-        "the limits are defaults of CALM"),
+        "Mooring groups keep 50 to 100 kgf above the release; no value is published, so the "
+        "limits are defaults of CALM"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
         "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "

@@ -256,7 +256,7 @@ def made_record() -> bytes:
         },
         {
             "Conventions": "CF-1.11",
-            "title": "An artificial record of currents: a tide, a mean flow and a storm surge",
+            "title": "A synthetic record of currents: a tide, a mean flow and a storm surge",
             "comment": "Computed from a formula, not measured.",
         },
     )

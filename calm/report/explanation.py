@@ -36,7 +36,7 @@ _SHARES = (
     "Shares: all drag forces are increased together from zero to their full value, and each is "
     "attributed the change that its own increase causes. Drag is the horizontal force of the water."
 )
-_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are kept."
+_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are unchanged."
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:

@@ -144,7 +144,7 @@ REFUSED = {
         "1    rope       1        2 ", "1    rope       3        2 ", "a ring without a fixed point"
     ),
     "an unknown type": ("2    rope", "2    hemp", "`hemp` is not defined"),
-    "an unknown point": ("2        3        40", "2        7        40", "of this line is not a point"),
+    "an unknown point": ("2        3        40", "2        7        40", "line is not a point"),
     "no number": ("0.02    0.6", "wide    0.6", "`diameter` is `wide`"),
     "a body": (
         "---------------------- POINTS",
