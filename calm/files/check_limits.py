@@ -102,7 +102,7 @@ class Checks(definition.Model):
         "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
     )
     backup_margin: Annotated[float, _SHARE, Limit(_URI)] = definition.described(
-        "buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
+        "remaining buoyancy after any break, as a share of the weight lifted", 0.1, default=0.1
     )
     minimum_rise_speed: Annotated[float, _SPEED, Limit()] = definition.described(
         "speed of the ascent after release", "0.3 m/s", default=0.3
@@ -128,7 +128,7 @@ class Checks(definition.Model):
         "share of a surface float's buoyancy that must remain", 0.3, default=0.3
     )
     rating_margin: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "margin to keep to a depth rating", "100 m", default=100.0
+        "margin below a depth rating", "100 m", default=100.0
     )
     maximum_knockdown: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
         definition.optional("maximum knockdown of the top", "50 m")

@@ -36,9 +36,10 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 RULES = (
     "levels without a current or a depth are excluded from their profile",
     "levels above the surface are excluded",
-    "levels below the seabed are used where they have a value: the current at the seabed lies "
-    "between",
-    "between levels the current is linear in depth, beyond the first and the last it is constant",
+    "levels below the seabed are used if they have a value, to interpolate the current at the "
+    "seabed",
+    "the current is linear in depth between levels, and constant above the first and below the "
+    "last",
 )
 """Rules that apply to every record."""
 

@@ -318,8 +318,8 @@ def test_files_of_one_instrument_and_a_folder_of_them(calm, depths, folder):
     [
         ("0:20", "write FIRST:STEP:LAST"),
         ("deep", "write FIRST:STEP:LAST"),
-        ("100:-20:0", "does not go down"),
-        ("100:0:200", "does not go down"),
+        ("100:-20:0", "does not increase"),
+        ("100:0:200", "does not increase"),
         ("200,100", "must increase"),
         ("-50:10:50", "above the sea surface"),
         ("0:0.001:1000", "more than 5000 levels"),

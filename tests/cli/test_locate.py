@@ -271,9 +271,12 @@ def test_the_plot(calm, ranges, folder):
     assert calm("locate", ranges(), "--plot", "circles.svg").code == 0
     svg = (folder / "circles.svg").read_text(encoding="utf-8")
     words = words_of(svg)
-    assert {"all ranges, numbered by line of the file", "2", "7", "north of the anchor [m]"} <= set(
-        words
-    )
+    assert {
+        "all ranges, numbered by their lines in the file",
+        "2",
+        "7",
+        "north of the anchor [m]",
+    } <= set(words)
     assert_none_overlap(svg)
     circles = curves_of(svg, "#2b7bba") + curves_of(svg, "#999999")
     assert [dashed for _, dashed in circles] == [False] * 10 + [True] * 2  # the last is left out

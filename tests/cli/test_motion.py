@@ -234,7 +234,7 @@ def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given,
     values[:5] = 10.1
     for file, more in (("air.csv", ("--correct", "air")), (given("deck.csv", values=values), ())):
         done = calm(*COMMAND, "--pressures", file, *more, "-o", "e.nc")
-        assert done.code == 0 and "look absolute" not in done.err
+        assert done.code == 0 and "appear to be absolute" not in done.err
         assert (
             "so its pressures are absolute; the pressure of the air, 10.13 dbar" in done.err
         ) == (not more)
@@ -390,7 +390,7 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, own, truth, fold
     words = (*COMMAND, "--pressures", "p.csv", "--hold-out", "middle", "--report", "report")
     done = calm(*words, "--onto", "own.nc", "-o", "copy.nc")
     assert done.code == 0, done.err
-    assert "`elsewhere` is not a part of the line" in done.err
+    assert "`elsewhere` matches no part of the line" in done.err
     with xarray.open_dataset(folder / "copy.nc", engine="h5netcdf") as copy:
         assert (copy["temperature"].values == 4.5).all()
         off = copy["depth"].values[:, 0] - truth[1][:, 1]

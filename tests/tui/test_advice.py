@@ -111,7 +111,7 @@ def test_no_anchor_of_the_catalogue_may_hold():
     view = fully(heavy.replace("  - {use: weight}\n", ""))
     (offer,) = offers(view, CATALOGUE)
     assert "none in the catalogue is heavy enough" in offer.title
-    with pytest.raises(UsageError, match="Add one"):
+    with pytest.raises(UsageError, match="Define one"):
         offer.make(Draft(view.text))
 
 

@@ -105,7 +105,9 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
             return across, 0.0, part.kn / (_HALF_DENSITY * across * part.length)
         return part.area() / part.length, 0.0, 1.0
     if not isinstance(component, Cylinder):
-        lost.append("shapes of bodies: each is written as a sphere or cylinder of equal drag with Cd 1")
+        lost.append(
+            "shapes of bodies: each is written as a sphere or cylinder of equal drag with Cd 1"
+        )
     return 0.0, math.sqrt(4.0 * part.area() / math.pi), 1.0
 
 

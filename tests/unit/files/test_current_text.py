@@ -48,7 +48,7 @@ def test_headings_give_columns_units_and_the_way() -> None:
         ("depth m,speed m/s,toward deg,from deg\n0,1,90,270\n", "give `toward`, where the curre"),
         (
             "depth m,speed m/s,toward deg magnetic\n0,1,90\n",
-            "is relative to magnetic north; give the",
+            "is relative to magnetic north; set the",
         ),
         (
             "depth m,u m/s magnetic,v m/s\n0,1,1\n",

@@ -102,7 +102,9 @@ MAGNETIC = [
 
 @pytest.mark.parametrize("make", MAGNETIC)
 def test_magnetic_north_needs_a_declination(tmp_path: Path, make: Callable[[], xr.Dataset]) -> None:
-    assert "relative to magnetic north; give the `declination` there" in refusal(make(), tmp_path)
+    assert "relative to magnetic north; set the `declination` of the site" in refusal(
+        make(), tmp_path
+    )
     table, notices = read(make(), tmp_path, Terms(300.0, declination=30.0))
     true = read(make().drop_attrs().pipe(_as_true), tmp_path)[0]
     # turned clockwise by 30° by the law of a rotation

@@ -292,7 +292,7 @@ def test_mistakes_of_a_tow(towed: Towed, text: str, message: str) -> None:
     ("line", "message"),
     [
         ("depth_range: 1104 m", "must be two depths, at low and at high water: [98 m, 104 m]"),
-        ("depth_range: [1098 m, 1100 m, 1104 m]", "is two depths"),
+        ("depth_range: [1098 m, 1100 m, 1104 m]", "must be two depths"),
         (
             "depth_range: [1098, 1104 m]",
             "`depth_range: 1098` needs a unit; did you mean `depth_range: 1098 m`?",

@@ -138,7 +138,7 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has no times"):
         reader_of(path)(path)
     path.write_text(USE.replace("T:C:P", "T:C:X"))
-    with pytest.raises(InputError, match=r"holds no pressures: .* it holds TIME .* TEMP .* CNDC"):
+    with pytest.raises(InputError, match=r"has no pressures: .* it holds TIME .* TEMP .* CNDC"):
         read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
     path.write_text("time,a[dbar]\n2026-03-01,5\n")
     assert reader_of(path) is None

@@ -52,7 +52,10 @@ def test_a_swell_under_a_sea():
     solved = both.frequencies(64)
     assert solved[0] == pytest.approx(pi / 15.0)
     assert solved[-1] == pytest.approx(min(12.0 * 2.0 * pi / 7.0, 10.0))
-    for height, period, message in ((2.0, 6.0, "the longer"), (40.0, 14.0, "no sea is higher")):
+    for height, period, message in (
+        (2.0, 6.0, "a longer period"),
+        (40.0, 14.0, "no sea is higher"),
+    ):
         with pytest.raises(UsageError, match=message):
             sea_states.with_swell(sea, height, period)
 
