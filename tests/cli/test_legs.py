@@ -356,7 +356,7 @@ MISTAKES = {
     "bottom: {join: A}\n  second": ("bottom: {join: B}\n  second", "no other leg joins at `B`"),
     "top: {join: A}\n    bottom: free": ("bottom: free", "both ends are free"),
     "bottom: free": ("bottom: fre", "must be `free`, or one of"),
-    "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "exactly one of"),
+    "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "exactly one"),
     "      - {use: anchor-wheels-4}\n": ("", "`bottom` is missing"),
     "      - {use: release-ar861}\n": (
         "      - {use: anchor-wheels-1}\n", "is not the last item of its leg"),
