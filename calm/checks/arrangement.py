@@ -342,7 +342,7 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
     yield from _path_obstacles(part, wire)
     if component.drive_force is None:
-        message = f"The drive force of {part.label} is unknown; it may be too weak to climb."
+        message = f"The drive force of {part.label} is unknown, and may be too small to climb."
         yield unknown(part, message, "Set its `drive_force` and `speed`.", lacks="drive_force")
         return
     flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))

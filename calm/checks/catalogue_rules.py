@@ -179,7 +179,7 @@ def impossible(component: Component) -> Iterator[str]:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
             has = f"has a buoyancy of {say('load', net)}"
-            yield f"{has}; water of its size weighs {say('load', lift)}"
+            yield f"{has}; water of the same volume weighs only {say('load', lift)}"
         elif isinstance(component, Sphere) and 0.0 < net < LEAST_LIFT * lift:
             yield (
                 f"has a buoyancy of {say('load', net)}; a float with its diameter of "
@@ -188,23 +188,26 @@ def impossible(component: Component) -> Iterator[str]:
         elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
             yield (
                 f"has a mass of {mass:.4g} kg and a net buoyancy of {say('load', net)}: together "
-                f"they exceed the weight of water of its size, {say('load', lift)}"
+                f"they exceed the weight of the same volume of water, {say('load', lift)}"
             )
         elif volume is not None and volume > ROUNDING * envelope:
-            yield f"displaces {volume:.3g} m³, more than its size of {envelope:.3g} m³"
+            yield f"displaces {volume:.3g} m³, more than its outer volume of {envelope:.3g} m³"
     solid = materials.density_of(component.material)
     if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
         weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
         yield (
-            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; its material would "
-            f"weigh {say('load', weight)} there"
+            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; this mass of its "
+            f"material would weigh {say('load', weight)} in water"
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
         slowest, fastest = ANCHOR_SPEEDS
         if not slowest <= speed <= fastest:
             fault = "slow" if speed < slowest else "fast"
-            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {fault}"
+            yield (
+                f"would sink at {speed:.2g} m/s according to its weight and `kt`; no anchor is so "
+                f"{fault}"
+            )
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 
@@ -250,7 +253,8 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     ):
         yield (
             f"weighs {rope.mass:.4g} kg/m in air and {-net:.4g} N/m in water; the difference "
-            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of water of its diameter"
+            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of the water that it "
+            "displaces"
         )
     else:
         yield from density_out_of_bounds(rope)

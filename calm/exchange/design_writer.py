@@ -47,7 +47,7 @@ class _Page:
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
     """Write the mooring file of a design; return its text and the guesses in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
-    page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
+    page.remark(f"Imported from {of}, by CALM {__version__}, with the values of that file.")
     for note in design.notes:
         page.remark(one_line(note))
     if design.dropped:

@@ -30,7 +30,7 @@ ONE_LEG_ONLY = (
 )
 NET_SURE = (
     "single lines; for the effect of drag, buoyancy or current on a net, use `calm run --explain`, "
-    "or solve it with other values in a copy of its file or by `with_` in Python"
+    "or solve the net with other values, in a copy of its file or by `with_` in Python"
 )
 
 _Offset = Annotated[float, QuantityField("length")]

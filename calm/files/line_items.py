@@ -372,10 +372,12 @@ class LineReader:
             return None
         hidden = self._catalogue.hidden(use)
         if hidden:
-            notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
+            notice = f"{use}: the definition in {entry.place} overrides that in {hidden.place}"
             if entry.section.base is not None:
                 keys = ", ".join(f"`{key}`" for key in entry.replaces)
-                notice = f"{use}: {keys} of {entry.place} replaces that of {hidden.place}"
+                notice = (
+                    f"{use}: {entry.place} overrides {keys} of the definition in {hidden.place}"
+                )
             if entry.section.base is None or entry.replaces:
                 self._notices += [notice] * (notice not in self._notices)
         return entry

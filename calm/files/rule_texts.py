@@ -275,8 +275,8 @@ RULES = {
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "load",
-        "minimum net buoyancy of the part that remains connected to the release, over all breaks "
-        "and losses of a float considered (below)",
+        "minimum net buoyancy of the section with the release, over all breaks and float losses "
+        "that are considered (see below)",
         "the larger of `backup_margin`, 0.1, times the weight lifted and its drag at "
         "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
         "most 50 m above the release; a warning for a surface mooring without floats below its "

@@ -238,9 +238,9 @@ def torn(
         wrong[:, j] |= apart & (away[:, i] <= away[:, j])
     wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
     notes = [
-        f"{measured.label[j]}: readings farther from another sensor than the line between them is "
-        f"long were excluded: {wrong[:, j].sum()}, the first {depth[at, j]:.1f} m at "
-        f"{np.datetime_as_string(measured.time[at], 's')}"
+        f"{measured.label[j]}: readings that differ in depth from another sensor by more than the "
+        f"length of line between them were excluded: {wrong[:, j].sum()}, the first "
+        f"{depth[at, j]:.1f} m at {np.datetime_as_string(measured.time[at], 's')}"
         for j, at in enumerate(wrong.argmax(axis=0).tolist())
         if wrong[at, j]
     ]

@@ -268,7 +268,7 @@ def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
         count = dataset.sizes[instances]
         if whose.size != dataset.sizes[readings] or whose.max(initial=0.0) >= count:
             raise UnreadableError(
-                f"`{name}` does not fit its {count} instruments, which are counted from 0, and "
+                f"`{name}` must give one of its {count} instruments, numbered from 0, for each of "
                 f"{dataset.sizes[readings]} readings"
             )
         return [

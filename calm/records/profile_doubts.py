@@ -72,7 +72,8 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
     if len(depth) > 2 and at_the_bed and (np.diff(speed) > 0.0).all():
         yield (
             f"the current grows from {say('speed', float(speed[0]))} down to "
-            f"{say('speed', float(speed[-1]))} at the seabed: are the depths heights above it?"
+            f"{say('speed', float(speed[-1]))} at the seabed: are the depths really heights above "
+            "the seabed?"
         )
     yield from strength_doubts(depth, speed, water_depth)
 

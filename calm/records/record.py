@@ -118,9 +118,9 @@ def parse_place(text: str) -> Place:
         first, second = parts
         latitude, longitude = plain_degrees(first, "latitude"), plain_degrees(second, "longitude")
     except ValueError:
-        raise UsageError(f"`{text[:40]}` is not a place; write 48.3,-5.2") from None
+        raise UsageError(f"`{text[:40]}` is not a position; write 48.3,-5.2") from None
     if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):
-        raise UsageError(f"`{text[:40]}` is not a place; latitude comes first, then longitude")
+        raise UsageError(f"`{text[:40]}` is not a position; latitude must be first, then longitude")
     return latitude, longitude
 
 
@@ -144,7 +144,7 @@ def choose_profiles(
         No profile is in the period, or `every` is not positive.
     """
     if every < 1:
-        raise UsageError(f"every {every} profiles: at least one is needed")
+        raise UsageError(f"every {every} profiles is not possible; use a number of at least 1")
     if not len(times):
         raise refused(path, "has no times")
     notes = []

@@ -328,7 +328,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
         spectrum = data[names[0]]
         along = [str(each) for each in spectrum.dims if str(each).startswith("freq")]
         if not along or along[0] not in data.coords:
-            raise UnreadableError(f"{names[0]} has no dimension of frequencies with its values")
+            raise UnreadableError(f"{names[0]} has no frequency dimension with values")
         values = spectrum.transpose(along[0], ...)
         for name in [str(each) for each in spectrum.dims if str(each).startswith("dir")]:
             count, unit = data.sizes[name], str(spectrum.attrs.get("units", ""))
@@ -372,7 +372,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
         if share > 0.0:
             states.append(SeaState(height, period, sea.density, share / whole))
     if not problems and not states:
-        problems.append(Problem(str(path), 1, 1, "no sea has a share of the time"))
+        problems.append(Problem(str(path), 1, 1, "no sea has a share above 0"))
     counts = all(share == round(share) for share in shares)
     if not counts and min(abs(whole - 1.0), abs(whole / 100.0 - 1.0)) > SHARES:
         message = f"shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"

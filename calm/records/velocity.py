@@ -230,8 +230,8 @@ def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
             many = len({*variable.to_numpy().reshape(-1).tolist()})
         if many > 1:
             raise UnreadableError(
-                f"`{name}` has {many} instruments one after the other (`{index}` says whose a "
-                "reading is): give one file for each instrument"
+                f"`{name}` has {many} instruments one after the other (`{index}` gives the "
+                "instrument of each reading): give one file for each instrument"
             )
 
 

@@ -221,8 +221,8 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         length = float(line.length.sum())
         radius = watch_circle_radius(length, water.depth - line.anchor_height)
         return Status.SLACK.because(
-            f"There is no current and the line, {length:.1f} m unstretched, is longer than "
-            "the water is deep: it has no unique shape. Its watch circle has a radius of "
+            f"There is no current and the line, {length:.1f} m unstretched, is longer than the "
+            "water depth, so it has no unique shape. Its watch circle has a radius of "
             f"{radius:.{0 if radius >= 100.0 else 1}f} m."
         )
     if ending == solution.TOO_MANY_AFLOAT:

@@ -254,7 +254,7 @@ def test_ragged_arrays_of_instruments_are_split(calm, depths, make):
     run = calm("grid", "depths.nc", "all.nc", "-o", "out.nc", "--levels", "100:25:150")
     if index[1][0] == 1:  # counted from 1
         assert run.code == 2
-        assert "`INDEX` does not fit its 2 instruments, which are counted from 0" in run.err
+        assert "`INDEX` must give one of its 2 instruments, numbered from 0" in run.err
         return
     assert run.code == 0, run.err
     assert f"TEMP [degree_Celsius]: {values.min():.4g} to {values.max():.4g}, median" in run.err

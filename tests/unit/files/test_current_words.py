@@ -270,7 +270,7 @@ def test_velocities_with_a_dimension_of_directions(tmp_path: Path) -> None:
         ),
         (
             mhkit().assign(depth=((), 40.0, {"units": "m", "long_name": "Water Depth"})),
-            "whose depth is not in the file; `depth` is that of the water",
+            "whose depth is not in the file; `depth` is the water depth",
         ),
     ],
 )

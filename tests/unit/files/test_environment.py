@@ -348,7 +348,7 @@ def test_density_that_falls_with_depth_is_a_warning(
                 8,
                 13,
                 "0.8 m/s is faster than `maximum_speed`, 0.5 m/s: a fill value, or another unit? "
-                "(`maximum_speed` of the environment allows it if it is true)",
+                "(if it is true, raise `maximum_speed` of the environment)",
             ),
         ),
         (

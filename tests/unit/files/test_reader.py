@@ -245,7 +245,8 @@ def test_a_nearer_definition_wins_and_says_so(read: Read, tmp_path: Path) -> Non
     assert mooring.pieces[0].length == 2.0
     [notice] = mooring.notices
     assert notice == (
-        f"ball: defined in {tmp_path}/mooring.yaml:15, which hides that of {tmp_path}/mine.yaml:2"
+        f"ball: the definition in {tmp_path}/mooring.yaml:15 overrides that in "
+        f"{tmp_path}/mine.yaml:2"
     )
 
 

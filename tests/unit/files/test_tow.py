@@ -138,15 +138,15 @@ ONE_MISTAKE = {
     ),
     "an anchor": (
         TOW + "  - {use: deadweight}\n",
-        (6, 5, "anchor `deadweight` in a tow; its line ends in the towed body"),
+        (6, 5, "`deadweight` is an anchor, but the line of a tow ends at the towed body"),
     ),
     "an anchor in between": (
         changed("{use: plate, label: fish}", "{use: deadweight}\n  - {use: plate}"),
-        (5, 5, "anchor `deadweight` in a tow; its line ends in the towed body"),
+        (5, 5, "`deadweight` is an anchor, but the line of a tow ends at the towed body"),
     ),
     "a mooring towed": (
         GOOD + "tow: {speed: 1 m/s, toward: 0}\n",
-        (13, 5, "anchor `deadweight` in a tow; its line ends in the towed body"),
+        (13, 5, "`deadweight` is an anchor, but the line of a tow ends at the towed body"),
     ),
     "no line": (
         TOW[: TOW.index("line:")],
