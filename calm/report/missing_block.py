@@ -19,7 +19,7 @@ _HEAD = """\
 # colon; a key without a value stays unknown. calm build FILE, key f, asks for the same values.
 """
 _OPTIONAL = """\
-# Optional values: no check needs them to be judged. To set one, uncomment its key and its component
+# Optional values: no check requires them. To set one, uncomment its key and its component
 # below `components:`. A published value replaces the estimate.
 """
 _WIDTH = 100

@@ -359,8 +359,8 @@ def test_a_component_without_a_kind_completes_that_of_the_catalogue(tmp_path):
 def test_a_figure_in_place_of_that_of_the_catalogue_is_noticed(tmp_path):
     text = COMPLETED.replace("KEYS", "depth_rating: 9 km")
     (notice,) = read_mooring(tmp_path / "m.yaml", text=text).notices
-    assert notice.startswith("sbe37: `depth_rating` of ")
-    assert "replaces that of" in notice
+    assert notice.startswith("sbe37: ")
+    assert "overrides `depth_rating` of the definition in " in notice
 
 
 @pytest.mark.parametrize(
