@@ -145,7 +145,7 @@ def _sources(component: Component | Outline) -> Iterator[str]:
         yield f"has a source for {_listed(absent)} but no value"
     searched = component.searched or ()
     if found := [name for name in searched if name in given]:
-        yield f"lists {_listed(found)} under `searched`, but has a value"
+        yield f"lists {_listed(found)} under `searched`, but also has a value"
     if strange := [name for name in searched if name not in known]:
         yield f"lists {_listed(strange)} under `searched`, which a {component.kind} does not have"
 

@@ -137,7 +137,7 @@ class Fouling(Model):
     """
 
     depth: Annotated[float, definition.POSITIVE_LENGTH] = described(
-        "depth of its lower limit", "50 m"
+        "depth down to which the growth extends", "50 m"
     )
     thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0, at_most=1)] = (
         described("thickness of the growth on all sides, e.g. 20 mm", "20 mm")
@@ -211,7 +211,7 @@ class TowEnvironmentKeys(Model):
         default=water.USUAL_DENSITY["water"],
     )
     gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
-        optional("acceleration", "9.81 m/s^2")
+        optional("acceleration of gravity", "9.81 m/s^2")
     )
     current: Annotated[
         Annotated[water.TableKeys, Tag("table")]

@@ -305,7 +305,7 @@ RULES = {
     "tangling": RuleText("Tangling", "",
         "whether a part overtakes the parts ahead in the fall or the rise, in loops of 2 m or more",
         "a warning",
-        "A default of CALM: no part overtakes the parts ahead",
+        "A default of CALM: parts that overtake others may tangle with them",
         _ONCE),
 }  # fmt: skip
 """All rules by id, in the order of the report."""

@@ -114,7 +114,7 @@ ONE_MISTAKE = {
     ),
     "fit without a depth": (
         changed("480 m", "fit"),
-        (11, 5, "`top_depth` is missing: `length: fit` needs it"),
+        (11, 5, "`top_depth` is missing: `length: fit` needs a depth"),
     ),
     "depth without fit": (
         changed("480 m", "480 m, top_depth: 90 m"),
@@ -325,7 +325,7 @@ ONE_MISTAKE = {
     ),
     "elongation that falls": (
         changed("length: 480 m", "length: 480 m, elongation: [[0.1, 0.02], [0.2, 0.01]]"),
-        (11, 47, "`elongation`: point 2: the strain 0.01 falls"),
+        (11, 47, "`elongation`: point 2: the strain 0.01 is below that of the point before"),
     ),
     "elongation of loads that do not grow": (
         changed("length: 480 m", "length: 480 m, elongation: [[0.2, 0.02], [10 %, 0.03]]"),
@@ -336,7 +336,8 @@ ONE_MISTAKE = {
         (
             11,
             47,
-            "`elongation`: the strain at no load must be 0; it is a `permanent_elongation`",
+            "`elongation`: the strain at no load must be 0; set a lasting strain as "
+            "`permanent_elongation`",
         ),
     ),
     "elongation of no points": (

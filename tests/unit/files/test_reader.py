@@ -220,7 +220,7 @@ def test_mass_overridden_alone_is_noticed(read: Read) -> None:
         # 1000 kg of steel weigh 9807 N in air and 8526 N in water
         ("{use: block}", "{use: block, weight: 9807 N}", "equals its weight in air"),
         ("{use: block}", "{use: block, weight: 9000 N}", ""),
-        ("use: rope-12", "use: rope-12, material: steel", "steel` of rope-12, which is nylon"),
+        ("use: rope-12", "use: rope-12, material: steel", "steel` replaces the nylon of rope-12"),
         ("use: rope-12", "use: rope-12, material: polyester", ""),
     ],
 )  # fmt: skip

@@ -158,23 +158,23 @@ ONE_MISTAKE = {
     ),
     "fit without a depth": (
         changed("100 m", "fit"),
-        (4, 5, "`body_depth` is missing: `length: fit` needs it"),
+        (4, 5, "`body_depth` is missing: `length: fit` needs a depth"),
     ),
     "fit to the depth of a top": (
         changed("100 m", "fit, top_depth: 70 m"),
-        (4, 33, "`top_depth` belongs to moorings; here it is `body_depth`"),
+        (4, 33, "`top_depth` is only for moorings; use `body_depth` here"),
     ),
     "fit to both": (
         changed("100 m", "fit, body_depth: 70 m, top_depth: 1 m"),
-        (4, 51, "`top_depth` belongs to moorings; here it is `body_depth`"),
+        (4, 51, "`top_depth` is only for moorings; use `body_depth` here"),
     ),
     "fit of a top in a mooring": (
         GOOD.replace("480 m", "fit, body_depth: 70 m"),
-        (11, 33, "`body_depth` belongs to tows; here it is `top_depth`"),
+        (11, 33, "`body_depth` is only for tows; use `top_depth` here"),
     ),
     "depth of a body in a mooring": (
         GOOD.replace("{use: plate}", "{use: plate, body_depth: 70 m}"),
-        (12, 18, "`body_depth` belongs to tows; here it is `top_depth`"),
+        (12, 18, "`body_depth` is only for tows; use `top_depth` here"),
     ),
     "depth without fit": (
         changed("100 m", "100 m, body_depth: 70 m"),
