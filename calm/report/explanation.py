@@ -235,10 +235,12 @@ def _answer(sizing: Sizing) -> str:
     growth = after.value - before.value
     several = len(change.parts) > 1 and not change.whole
     each = f", each of {len(change.parts)}" if several else ""
+    sign = "+" if growth > 0.0 else ""
     share = f" ({growth / abs(before.value):+.1%})".replace("%", " %") if before.value else ""
     return (
         f"{change.text}: {with_unit(before.value, change.unit)} → "
-        f"{with_unit(after.value, change.unit)}, {growth:+.6g}{share}{each}"
+        f"{with_unit(after.value, change.unit)}, "
+        f"{sign}{with_unit(growth, change.unit)}{share}{each}"
     )
 
 

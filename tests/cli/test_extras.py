@@ -183,7 +183,10 @@ def test_the_extras_of_the_package_hold_the_libraries_that_are_named():
 @pytest.mark.parametrize(
     ("name", "advice"),
     [
-        ("xarray.core", "this needs xarray: in CALM's checkout, pip install '.[records]'"),
+        (
+            "xarray.core",
+            "xarray is not installed; in the checkout of CALM, run pip install '.[records]'",
+        ),
         ("scipy", "scipy is not installed; run pip install scipy"),
         ("calm.lost", None),
         (None, None),

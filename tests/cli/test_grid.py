@@ -391,7 +391,7 @@ def test_without_matplotlib_a_report_names_the_command_that_installs_it(calm, de
     write_values("v.nc", depths)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     said = refused(calm, "depths.nc", "v.nc", "--report", "page")
-    assert "this needs matplotlib: in CALM's checkout, pip install '.[plot]'" in said
+    assert "matplotlib is not installed; in the checkout of CALM, run pip install '.[plot]'" in said
     assert not Path("out.nc").exists()
 
 

@@ -291,5 +291,5 @@ def test_zarr_that_is_not_installed_is_named(tmp_path: Path, monkeypatch) -> Non
     with pytest.raises(ModuleNotFoundError) as caught:
         opened(path)
     assert how_to_install(caught.value) == (
-        "this needs zarr: in CALM's checkout, pip install '.[cluster]'"
+        "zarr is not installed; in the checkout of CALM, run pip install '.[cluster]'"
     )

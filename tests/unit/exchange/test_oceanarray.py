@@ -124,7 +124,7 @@ def test_figures_of_an_institutes_table(tmp_path):
         (HEAD + LINE + "- 7\n", "an item with keys is needed"),
         (HEAD + LINE + "- {hab: 3}\n", "needs a name"),
         (HEAD + LINE + "clamp:\n- {instrument: aquadopp}\n", "needs `hab`"),
-        (HEAD.replace("43.913", "63.913") + LINE, "latitude: `65 63.913` has 60 minutes"),
+        (HEAD.replace("43.913", "63.913") + LINE, "latitude: `65 63.913` has minutes or seconds"),
         (HEAD + LINE.replace("hab: 660", "hab: 66o"), "hab: `o` is not a unit of length"),
     ],
 )
