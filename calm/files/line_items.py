@@ -245,7 +245,10 @@ class LineReader:
                 message = "a profiler has no `at`: it travels `between` two stops"
                 clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
-                message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
+                message = (
+                    f"`at: {shown(clamp.data['at'])}` is beyond the end of the piece, which is "
+                    f"{length:g} m long"
+                )
                 clamp.refuse(("at",), message)
             if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)

@@ -155,7 +155,7 @@ def _unfit(time: Times, values: Column) -> str:
     """Return the reason why no distribution can be fitted, or an empty string."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
-        return f"the number of values is {count}, too few"
+        return f"there are too few values ({count})"
     if not bool((time[1:] > time[:-1]).all()):
         return "the times do not increase"
     if np.fmax.reduce(values) == np.fmin.reduce(values):

@@ -194,7 +194,7 @@ ONE_MISTAKE = {
     ),
     "clamp beyond its piece": (
         changed("at: 20 m", "at: 481 m"),
-        (11, 61, "`at: 481 m` is beyond the piece, 480 m long"),
+        (11, 61, "`at: 481 m` is beyond the end of the piece, which is 480 m long"),
     ),
     "clamp above its piece": (
         changed("at: 20 m", "at: -1 m"),
@@ -210,7 +210,7 @@ ONE_MISTAKE = {
     ),
     "clamp below the anchor": (
         changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: 9 m}]}"),
-        (13, 49, "`at: 9 m` is beyond the piece, 0.4 m long"),
+        (13, 49, "`at: 9 m` is beyond the end of the piece, which is 0.4 m long"),
     ),
     "clamp above the anchor": (
         changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: -1 m}]}"),

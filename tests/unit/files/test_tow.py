@@ -206,7 +206,7 @@ ONE_MISTAKE = {
     ),
     "clamp beyond its piece": (
         changed("at: 90 m", "at: 101 m"),
-        (4, 61, "`at: 101 m` is beyond the piece, 100 m long"),
+        (4, 61, "`at: 101 m` is beyond the end of the piece, which is 100 m long"),
     ),
     "environment empty": (
         TOW + "environment:\n",
