@@ -345,7 +345,10 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
                     )
                     add(piece, nominal[-1], gap)
             elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
-                message = f"the lines below it are {roped:.6g} m long, not {roped + gap:.6g} m"
+                message = (
+                    f"the lines below it are {roped:.6g} m long, but its height requires "
+                    f"{roped + gap:.6g} m"
+                )
                 design.guessed.append(model.Remark(entry.label, message))
             elif gap < -_CLOSE:
                 message = f"overlaps the piece below by {-gap:.3g} m and is moved to its top"
