@@ -180,7 +180,7 @@ def test_a_net_goes_to_moordyn_and_back(
     )
     assert found.anchors[0].tension == pytest.approx(given.anchors[0].tension, rel=2e-3)
     assert run("export", net, "--to", "csv", "-o", tmp_path / "out.csv") == 2
-    assert "`--to moordyn` takes it" in capsys.readouterr().err
+    assert "does not support; use `--to moordyn`" in capsys.readouterr().err
     assert not (tmp_path / "out.csv").exists()
 
 
