@@ -775,7 +775,7 @@ def test_a_grid_is_read_in_its_unit_and_its_sign(tmp_path: Path) -> None:
     assert abs(east - west) == pytest.approx(0.1 * abs(away), rel=0.01)
     assert not any("m deep" in each for each in metres.warnings)
     (-grid).to_netcdf(file, engine="h5netcdf")
-    with pytest.raises(InputError, match=r"has land, .* m high, .* say `down`"):
+    with pytest.raises(InputError, match=r"has land, .* m high, .* to `down`"):
         load(tmp_path / "grid.yaml", text=GRIDDED)
     turned = -grid
     turned["elevation"].attrs |= {"units": "ft", "positive": "down"}

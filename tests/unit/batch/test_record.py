@@ -218,7 +218,7 @@ def test_period_and_every(tmp_path: Path) -> None:
         )
     with pytest.raises(UsageError, match=r"in this period: it is from 2026-03-01T00:00 to 2026-"):
         opened(path, time=parse_period("2027/"))
-    with pytest.raises(UsageError, match="at least one"):
+    with pytest.raises(UsageError, match="at least 1"):
         opened(path, every=0)
 
 

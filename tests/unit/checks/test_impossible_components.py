@@ -67,7 +67,7 @@ def test_good_components_pass(good):
     ("good", "change", "told"),
     [
         (GOOD_SPHERE, {"source": None}, "source"),
-        (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source of `mass`"),
+        (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source for `mass`"),
         (GOOD_SPHERE, {"searched": ["buoyancy"]}, "lists `buoyancy` under `searched`"),
         (GOOD_SPHERE, {"searched": ["stiffness"]}, "a sphere does not have"),
         (GOOD_SPHERE, {"depth_rating": "11500 m"}, "the deepest sea is"),
@@ -75,7 +75,7 @@ def test_good_components_pass(good):
         (
             GOOD_SPHERE,
             {"buoyancy": "5300 N"},
-            "has a buoyancy of 5.30 kN; water of its size weighs 5.26 kN",
+            "has a buoyancy of 5.30 kN; water of the same volume weighs only 5.26 kN",
         ),
         (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "300 kg"}, "together they exceed"),
         (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "110 kg"}, "denser than lead"),
