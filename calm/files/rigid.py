@@ -30,7 +30,10 @@ Inclination = Annotated[
 ]
 Surface = Annotated[
     Literal["painted", "smooth"] | None,
-    described("`smooth` may follow the drag curves; `painted` keeps the constant", "smooth"),
+    described(
+        "`smooth` allows drag curves by Reynolds number; `painted` keeps the constant coefficient",
+        "smooth",
+    ),
 ]
 SphereCoefficient = Annotated[
     float | None, definition.COEFFICIENT, described("drag coefficient of a sphere", 0.5)
