@@ -208,7 +208,7 @@ def test_speeds_and_directions_that_cannot_be(tmp_path: Path, name: str, value: 
 def test_a_share_of_the_depth_in_metres_is_no_depth(tmp_path: Path) -> None:
     words = {"standard_name": "ocean_sigma_coordinate"} | DEPTH[2]
     sigma = currents().assign_coords(depth=("depth", [0.1, 0.5, 0.9], words))
-    assert "is ocean_sigma_coordinate, a share of the water depth" in refusal(sigma, tmp_path)
+    assert "is ocean_sigma_coordinate, a fraction of the water depth" in refusal(sigma, tmp_path)
 
 
 def test_the_way_of_a_direction_is_in_its_words(tmp_path: Path) -> None:
