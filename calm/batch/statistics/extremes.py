@@ -201,7 +201,7 @@ def _by_peaks(
     return LevelsRefused(
         "pot",
         f"{LEAST_PEAKS} independent peaks are needed; no threshold from the {THRESHOLDS[0]:.0f} % "
-        f"to the {THRESHOLDS[-1]:.0f} % percentile leaves more than {most}",
+        f"to the {THRESHOLDS[-1]:.0f} % quantile leaves more than {most}",
     )
 
 
@@ -212,9 +212,9 @@ def _over(
         return LevelsRefused("pot", f"the {len(peaks)} peaks are all equal")
     tail, rate = tails.fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
-        f"{len(peaks)} peaks over the {percentile:.0f} % percentile, the highest from "
+        f"{len(peaks)} peaks over the {percentile:.0f} % quantile, the highest quantile from "
         f"{THRESHOLDS[0]:.0f} % to {THRESHOLDS[-1]:.0f} % that leaves {LEAST_PEAKS} clusters; "
-        f"clusters by the intervals between exceedances (Ferro and Segers 2003){gaps}"
+        f"clusters are separated by the intervals between exceedances (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
     return _fit("pot", tail, rate, rules, growths)
