@@ -235,7 +235,10 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
     return Case(f"C20 {name}", 0.0, "", tolerance, why, got, Kind.PROPERTY)
 
 
-_SAME = "The same segments: rounding, and 1e-9 of the depth where each search for the root stops."
+_SAME = (
+    "Both solutions have the same segments: the tolerance covers rounding, and 1e-9 of the depth, "
+    "at which each search for a root stops."
+)
 _RODS = "The rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°."
 
 INVARIANTS = Source(

@@ -208,10 +208,11 @@ _AT_THE_SHIP = "angle at the ship"
 TOWED_CABLES = Source(
     "Towed cables",
     """A cable of 10 mm, 2.5 N/m and Cn 1.5, towed bare (C7), is straight at the critical angle, cos
-φc = √(1 + p²/4) − p/2, where p is its weight over its drag square to the stream. In the second case
-(C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of ½ρ
-0.02 D V² cos² φ along the cable; it is solved by quadrature of the differential equations (relative
-error 1e-10) without CALM. The march is compared with both; its angle step is 0.1° in C8.""",
+φc = √(1 + p²/4) − p/2, where p is its weight over its drag when it is normal to the stream. In the
+second case (C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction
+of ½ρ 0.02 D V² cos² φ along the cable; it is solved by quadrature of the differential equations
+(relative error 1e-10) without CALM. The march is compared with both; its angle step is 0.1° in
+C8.""",
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
