@@ -19,17 +19,16 @@ TEXT = """# The schematic of a line
 
 Printed by `python docs/generate_schematic.py`; do not edit.
 
-The line in order from the top, not to scale: each piece and each clamped instrument with its
-label, its component, the length to cut, the depth and the height above the seabed of its upper end.
+A schematic shows the line in order from the top, not to scale. Each piece and each clamped
+instrument has its label, its component and its cut length, and the depth and the height above the
+seabed of its upper end.
 
 ![{first}](../images/schematic-{drawn[0]}.svg)
 
 ## In the terminal
 
-`calm run FILE --schematic` draws it above the table, even if there is no equilibrium. It is as wide
-as the terminal (80 columns without one) and needs no colour. If the output cannot show the
-characters for cables, ASCII characters replace them.
-`calm run lines/{drawn[0]}.yaml --schematic` begins:
+`calm run FILE --schematic` draws the schematic above the table, even if there is no equilibrium.
+The output of `calm run lines/{drawn[0]}.yaml --schematic` begins:
 
 ```text
 {text}
@@ -57,10 +56,8 @@ picture = schematic_svg(result.file, result)
 assert picture.startswith("<svg")
 ```
 
-The SVG has the size of A4. A long line is drawn smaller to fit, and a line with more than about 60
-rows needs a longer sheet; a report divides it into several sheets. Texts never overlap and are
-never cut: long texts wrap. A wire of ten times the length is drawn slightly longer. The same input
-gives the same bytes.
+The SVG has the size of A4. A long line is drawn smaller, and a line with more than about 60 rows
+has a longer sheet, which a report divides into several sheets.
 
 Surface moorings are drawn with the surface, and tows with their ship or helicopter:
 
