@@ -67,14 +67,13 @@ Surface moorings are drawn with the surface, and tows with their ship or helicop
 
 ## What it shows
 
-- **Depths** are those of the result: in the current, under load. Without a result,
-  `schematic_svg(file)`, they are those of the upright, unstretched line, and unknown in a tow and
-  if a float is at the surface.
+- **Depths** are those in the current, under load. Without a result (`schematic_svg(file)`), they
+  are those of the upright, unstretched line, and unknown for a tow or with a float at the surface.
 - **Lengths** are cut lengths, before any load.
 - **Symbols** follow the kind and the role of a component, then its id, name, note and label:
   *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is recognised by its `material`.
 - **Runs** of equal balls or connectors are drawn together (`back-up glass 1–10`, `10 × 0.51` m),
-  two releases in a row as a pair. Each has its own label in the picture's titles.
+  two releases in a row as a pair.
 """
 
 

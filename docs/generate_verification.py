@@ -53,7 +53,7 @@ are checked, but not counted.
 In addition, the tests compare every mooring of `lines/` and hundreds of random moorings
 with an independent integration of the differential equations.
 
-In this page, the *march* is CALM's integration along the line.
+On this page, *march* means CALM's integration along the line.
 
 {contents}
 
@@ -66,8 +66,8 @@ Printed by `python docs/generate_verification.py`; do not edit.
 The values that `calm verify` compares. [Verification](../explanation/verification.md) explains what
 agreement proves, and gives the sources of the values. Above each table are its kind and the
 reason for its tolerance. The values of CALM and the differences are rounded a digit or two beyond
-the tolerance. C1 to C23 are names of cases in the code and the tests. *March* is CALM's integration
-along the line.
+the tolerance. C1 to C23 are names of cases in the code and the tests. *March* means CALM's
+integration along the line.
 """
 ORDER_TWO = {"color": "grey", "linestyle": "--", "linewidth": 1, "label": "second order"}
 STYLES = {"SSMOOR": ("s", "#cc3311"), "MD&D": ("D", "#e69f00"), "independent": ("^", "#009e73")}

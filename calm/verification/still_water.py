@@ -220,8 +220,8 @@ def _radius() -> float:
 WATCH_CIRCLE = Source(
     "Watch circle",
     """A surface mooring of scope 2 in 540 m of water without current (C22) is slack and has no
-unique shape: CALM refuses it with the status `slack` and reports the radius of its watch circle, at
-most depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for that mooring.""",
+unique shape. CALM reports the status `slack` and the radius of the watch circle, at most
+depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for this mooring.""",
     (
         Case("C22 radius", 934.0, "m", 0.002 * 934.0,
              "0.2 %: 1.73 is √3 to three digits.", _radius, Kind.PUBLISHED),
