@@ -15,7 +15,7 @@ HEADS = ("id", "component", "net force in water", "breaking load", "Cd × area",
 HEAD = """# Components
 
 The {number} components that come with CALM, by family, with every figure and its source.
-[The catalogue](../catalogue.md) says which of several similar entries to use. `calm catalog list
+[The catalogue](../catalogue.md) explains which of several similar entries to use. `calm catalog list
 WORDS` searches them in a terminal.
 
 | family | components |
