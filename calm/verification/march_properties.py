@@ -233,7 +233,10 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
     return Case(f"C20 {name}", 0.0, "", tolerance, why, got, Kind.PROPERTY)
 
 
-_SAME = "Rounding, and 1e-9 of the depth, at which each search stops; the segments are the same."
+_SAME = (
+    "Both solutions have the same segments: the tolerance covers rounding, and 1e-9 of the depth, "
+    "at which each search for a root stops."
+)
 _RODS = "The error of straight segments: 1 − cos of half an angle step, 4e-7 at 0.1°."
 
 INVARIANTS = Source(
