@@ -407,7 +407,7 @@ class ClampRow:
 
     part: Clamp = column("the clamp of the file", of_part=lambda clamp: clamp, in_repr=False)
     index: int = column(
-        "number of the piece that it sits on, from 0",
+        "number of the piece with the clamp, from 0",
         _OF_PIECES,
         title="no.",
         unit="",
@@ -416,7 +416,9 @@ class ClampRow:
         at_anchor=lambda on: on.anchor.index,
     )
     use: str = column("the component's id", _OF_PIECES, of_part=lambda clamp: clamp.use)
-    label: str = column("its name in this line", _OF_PIECES, of_part=lambda clamp: clamp.label)
+    label: str = column(
+        "name of the clamp in this line", _OF_PIECES, of_part=lambda clamp: clamp.label
+    )
     depth: float = column(
         "depth of the clamped instrument",
         _IN_BATCHES,

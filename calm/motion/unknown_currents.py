@@ -144,14 +144,14 @@ def learn_currents(
     down = np.nansum(part.depth - part.moved[:, None], axis=1)
     used = np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
     for turn in range(TURNS):
-        tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
+        tell(f"inferring the currents from the pressures: {turn + 1} of {TURNS}")
         moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
         if not np.isfinite(at.depth).any():
             names_of = ", ".join(part.label)
             raise UsageError(
-                f"--pressures: the line has no equilibrium that fits {names_of}: check their "
+                f"--pressures: the line has no equilibrium that fits {names_of}. Check their "
                 "labels, the lengths of the line and the depth of the water"
             )
         found = fit.posterior(at)

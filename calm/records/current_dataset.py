@@ -242,18 +242,20 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
     which = " and ".join(f"`{name}`" for name in counted)
     if current.magnetic and declination is None:
         raise cf_files.UnreadableError(
-            f"{which} are relative to magnetic north; give the `declination` there, positive "
-            "to the east (beside `file:`, or `--declination`)"
+            f"{which} are relative to magnetic north; set the `declination` of the site, positive "
+            "to the east (next to `file:`, or with `--declination`)"
         )
     if declination is not None and current.true:
         raise cf_files.UnreadableError(
             f"{which} are relative to true north by their attributes, so no `declination` is "
-            "applied; leave it out"
+            "applied; remove it"
         )
     if declination is None:
         return ()
     unstated = "" if current.magnetic else ", as specified by the user, not by the file"
-    return (f"{which} were relative to magnetic north{unstated}, turned by {declination:g}°",)
+    return (
+        f"{which} were relative to magnetic north{unstated}, and were rotated by {declination:g}°",
+    )
 
 
 def _single_levels(
@@ -272,7 +274,7 @@ def _single_levels(
     levels = [str(dim) for dim in dataset[name].dims if dim != time]
     if len(levels) > 1:
         raise cf_files.UnreadableError(
-            f"`{name}` is not a single profile, but spreads over {_spread(dataset[name])}"
+            f"`{name}` is not a single profile; it has the dimensions {_spread(dataset[name])}"
         )
     return (levels[0] if levels else None), dataset
 

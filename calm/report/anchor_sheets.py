@@ -356,7 +356,10 @@ def located_figure(located: Located) -> str:
     scatter = float(np.abs(located.residuals[located.used]).max())
     close = max(3.0 * np.nan_to_num(located.horizontal_95), 3.0 * scatter, 1.0)
     page = Graph(2 * _PANEL + 110.0, _PANEL + 52.0, "Position of the anchor by ranges", _SIZE)
-    titles = "all ranges, numbered by line of the file", "the position, with its 95 % ellipse"
+    titles = (
+        "all ranges, numbered by their lines in the file",
+        "the position, with its 95 % ellipse",
+    )
     for panel, half in enumerate((max(reach, 2.0 * close), close)):
         left = 48.0 + panel * (_PANEL + 54.0)
         scale = Scale(-half, half)

@@ -323,7 +323,7 @@ class BuildApp(App[int]):
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
-            return f"Unsaved work could not be kept: {error}"
+            return f"Unsaved work could not be stored: {error}"
         return ""
 
     def _autosave(self) -> None:
@@ -337,7 +337,7 @@ class BuildApp(App[int]):
         try:
             file.keep()
         except (CalmError, OSError) as error:
-            self.call_later(self.tell, f"Unsaved work cannot be kept: {error}", wrong=True)
+            self.call_later(self.tell, f"Unsaved work cannot be stored: {error}", wrong=True)
 
     def on_unmount(self) -> None:
         """Save unsaved work to its backup copy, even after a failure or when the page is closed."""
