@@ -292,8 +292,8 @@ def _drags_out_of_range(component: Component) -> Iterator[str]:
         area = drag_of(component)[0] / (0.5 * REFERENCE_DENSITY)
         if volume > SMALL_BODY and area < (least := LEAST_BODY_DRAG * volume ** (2 / 3)):
             yield (
-                f"has a normal drag area of {area:.2g} m² (coefficient times area); a streamlined "
-                f"body of its volume of {volume:.2g} m³ has {least:.2g} m²"
+                f"has a normal drag area of {area:.2g} m² (coefficient times area); even a "
+                f"streamlined body with the same volume, {volume:.2g} m³, has {least:.2g} m²"
             )
     yield from drag_out_of_bounds(component)
 

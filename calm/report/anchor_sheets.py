@@ -163,7 +163,7 @@ def _depths_table(plan: DropPlan) -> list[Table]:
         number("reached", after),
         quantity("depth", lambda row: row[0].rest, "at rest"),
         quantity("depth", lambda row: row[1][0].rating, "rated to"),
-        note="Depths are at the upper end of a part; a rating is exceeded if the deeper end does.",
+        note="Depths are at the upper end; a rating is exceeded if the deeper end exceeds it.",
     )
     return [table] if listed else []
 

@@ -49,7 +49,7 @@ _KAPPA = (0.58, 0.62, 0.68, 0.74, 0.82, 0.87, 0.98)
 _KAPPA_ABOVE = (0.80, 0.80, 0.82, 0.90, 0.98, 0.99, 1.00)
 _END_FACE = ((0.1, 1.17), (0.6, 1.07), (0.88, 0.97), (1.3, 0.86), (1.8, 0.82))
 
-_COPIED = "The printed digits, because they are points of CALM's curve."
+_COPIED = "The printed digits, because CALM's curve passes through these points."
 _SHARE = 1e-9
 
 

@@ -210,7 +210,7 @@ def test_signs_that_no_font_has_are_reported(deck):
     out, said = deck(text.replace("label: top float", "label: top 浮"))
     assert "lacks 海 (U+6D77), 浮 (U+6D6E); � is printed instead in author, `top 浮`" in said
     pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
-    assert "printedas" in "".join(pages)
+    assert "isprintedinstead" in "".join(pages)
     assert packed("top �") in pages[0]
     assert "top 浮" in (out / "diagram.svg").read_text(encoding="utf-8")
 

@@ -25,7 +25,7 @@ depth, and in metres if that is more.
 
 _ABOVE = 0.01  # m: a point higher than this is held above the water
 
-_NOTE = "cn and ct are Cd and CdAx of MoorDyn, defined alike. See `calm docs import-moordyn`."
+_NOTE = "cn and ct are Cd and CdAx of MoorDyn, without conversion. See `calm docs import-moordyn`."
 
 _SECTIONS = (
     ("types", r"line (types|dictionary)"),

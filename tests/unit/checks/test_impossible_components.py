@@ -160,7 +160,7 @@ def test_good_components_pass(good):
             "a body of its mass and length has at most",
         ),
         (GOOD_SHACKLE, {"buoyancy": "-0.7 N"}, "of its material would weigh 6.82 N in water"),
-        (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "of its volume of 0.068 m³ has 0.0033 m²"),
+        (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "with the same volume, 0.068 m³, has 0.0033 m²"),
     ],
 )
 def test_impossible_figures_are_found(good, change, told):
