@@ -51,7 +51,7 @@ class GriddedRecord:
     Attributes
     ----------
     fields : samples and fitted field of each quantity
-    names : name of each quantity in the dataset
+    names : variable of each quantity in the dataset
     levels : (k,) depths of the levels [m]
     cards : summary of each file that was read
     notes : notes on the input, in sentences
