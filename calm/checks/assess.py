@@ -87,7 +87,7 @@ def checked_environment(
     states = {_of(finding): finding.state.severity for finding in given}
     failed = {_of(finding) for finding in given if finding.state is State.FAIL}
     others = [
-        replace(one, state=State.WARN)
+        one.but(state=State.WARN)
         if one.situation == STRUMMING and one.state is State.FAIL and _of(one) not in failed
         else one
         for findings in changed
@@ -147,7 +147,7 @@ def assessment_of(
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
     if first.result is not None and not moving(stand.leg for stand in in_environments):
         still = equilibrium.find(situations.STILL_ONLY, name, first.environment)
-        findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
+        findings.insert(0, still.but(case=situations.case_of(1, AS_GIVEN)))
     return Assessment(
         name=name,
         in_environments=tuple(in_environments),
@@ -176,11 +176,11 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 
     def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
         return tuple(
-            replace(
-                one,
-                case=one.case
-                or situations.case_of(numbers[one.environment], one.situation)
-                + "w" * (one.rule in _WAVE_RULES),
+            one
+            if one.case
+            else one.but(
+                case=situations.case_of(numbers[one.environment], one.situation)
+                + "w" * (one.rule in _WAVE_RULES)
             )
             for one in strength.with_one_weight(found, weights)
         )
@@ -203,7 +203,7 @@ def cased(
     """Add the load case of the environment to findings on currents and drag coefficients."""
     numbers = _numbers(in_environments)
     return [
-        replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
+        one.but(case=situations.case_of(numbers[one.environment], AS_GIVEN))
         if one.rule in (currents.name, drag_coefficient.name)
         else one
         for one in findings
@@ -433,7 +433,7 @@ def _probable(
     situation or in all.
     """
     return tuple(
-        replace(one, probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
+        one.but(probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
         if one.limit is not None and situation in (None, one.situation)
         else one
         for one in findings

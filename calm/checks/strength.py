@@ -1,7 +1,6 @@
 """Strength rules: load capacity of every piece, minimum tension of the line, and anchor holding."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -383,7 +382,7 @@ def with_one_weight(
     for one in findings:
         lead = governing.get(one.place)
         too_light = one.rule in ANCHOR_RULES and one.remedy is not None and one.limit is not None
-        yield replace(one, remedy=lead.remedy) if lead is not None and too_light else one
+        yield one.but(remedy=lead.remedy) if lead is not None and too_light else one
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
