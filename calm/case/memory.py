@@ -13,6 +13,7 @@ from types import FunctionType
 from typing import Any, ParamSpec, TypeVar
 
 from calm.errors import NoEquilibrium
+from calm.physics.line import Line, Water, once_per_input
 
 MOST = 256
 """Number of outcomes kept, the latest ones."""
@@ -29,7 +30,7 @@ class Memory:
     """
 
     def __init__(self) -> None:
-        self._outcomes: OrderedDict[bytes, Any] = OrderedDict()
+        self._outcomes: OrderedDict[tuple[str | bytes, ...], Any] = OrderedDict()
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
@@ -39,7 +40,7 @@ class Memory:
         """Return the outcome of a solver for its arguments, from the cache if possible; a cached
         `NoEquilibrium` is raised again.
         """
-        key = _digits((solver.__module__, solver.__qualname__, given, named))
+        key = solver.__module__, solver.__qualname__, *map(_digits, given), _digits(named)
         with self._lock:
             known = key in self._outcomes
             if known:
@@ -95,7 +96,14 @@ def _names(record: type) -> tuple[str, ...]:
 
 
 def _digits(given: object) -> bytes:
-    """Return the serialised inputs of a solver."""
+    """Return the serialised input of a solver."""
+    return _kept_digits(given) if isinstance(given, Line | Water) else _written(given)
+
+
+def _written(given: object) -> bytes:
     written = io.BytesIO()
     _Describing(written).dump(given)
     return written.getvalue()
+
+
+_kept_digits = once_per_input(_written)

@@ -279,13 +279,20 @@ def findings_of(
 def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
     """Evaluate each rule in a situation; cached because environments may share situations."""
     assert situation.result is not None
-    file, result = situation.result.file, estimated_result(situation.result)
+    file, result = situation.result.file, _judged(situation)
     end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
     return [
         (rule, [one for one in rule.judge(result) if anchored or one.place != end])
         for rule in STANDING
         if is_judged(file, rule)
     ]
+
+
+@lru_cache(maxsize=16)
+def _judged(situation: Situation) -> LegResult:
+    """Return the result of a situation with the lower bounds of estimates."""
+    assert situation.result is not None
+    return estimated_result(situation.result)
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
@@ -301,7 +308,7 @@ def _findings_in_waves(
     if given.result is None:
         return
     acceptance = Acceptance.of_file(given.result.file, day)
-    evidence = MooringInWaves.of(estimated_result(given.result).leg)
+    evidence = MooringInWaves.of(_judged(given).leg)
     for each in IN_WAVES:
         yield from acceptance.findings(each, each.judge(evidence), mooring, environment)
 
