@@ -1,4 +1,4 @@
-"""Compilation of the batch solver before the first profile, and its progress message."""
+"""Compilation of the batch solver before the first profile, with a message for the user."""
 
 from collections.abc import Callable
 from time import perf_counter
@@ -12,7 +12,7 @@ from calm.physics.compiled import cache_folder
 
 
 class _Notice(event.Listener):
-    """Listener that reports when numba compiles a function that is not in the cache."""
+    """Listener that reports when numba compiles a function because it is not in the cache."""
 
     def __init__(self, report: Callable[[str], None]) -> None:
         self.report = report
@@ -34,7 +34,7 @@ class _Notice(event.Listener):
 
 
 def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
-    """Compile the solver or load it from the cache, and report compilation only."""
+    """Compile the solver or load it from the cache; only a compilation is reported."""
     notice, started = _Notice(report), perf_counter()
     with event.install_listener("numba:compile", notice):
         batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)

@@ -148,8 +148,9 @@ class Rigid(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net buoyancy in water, positive up [N]; if only the mass is known, minus the weight in
-        air.
+        """Net buoyancy in water, positive up [N].
+
+        If only the mass is known, the weight in air is used as the weight in water.
         """
         if self.buoyancy is not None:
             return self.buoyancy
@@ -274,8 +275,8 @@ class Shaped(Rigid):
 
     @model_validator(mode="after")
     def _drag_is_given_once(self) -> Shaped:
-        ways = [[key for key in form if getattr(self, key) is not None] for form in DRAG_FORMS]
-        given = [keys for keys in ways if keys]
+        forms = [[key for key in form if getattr(self, key) is not None] for form in DRAG_FORMS]
+        given = [keys for keys in forms if keys]
         if len(given) != 1:
             what = " and ".join(f"`{key}`" for keys in given for key in keys) or "no drag"
             raise ValueError(

@@ -1,9 +1,9 @@
-"""Compilation of the physics functions ("laws") by numba, from the source that CPython runs, too.
+"""Compilation of the physics functions ("laws") by numba, from the source that CPython also runs.
 
-A *law* is a function over floats, named tuples and sequences of named tuples that CPython runs
-directly. The compiled law is the same function, but its globals refer to compiled laws; sequences
-become arrays, and sequences of named tuples arrays of records. The arithmetic is not reordered, so
-both give the same digits.
+A *law* is a function of floats, named tuples and sequences of named tuples that CPython can run
+directly. The compiled law is the same function, except that the functions it calls are compiled
+laws, sequences become arrays, and sequences of named tuples become arrays of records. The
+arithmetic is not reordered, so both give the same digits.
 """
 
 import hashlib
@@ -52,10 +52,10 @@ _entries: dict[Law, Any] = {}
 
 
 def entry(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of the given arguments; later calls do not check types
-    again.
+    """Return a law compiled for the types of the given arguments.
 
-    All later arguments must have these types; this saves time in short solves.
+    The types are checked only in the first call, which saves time in short solves. All later
+    arguments must have the same types.
     """
     found = _entries.get(law)
     if found is None:
@@ -68,16 +68,16 @@ def entry(law: Law, *arguments: Any) -> Any:
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
-    """Call a law, interpreted or as compiled by `entry`."""
+    """Call a law, compiled (see `entry`) or interpreted."""
     return (entry(law, *given) if compiled else law)(*given)
 
 
 def by_address(law: Law, *arguments: Any) -> Any:
     """Return a law compiled for the types of the given arguments, to be called by its address.
 
-    Its additional last argument and its result are floats. Its callers are compiled without it,
-    which saves its compilation time for each caller. As for `entry`, all later arguments must have
-    these types.
+    The law has a float as an additional last argument, and returns a float. Its callers are
+    compiled without it, which saves its compilation time for each caller. As for `entry`, all later
+    arguments must have the same types.
     """
     found = _entries.get(law)
     if found is None:
@@ -92,7 +92,7 @@ def by_address(law: Law, *arguments: Any) -> Any:
 
 @cache
 def called(law: Law) -> Any:
-    """Return a law compiled for inclusion in the compiled code of its callers."""
+    """Return a law compiled for inclusion in the compiled code of the laws that call it."""
     import numba
 
     if law is set_row:
@@ -110,7 +110,6 @@ def called(law: Law) -> Any:
 
 
 def _linked_options() -> dict[str, Any]:
-    """Return the compiler options of a law that is called by other laws only."""
     wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     return {**OPTIONS, **wrappers, "pipeline_class": _law_compiler()}
 
@@ -145,9 +144,7 @@ def _record_setter() -> Law:
 
 
 def clone(law: Law) -> Law:
-    """Copy a function: the copy calls the compiled versions of CALM's functions, and its tables
-    are arrays.
-    """
+    """Copy a function for compilation: it calls compiled laws, and its tables are arrays."""
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}
     for name in law.__code__.co_names:
@@ -162,7 +159,7 @@ def clone(law: Law) -> Law:
 
 
 def kept(compiler: Callable[..., Any], law: Law) -> Any:
-    """Compile a law, and store the result on disk if a cache folder exists."""
+    """Compile a law, and cache the result on disk if there is a cache folder."""
     import numba
 
     folder, options = cache_folder(), {**OPTIONS, "pipeline_class": _law_compiler()}
@@ -178,7 +175,7 @@ def kept(compiler: Callable[..., Any], law: Law) -> Any:
 
 
 def packed(value: Any) -> Any:
-    """Convert a named tuple for compiled code; its sequences become arrays."""
+    """Convert a named tuple for compiled code: its sequences become arrays."""
     named: Any = type(value)
     return named(*[pack(part) for pack, part in zip(_packers(named), value, strict=True)])
 
@@ -215,8 +212,9 @@ def record_type(named: type) -> np.dtype[Any]:
 def cache_folder() -> Path | None:
     """Return the folder for compiled code, or None if no folder can be written.
 
-    `NUMBA_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
-    has its own subfolder, since numba itself only checks a single source file.
+    The folder is in `NUMBA_CACHE_DIR` if set, else in the user's cache. Every version of the
+    sources has its own subfolder, because numba itself checks for changes in a single source file
+    only.
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
     folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
@@ -229,9 +227,7 @@ def cache_folder() -> Path | None:
 
 
 def is_cached(law: str) -> bool:
-    """Return whether the cache folder contains the compiled code of a law, from this or another
-    process.
-    """
+    """True if the cache folder contains the compiled code of a law."""
     folder = cache_folder()
     return folder is not None and next(folder.rglob(f"*.{law}-*.nbi"), None) is not None
 

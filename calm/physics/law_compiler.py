@@ -1,10 +1,10 @@
-"""Compiler of the physics functions ("laws"): numba's compiler reduced to the necessary steps,
-which is much faster.
+"""Compiler of the physics functions ("laws"): numba's compiler reduced to the necessary steps.
 
-Only laws called from Python become machine code. All other laws are linked into these and optimised
-there once; numba itself optimises and translates every law again at each level of the calls. The
-types of an operation are resolved only once, passes for language features that laws do not use are
-left out, variables assigned once need no memory, and arrays are passed as fewer numbers.
+It is much faster than numba's own compiler. Only laws called from Python become machine code. All
+other laws are linked into these and optimised there once; numba itself optimises and translates
+every law again at each level of the calls. The types of an operation are resolved only once. Passes
+for language features that laws do not use are omitted, variables that are assigned once need no
+memory, and arrays are passed as fewer numbers.
 """
 
 import copy
@@ -43,9 +43,10 @@ _seen: dict[Any, Any] = {}
 
 
 def resolving_once(typing: Any) -> Any:
-    """Return a typing context that stores the signature of each operation by argument types.
+    """Return a typing context that remembers the signatures of operations.
 
-    numba's own context tries all candidates each time. Only the compiler of laws uses this one.
+    numba's own context tries all candidates every time. Only the compiler of laws uses this
+    context.
     """
     remembering = copy.copy(typing)
 
@@ -61,8 +62,9 @@ def resolving_once(typing: Any) -> Any:
 
 
 def short_name(name: str, given: Any, **more: Any) -> str:
-    """Return a short symbol for a law; numba's own symbols list all argument types and are pages
-    long.
+    """Return a short symbol for a law.
+
+    numba's own symbols contain all argument types and are pages long.
     """
     digest = hashlib.sha256(repr(given).encode()).hexdigest()[:16]
     return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
@@ -75,18 +77,15 @@ class LawArray(_Array):  # type: ignore[misc]
     """
 
     def get_argument_type(self) -> Any:
-        """Return the types of the address and the shape."""
         assert self._fe_type.layout == "C"
         parts = self.get_value_type().elements
         return parts[DATA], (parts[COUNT],) * self._fe_type.ndim
 
     def as_argument(self, builder: Any, value: Any) -> Any:
-        """Return the address and the shape."""
         shape = [builder.extract_value(value, [SHAPE, k]) for k in range(self._fe_type.ndim)]
         return builder.extract_value(value, [DATA]), tuple(shape)
 
     def from_argument(self, builder: Any, value: Any) -> Any:
-        """Rebuild the array from its address and shape."""
         data, shape = value
         item = self._dmm[self._fe_type.dtype].get_data_type()
         size = core.cgutils.sizeof(builder, item.as_pointer())
@@ -104,7 +103,7 @@ class LinkedLibrary(_Library):  # type: ignore[misc]
     """Library of a law that is linked into the laws called from Python."""
 
     def finalize(self) -> None:
-        """Skip the machine code; linked laws are compiled with their callers."""
+        """Generate no machine code, because linked laws are compiled with their callers."""
         self._finalize_dynamic_globals()
         self._finalized = True
 
@@ -133,13 +132,12 @@ class LawLower(_Lower):  # type: ignore[misc]
 
 @core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
 class LawLowering(_Lowering):  # type: ignore[misc]
-    """Last compiler pass: translates to machine code only the laws that Python calls."""
+    """Last compiler pass, which generates machine code only for laws that Python calls."""
 
     _name = "law_lowering"
     lowering_class = LawLower
 
     def run_pass(self, state: Any) -> bool:
-        """Return True, as required of such passes."""
         if not (state.flags.no_cpython_wrapper and state.flags.no_cfunc_wrapper):
             return bool(super().run_pass(state))
         target, name = state.targetctx, state.func_id.func_qualname
