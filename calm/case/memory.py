@@ -18,6 +18,8 @@ from calm.physics.line import Line, Water, once_per_input
 MOST = 256
 """Number of outcomes that are kept; older ones are discarded."""
 
+Key = tuple[str | bytes, ...]
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -30,7 +32,7 @@ class Memory:
     """
 
     def __init__(self) -> None:
-        self._outcomes: OrderedDict[tuple[str | bytes, ...], Any] = OrderedDict()
+        self._outcomes: OrderedDict[Key, Any] = OrderedDict()
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
@@ -40,7 +42,7 @@ class Memory:
         """Return the outcome of a solver for its arguments, from the cache if possible. A cached
         `NoEquilibrium` is raised again.
         """
-        key = solver.__module__, solver.__qualname__, *map(_digits, given), _digits(named)
+        key = _key(solver, given, named)
         with self._lock:
             known = key in self._outcomes
             if known:
@@ -93,15 +95,18 @@ def _names(record: type) -> tuple[str, ...]:
     return tuple(each.name for each in fields(record))
 
 
-def _digits(given: object) -> bytes:
-    """Return the serialised input of a solver."""
-    return _kept_digits(given) if isinstance(given, Line | Water) else _written(given)
+def _key(solver: Callable[..., object], given: tuple[object, ...], named: object) -> Key:
+    """Return the key of an outcome: the name of the solver, and its serialised inputs."""
+    inputs = (_of_arrays(one) if isinstance(one, Line | Water) else _written(one) for one in given)
+    return solver.__module__, solver.__qualname__, *inputs, _written(named)
+
+
+@once_per_input
+def _of_arrays(given: Line | Water) -> bytes:
+    return _written(given)
 
 
 def _written(given: object) -> bytes:
     written = io.BytesIO()
     _Describing(written).dump(given)
     return written.getvalue()
-
-
-_kept_digits = once_per_input(_written)

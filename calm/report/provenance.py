@@ -84,17 +84,13 @@ def input_hash(files: Sequence[MooringFile]) -> str:
     a current file. The location of the files is irrelevant.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
-    before: Sequence[Any] = [None] * 6
-    texts = [canonical(one) for one in before]
+    line = canonical(files[0].pieces)
     for file in files:
-        inputs = (file.name, file.pieces, file.tow, file.environment, file.solver, file.checks)
-        # environments share most inputs
-        texts = [
-            text if one == known else canonical(one)
-            for one, known, text in zip(inputs, before, texts, strict=True)
-        ]
-        before = inputs
-        digest.update(f"[{','.join(texts)}]".encode("utf-8", "replace"))
+        if file.pieces != files[0].pieces:
+            line = canonical(file.pieces)
+        others = map(canonical, (file.tow, file.environment, file.solver, file.checks))
+        resolved = ",".join([canonical(file.name), line, *others])
+        digest.update(f"[{resolved}]".encode("utf-8", "replace"))
     return digest.hexdigest()
 
 
