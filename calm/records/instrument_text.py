@@ -1,8 +1,8 @@
-"""Text files of one instrument, converted to datasets in the form of archives.
+"""Text files of single instruments, converted to datasets as found in archives.
 
 RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
-columns in known units. Sea-Bird's `.cnv` files and the tables of RBR's library name each column and
-its unit in their headers, and so do plain tables such as ``time,temperature[degC],salinity[PSU]``.
+columns with fixed units. Sea-Bird's `.cnv` files, the tables of RBR's RSKtools library and plain
+tables such as ``time,temperature[degC],salinity[PSU]`` name each column and its unit in the header.
 """
 
 from __future__ import annotations
@@ -69,9 +69,9 @@ def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
     """Return the reader for a text file of an instrument; None for any other file.
 
     The reader returns a dataset with the names and attributes of OceanSITES. Times are seconds
-    since 1970, and missing values are NaN. A current has its depth in `INSTRUMENT_DEPTH`, computed
-    from pressure by TEOS-10, else nominal. InputError: the file is unreadable, has no times, or has
-    an invalid row.
+    since 1970, and missing values are NaN. For currents, `INSTRUMENT_DEPTH` is computed from
+    pressure by TEOS-10, or is the nominal depth. The reader raises InputError if the file is
+    unreadable, has no times, or has an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
@@ -90,7 +90,7 @@ def _dataset(
     latitude: float = math.nan,
     serial: str = "",
 ) -> xr.Dataset:
-    """Build a dataset from columns, with (quantity, unit) as keys."""
+    """Build a dataset from columns, whose keys are (quantity, unit)."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -122,7 +122,7 @@ def _dataset(
 def _depths(
     columns: dict[tuple[str, str], Floats], count: int, nominal: float, latitude: float
 ) -> Floats:
-    """Return depths [m] from pressures, or the nominal depth in their gaps."""
+    """Convert pressures to depths [m], and gaps to the nominal depth."""
     import gsw
 
     pressure = columns.get(("pressure", "dbar"), np.full(count, np.nan))
@@ -159,7 +159,7 @@ def _rodb(path: Path) -> xr.Dataset:
             plain_degrees(latitude, "latitude"),
         )
     except ValueError:
-        raise refused(path, "its `InstrDepth` or `Latitude` is no number") from None
+        raise refused(path, "its `InstrDepth` or `Latitude` is not a number") from None
     if nominal in _MISSING or nominal < 0.0:
         nominal = math.nan
     serial = header.get("serialnumber", "")
@@ -172,7 +172,7 @@ def _cnv(path: Path) -> xr.Dataset:
     head = "\n".join(lines[:first])
     names = {int(one[1]): (one[2], one[3]) for one in map(_CNV_NAME.match, lines[:first]) if one}
     if not names:
-        raise refused(path, "its head names no columns")
+        raise refused(path, "its header names no columns")
     values = _numbers(path, lines, first, len(names))
     columns: dict[tuple[str, str], Floats] = {}
     for j, (name, title) in names.items():
@@ -204,7 +204,7 @@ def _cnv(path: Path) -> xr.Dataset:
 
 
 def _rbr(path: Path) -> xr.Dataset:
-    """Read a table of RSKtools; its `pressure` includes the pressure of the air."""
+    """Read a table written by RSKtools, whose `pressure` includes air pressure."""
     lines = _lines(path)
     first = sum(1 for line in lines if line.startswith("//") or not line.strip())
     head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
@@ -237,9 +237,9 @@ _IN_TABLES = {
 
 
 def read_plain_table(path: Path) -> xr.Dataset:
-    """Read a table over time of one instrument, with columns such as ``temperature[degC]``.
+    """Read a time table of one instrument, with columns such as ``temperature[degC]``.
 
-    InputError: the table has mistakes, or a column with another name.
+    Raise InputError if the table has mistakes, or a column that is not a known quantity.
     """
     table = read_time_columns(path, tuple(_IN_TABLES), "temperature[degC]")
     names = {archive: what for what, (archive, _) in _WHAT.items()}
@@ -253,11 +253,11 @@ def read_plain_table(path: Path) -> xr.Dataset:
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
-    """Return the `count` columns of the lines with content."""
+    """Convert the non-empty lines from `first` on to an array with `count` columns."""
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:
-        named = f"its head names {count} columns"
+        named = f"its header names {count} columns"
         try:
             rows.append([float(word) for word in lines[i].replace(",", " ").split()])
             wrong = f"the row has {len(rows[-1])} numbers; {named}"
@@ -268,7 +268,7 @@ def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats
             problems.append(Problem(str(path), i + 1, 1, wrong))
     widths = {len(row) for row in rows}
     if len(problems) == len(rows) > 1 and len(widths) == 1 and widths != {0}:
-        wrong = f"its head names {count} columns; every row has {widths.pop()} numbers"
+        wrong = f"its header names {count} columns; every row has {widths.pop()} numbers"
         raise refused(path, wrong, line=there[0] + 1)
     if problems or not rows:
         raise InputError(problems[:20] or [Problem(str(path), first, 1, "has no rows")])

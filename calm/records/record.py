@@ -1,6 +1,7 @@
-"""Records of currents in NetCDF, zarr or CSV: many profiles, read lazily.
+"""Records of currents in NetCDF, zarr or CSV, with many profiles that are read lazily.
 
-The synthetic example record has thirty days with a tide, a mean flow and a storm surge.
+The module also makes a synthetic example record: thirty days with a tide, a mean flow and a storm
+surge.
 """
 
 from __future__ import annotations
@@ -36,9 +37,10 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 RULES = (
     "levels without a current or a depth are excluded from their profile",
     "levels above the surface are excluded",
-    "levels below the seabed are used where they have a value: the current at the seabed lies "
-    "between",
-    "between levels the current is linear in depth, beyond the first and the last it is constant",
+    "levels below the seabed are used if they have a value, to interpolate the current at the "
+    "seabed",
+    "the current is linear in depth between levels, and constant above the first and below the "
+    "last",
 )
 """Rules that apply to every record."""
 
@@ -52,9 +54,10 @@ class Record(ABC):
     ----------
     time : (n,) to the nanosecond, rising
     notes : rules by which the record was read, and doubts about it
-    source : file, variables and place, by name
+    source : names of the file and its variables, and the position
     cards : summary card of each file
-    labels : parts of a line at which the levels are placed (without depths), else empty
+    labels : names of the parts of a line that carry the instruments, if the levels have no depths;
+        else empty
     """
 
     time: NDArray[np.datetime64]
@@ -70,14 +73,14 @@ class Record(ABC):
 
     @abstractmethod
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of profiles, NaN in gaps.
+        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of m profiles, NaN in gaps.
 
-        The depths are positive down, in any order; `w` is None if the record lacks it. InputError:
-        the file is damaged in this range.
+        Depths are positive down, in any order; w is None if the record has no vertical velocity.
+        Raise InputError if the file is damaged in this range.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return (m, k) quality flags of currents; None if the record has no flags."""
+        """Return quality flags (m, k) of m profiles; None if the record has no flags."""
         return None
 
     @abstractmethod
@@ -92,10 +95,11 @@ class Record(ABC):
 
 
 def parse_period(text: str) -> Period:
-    """Parse a period ``A/B`` of ISO times. A year, month or day as B is included in full.
+    """Parse a period ``A/B`` of ISO 8601 times.
 
-    Either end may be empty or two points: ``2026-03/``, ``../2026-03-31``. UsageError: the text is
-    not a period, or ends before it begins.
+    If B is a year, a month or a day, the period includes it completely. Either end may be missing,
+    as in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or ends
+    before it begins.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -107,19 +111,19 @@ def parse_period(text: str) -> Period:
 
 
 def parse_place(text: str) -> Place:
-    """Parse a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+    """Parse a position ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
-    Both may be in degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is not a
-    place, or not on the earth.
+    Both may be in degrees and minutes, as in ``57 28.84 N, 19 10.2 W``. Raise UsageError if the
+    text is not a position on the earth.
     """
     parts = text.split(",")
     try:
         first, second = parts
         latitude, longitude = plain_degrees(first, "latitude"), plain_degrees(second, "longitude")
     except ValueError:
-        raise UsageError(f"`{text[:40]}` is not a place; write 48.3,-5.2") from None
+        raise UsageError(f"`{text[:40]}` is not a position; write 48.3,-5.2") from None
     if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):
-        raise UsageError(f"`{text[:40]}` is not a place; latitude comes first, then longitude")
+        raise UsageError(f"`{text[:40]}` is not a position; latitude must be first, then longitude")
     return latitude, longitude
 
 
@@ -132,7 +136,7 @@ def choose_profiles(
     ----------
     times : (n,) in the order of the file
     period : first and last time to read; None for all
-    every : read one profile in this number
+    every : read every n-th profile only
     path : path of the record, for messages
 
     Raises
@@ -143,7 +147,7 @@ def choose_profiles(
         No profile is in the period, or `every` is not positive.
     """
     if every < 1:
-        raise UsageError(f"every {every} profiles: at least one is needed")
+        raise UsageError(f"every {every} profiles is not possible; use a number of at least 1")
     if not len(times):
         raise refused(path, "has no times")
     notes = []
@@ -155,7 +159,7 @@ def choose_profiles(
     again = np.flatnonzero(times[1:] == times[:-1])
     if len(again):
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
-        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
+        message = f"has two profiles of {time_text(times[again[0]])}{more}; remove one of them"
         raise refused(path, message)
     start, stop = period or (None, None)
     first = 0 if start is None else int(np.searchsorted(times, start, "left"))
@@ -172,12 +176,12 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return a range of the chosen profiles as indices.
+    """Return the file indices of a range of the chosen profiles.
 
     Parameters
     ----------
-    index : indices of the chosen profiles
-    start, stop : range of the chosen profiles
+    index : file indices of the chosen profiles
+    start, stop : range within the chosen profiles
     """
     if not isinstance(index, slice):
         return index[start:stop]
@@ -185,13 +189,13 @@ def part(index: Index, start: int, stop: int) -> Index:
 
 
 def _end(text: str, *, whole: bool) -> np.datetime64 | None:
-    """Parse one end of a period [ns]."""
+    """Parse one end of a period to datetime64[ns]; None if it is open."""
     text = text.strip()
     if text in ("", ".."):
         return None
     try:
         if _PART_OF_A_DATE.fullmatch(text):
-            date: Any = np.datetime64(text) + int(whole)  # unit: a year, a month or a day
+            date: Any = np.datetime64(text) + int(whole)  # adds one year, month or day
             return _in_reach(date.astype("M8[us]")) - np.timedelta64(int(whole), "ns")
         return _in_reach(parse_time(text))
     except TimeChoiceError as error:
@@ -227,7 +231,7 @@ _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """Return the synthetic record as a classic NetCDF file, identical on all platforms."""
+    """Return the synthetic record as bytes of a classic NetCDF file, identical on all platforms."""
     import xarray as xr
 
     hours = np.arange(24 * DAYS)
@@ -256,8 +260,8 @@ def made_record() -> bytes:
         },
         {
             "Conventions": "CF-1.11",
-            "title": "A made record of currents: a tide, a mean flow and a storm surge",
-            "comment": "Made by a formula, not measured.",
+            "title": "A synthetic record of currents: a tide, a mean flow and a storm surge",
+            "comment": "Computed from a formula, not measured.",
         },
     )
     dataset["time"].attrs["calendar"] = "standard"
@@ -267,7 +271,7 @@ def made_record() -> bytes:
 
 
 def _currents(hours: Any) -> tuple[Any, Any]:
-    """Return currents to the east and to the north [m/s], as times by levels."""
+    """Return the eastward and northward currents [m/s], as times by levels."""
     hours = hours[:, np.newaxis].astype(np.float64)
     depth = np.array(DEPTHS)
     # slower near the seabed: 1/7 power law of the height

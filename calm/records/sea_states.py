@@ -38,7 +38,7 @@ UNSEEN = 1e-3
 """Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
 PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
-"""The ratio follows from the moments of the forms: 1.408 and 1.286."""
+"""Ratios of the peak period to Tz, from the spectral moments: 1.408, and 1.286 for jonswap."""
 
 SHARES = 0.02
 """Tolerance for the sum of shares of time, which may be rounded."""
@@ -64,7 +64,7 @@ A sea of the shortest period has a hundredth of its variance above that frequenc
 
 @dataclass(frozen=True)
 class SpectralForm:
-    """A spectrum in the form of its law and parameters, so that equal seas compare equal."""
+    """A spectrum as a law with its parameters, so that equal seas compare equal."""
 
     law: Callable[..., Floats]
     figures: tuple[Any, ...]
@@ -81,9 +81,9 @@ class SeaState:
     ----------
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
-    density : one-sided spectrum of the elevation over angular frequency [rad/s], [m² s/rad]
+    density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
     share : share of the time, for one of several seas
-    longest, shortest : longest and shortest peak period of a sea of several parts [s]; for a
+    longest, shortest : longest and shortest peak period of a sea with several components [s]; for a
         measured sea, `longest` is the period of its longest relevant waves
     """
 
@@ -96,18 +96,21 @@ class SeaState:
 
     @property
     def cut_off(self) -> float:
-        """Highest frequency of the solution [rad/s]."""
+        """Highest angular frequency at which the response to waves is computed [rad/s]."""
         peak = 2.0 * pi / (self.shortest or self.peak_period)
         return min(BETWEEN[1] * peak, LARGEST_FREQUENCY)
 
     def frequencies(self, count: int) -> Floats:
-        """Return angular frequencies for the solution [rad/s], with logarithmic spacing."""
+        """Return `count` angular frequencies at which the response is computed [rad/s].
+
+        The spacing is logarithmic.
+        """
         first = 2.0 * pi / (self.longest or self.peak_period)
         return np.geomspace(BETWEEN[0] * first, self.cut_off, count)
 
 
 def bretschneider(height: float, period: float) -> Density:
-    """Return the spectrum of a growing or a full sea, by Hs [m] and Tp [s].
+    """Return the spectrum of a growing or fully developed sea, by Hs [m] and Tp [s].
 
     S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴): Bretschneider 1959, the ITTC spectrum of two parameters.
     """
@@ -115,13 +118,14 @@ def bretschneider(height: float, period: float) -> Density:
 
 
 def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
-    """Return the spectrum of swell and sea together; Ochi and Hubble 1976.
+    """Return the combined spectrum of swell and wind sea of Ochi and Hubble 1976.
 
     S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴).
 
     Parameters
     ----------
-    parts : Hs [m], Tp [s] and λ of each; λ of 1 is Bretschneider's form, more is narrower
+    parts : Hs [m], Tp [s] and λ of each component; λ = 1 is Bretschneider's form, and the spectrum
+        narrows as λ grows
     """
     terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
     return SpectralForm(_gamma_form, (terms,))
@@ -136,10 +140,10 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 
 
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
-    """Return the spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
+    """Return the JONSWAP spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
 
-    Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), σ 0.07 below the peak and 0.09 above it
-    (Hasselmann and others 1973), normalised so that Hs is kept.
+    It is Bretschneider's spectrum times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), with σ = 0.07 below the
+    peak and 0.09 above it (Hasselmann and others 1973), normalised to the given Hs.
     """
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
@@ -154,17 +158,21 @@ def _peaked(height: float, peak: float, gamma: float, omega: Floats) -> Floats:
 
 
 def full_sea_period(height: float) -> float:
-    """Return Tp of a fully grown sea by Hs [s]; Pierson and Moskowitz 1964: ωp² = 0.16 g/Hs."""
+    """Return Tp [s] of a fully developed sea by Hs [m], from Pierson and Moskowitz 1964.
+
+    The law is ωp² = 0.16 g/Hs.
+    """
     return 2.0 * pi / sqrt(0.16 * 9.80665 / height)
 
 
 def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3.3) -> SeaState:
-    """Return the sea of a named spectrum.
+    """Return the sea state of a named spectrum.
 
     Parameters
     ----------
     kind : name of the spectrum, from `SPECTRA`
-    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, None selects their own period
+    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, a period of None selects the
+        period that follows from the height
     gamma : peakedness of "jonswap"
 
     Raises
@@ -185,14 +193,16 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3
 
 
 def _impossible(height: float, period: float) -> str | None:
-    """Return why a height [m] and peak period [s] are impossible or unsupported, else None."""
+    """Return a message if a height [m] and peak period [s] are impossible or unsupported."""
     length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
         return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
     if period < SHORTEST_PERIOD:
         return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
-        highest = f"{length:.1f} m long, they are {STEEPEST * length:.2f} m high at most"
+        highest = (
+            f"with a length of {length:.1f} m, they can be {STEEPEST * length:.2f} m high at most"
+        )
         return f"{waves} would break: {highest}"
     return None
 
@@ -200,32 +210,32 @@ def _impossible(height: float, period: float) -> str | None:
 def doubted(sea: SeaState) -> str | None:
     """Return a remark if a sea is steeper than measured seas, else None.
 
-    Hs over the length of waves of Tp is 1/15 at most up to a Tp of 8 s, falling to 1/25 at 15 s
-    (DNV-RP-C205, steepness criteria).
+    The limit on the ratio of Hs to the length of waves of period Tp is 1/15 up to a Tp of 8 s, and
+    falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
     """
     height, period = sea.significant_height, sea.peak_period
     steepness = 2.0 * pi * height / (9.80665 * period**2)
     if steepness <= float(np.interp(period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0])):
         return None
     return (
-        f"Hs {height:.3g} m with Tp {period:.3g} s is steeper than seas are, 1 in "
-        f"{1.0 / steepness:.0f}: look whether the period is a mean one ({PEAK_BY_MEAN}) and the "
-        "height in metres."
+        f"Hs {height:.3g} m with Tp {period:.3g} s is steeper than any measured sea (1 in "
+        f"{1.0 / steepness:.0f}). Check whether the period is a mean period ({PEAK_BY_MEAN}) and "
+        "the height is in metres."
     )
 
 
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     """Add a swell of Hs [m] and Tp [s], in the same direction, to a sea.
 
-    The swell has the narrow form of Ochi and Hubble, with λ of 3; variances add up.
-
-    UsageError: the swell is higher, longer or steeper than any real swell, or shorter than the sea.
+    The swell has the narrow form of Ochi and Hubble with λ = 3, and the variances add up. Raise
+    UsageError if the swell is higher, longer or steeper than any real swell, or shorter than the
+    sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
         raise UsageError(
-            f"a swell of {period:g} s with a sea of {sea.peak_period:g} s: a swell has the "
-            "longer period"
+            f"the swell of {period:g} s must have a longer period than the sea of "
+            f"{sea.peak_period:g} s"
         )
     swell = ochi_hubble(((height, period, 3.0),))
     form = SpectralForm(_together, (sea.density, swell))
@@ -241,11 +251,10 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 
 
 def _most_probable(height: float) -> SeaState:
-    """Return the most probable Ochi-Hubble (1976) swell and sea for a significant height.
+    """Return the most probable sea state of Ochi and Hubble (1976) for a significant height [m].
 
-    The constants are from secondary sources, not from the paper itself.
-
-    UsageError: the height exceeds that of any real sea.
+    It consists of a swell and a wind sea. The constants are from secondary sources, not from the
+    original article. Raise UsageError if the height exceeds that of any real sea.
     """
     if height > HIGHEST:
         raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
@@ -258,12 +267,11 @@ def _most_probable(height: float) -> SeaState:
 
 
 def measured_spectrum(path: Path) -> SeaState:
-    """Read a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
+    """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    NetCDF files follow NDBC or WAVEWATCH III, for a single place; the highest sea of several times
-    is used.
-
-    InputError: the file is not a spectrum, or its frequencies do not increase.
+    NetCDF files follow NDBC or WAVEWATCH III, for a single position. If they hold several times,
+    the highest sea is used. Raise InputError if the file is not a spectrum, or if its frequencies
+    do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -273,13 +281,16 @@ def measured_spectrum(path: Path) -> SeaState:
 
 
 def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int] = ()) -> SeaState:
-    """Return the sea with densities [m²/Hz] at frequencies [Hz], from these lines of a table."""
+    """Return the sea state with given densities [m²/Hz] at frequencies [Hz].
+
+    `lines` gives the file line of each value, for messages.
+    """
     falls = np.diff(frequency, prepend=-1e-12) <= 0.0
     problems = [
         Problem(str(path), lines[int(row)] if lines else 0, column, message)
         for wrong, column, message in (
-            (falls, 1, "frequencies are not negative, and grow"),
-            (~(density >= 0.0), 2, "a density is not negative"),
+            (falls, 1, "frequencies must increase and must not be negative"),
+            (~(density >= 0.0), 2, "a density must not be negative"),
         )
         for row in np.flatnonzero(wrong)
     ]
@@ -298,7 +309,7 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     if density[-1] > CUT_OFF * density.max():
         wrong = wrong or f"it is cut off at {frequency[-1]:.3g} Hz, near its peak"
     if wrong is not None:
-        raise refused(path, f"{wrong}; look at its units")
+        raise refused(path, f"{wrong}; check its units")
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
     peak = float(omega[int(density.argmax())])
     first = max(float(lowest), 0.02 * peak)
@@ -311,7 +322,7 @@ def _between(omega: Sequence[float], spectral: Sequence[float], at: Floats) -> F
 
 
 def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
-    """Return frequencies [Hz] and densities [m²/Hz] of a dataset, over all directions."""
+    """Read frequencies [Hz] and densities summed over all directions [m²/Hz] from NetCDF."""
     with reading(path), open_current(path) as data:
         names = [
             str(name)
@@ -326,7 +337,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
         spectrum = data[names[0]]
         along = [str(each) for each in spectrum.dims if str(each).startswith("freq")]
         if not along or along[0] not in data.coords:
-            raise UnreadableError(f"{names[0]} has no dimension of frequencies with its values")
+            raise UnreadableError(f"{names[0]} has no frequency dimension with values")
         values = spectrum.transpose(along[0], ...)
         for name in [str(each) for each in spectrum.dims if str(each).startswith("dir")]:
             count, unit = data.sizes[name], str(spectrum.attrs.get("units", ""))
@@ -343,11 +354,10 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 
 
 def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
-    """Return the seas of a scatter table, each with its share of the time.
+    """Return the sea states of a scatter table, each with its share of the time.
 
     The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
-
-    InputError: lists all mistakes with their lines.
+    Raise InputError with all mistakes and their lines.
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":
@@ -359,7 +369,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     whole = sum(shares)
     for number, (height, period, share) in rows:
         if height <= 0.0 or period <= 0.0 or share < 0.0:
-            message = "height and period are above 0, and a share is not negative"
+            message = "height and period must be above 0, and a share must not be negative"
             problems.append(Problem(str(path), number, 1, message))
             continue
         try:
@@ -370,7 +380,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
         if share > 0.0:
             states.append(SeaState(height, period, sea.density, share / whole))
     if not problems and not states:
-        problems.append(Problem(str(path), 1, 1, "no sea has a share of the time"))
+        problems.append(Problem(str(path), 1, 1, "no sea has a share above 0"))
     counts = all(share == round(share) for share in shares)
     if not counts and min(abs(whole - 1.0), abs(whole / 100.0 - 1.0)) > SHARES:
         message = f"shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"
@@ -381,7 +391,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
 
 
 def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float, ...]]]:
-    """Return the rows of a table by the names of its columns, with their lines."""
+    """Return the line number and the values of the named columns of each row."""
     example = ",".join(names)
     table = read_table(path, example)
     header = [cell.strip() for cell in table.header.cells]

@@ -1,10 +1,10 @@
-"""Tables of the probability that a limit is exceeded, by design."""
+"""Tables of the probability with which designs exceed a limit."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import inf
 
 from calm.checks.assess import RULES
-from calm.checks.finding import AS_GIVEN, Finding, by_rule
+from calm.checks.finding import AS_GIVEN, OWN, Finding, by_rule
 from calm.report import blocks
 from calm.report.blocks import number, words
 from calm.report.open_items import limit_text
@@ -16,9 +16,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """Tabulate the designs in order of decreasing maximum probability, if probabilities were
-    computed.
-    """
+    """Yield the table of probabilities, if any were computed; the most critical design is first."""
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):
@@ -51,9 +49,9 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
 
 def _place(finding: Finding) -> str:
-    """Name the environment of a finding and its situation."""
     changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
-    return f"{finding.environment}{changed}"
+    environment = "default" if finding.environment == OWN else finding.environment
+    return f"{environment}{changed}"
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:

@@ -1,4 +1,4 @@
-"""First screen: the line, its picture and its verdict; the catalogue opens on request."""
+"""Main screen: the line, its picture and its verdict, and the catalogue on request."""
 
 from functools import partial
 from typing import Any
@@ -62,7 +62,7 @@ class BuilderScreen(ComparingScreen):
         self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
-        """Suspend to the shell; if a value is being typed, or without a shell, undo instead."""
+        """Suspend to the shell; undo instead if a value is being typed or if there is no shell."""
         if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
@@ -186,7 +186,7 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(listed, session.components), take)
 
     def action_change_component(self) -> None:
-        """Edit the component of the row in a form; keys that are not in the form are unchanged."""
+        """Edit the component of the row in a form; keys without a field in the form are kept."""
         from calm.tui.component_screen import ComponentScreen
 
         spot, session = self.line.table.spot, self.session

@@ -1,4 +1,4 @@
-"""Dialogs over the screen: questions with answers, input sheets, long texts."""
+"""Dialogs over the screen: questions, input sheets and long texts."""
 
 from __future__ import annotations
 
@@ -40,7 +40,10 @@ Then = Callable[[], object]
 
 
 def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
-    """Open a screen on top of the others, and pass its result to `take` unless it is cancelled."""
+    """Open a screen on top of other screens.
+
+    Call `take` with its result, unless it is cancelled.
+    """
 
     def taken(given: T | None) -> None:
         if given is not None:
@@ -50,7 +53,7 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
 
 
 def choose(app: App[Any], question: Question) -> None:
-    """Ask a question, and run the action of the chosen answer."""
+    """Show a question, and run the action of the chosen answer."""
     ask(app, question, lambda then: then())
 
 
@@ -61,13 +64,13 @@ def enter(
     fields: Sequence[FormField],
     take: Callable[[dict[str, str]], object],
 ) -> None:
-    """Ask for several texts on an `InputSheet`, and pass them to `take`."""
+    """Request several texts on an `InputSheet`, and call `take` with the texts."""
     ask(app, InputSheet(title, text, fields), take)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A possible answer, with its key, text and action."""
+    """Answer to a question, with its key, text and action."""
 
     key: str
     title: str
@@ -75,14 +78,14 @@ class Answer:
 
 
 def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
-    """Number answers, given as (title, action), from 1; each number is the key of its answer."""
+    """Create answers whose keys are the numbers from 1, from pairs of title and action."""
     return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
 class Question(ModalScreen[Then | None]):
-    """A question, answered by key, by arrows and Enter, or by mouse.
+    """Question that is answered by key, by arrows and Enter, or by mouse.
 
-    Esc calls `back` unless one `must` answer.
+    Esc calls `back`, unless an answer is compulsory (`must`).
     """
 
     BINDINGS = key_table.bindings("question")
@@ -154,13 +157,14 @@ class Question(ModalScreen[Then | None]):
 
 
 class Form(Screen[T | None]):
-    """Fields that are entered together: Enter moves to the next field, and on the last field
-    accepts all.
+    """Fields that are entered together.
+
+    Enter moves to the next field; on the last field it accepts all fields.
     """
 
     @property
     def fields(self) -> list[Field]:
-        """All fields in order; tables are not included."""
+        """All fields in order, without tables."""
         return list(self.query(Field))
 
     @property
@@ -175,7 +179,7 @@ class Form(Screen[T | None]):
         return {part.key: part.text for part in self.all_parts}
 
     def parts_of(self, fields: Iterable[FormField]) -> Iterator[Widget]:
-        """Yield the widgets of the fields, each group under its name."""
+        """Yield widgets for fields, with a heading above each group."""
         for each in fields:
             if each.above:
                 yield Static(each.above, classes="above", markup=False)
@@ -211,9 +215,9 @@ _TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ g
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
-    """Sheet with several text fields; Esc discards all changes.
+    """Sheet with several text fields, which Esc discards.
 
-    It is wide if the fields have notes next to them.
+    The sheet is wide if there are notes next to the fields.
     """
 
     BINDINGS = key_table.bindings("sheet")
@@ -282,7 +286,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
 
 class LongText(ModalScreen[None]):
-    """Scrollable text over the screen, `wide` for tables."""
+    """Scrollable text over the screen; `wide` gives room for tables."""
 
     BINDINGS = key_table.bindings("help")
     DEFAULT_CSS = (

@@ -1,4 +1,4 @@
-"""The line pane: rows of the line and the actions on them."""
+"""The line pane, with the rows of the line and the actions on them."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -29,7 +29,7 @@ _FROM_A_ROW = frozenset(
 
 
 class LinePane(LineSearch):
-    """Pane in which the line is edited: cells, rows and their order.
+    """Pane in which the cells and rows of the line are edited.
 
     Parameters
     ----------
@@ -46,13 +46,11 @@ class LinePane(LineSearch):
         self._cell: LineCell | None = None  # the cell edited now or last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable row actions while a value is typed, and actions that need a row in an empty
-        line.
-        """
+        """Disable actions on rows while a value is typed or if the line is empty."""
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the current rows with their known values."""
+        """Show the rows of the draft, with values from the last view that fits."""
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()
         figures = view if view is not None and (view.rows or view.problems) else workspace.good
@@ -60,7 +58,7 @@ class LinePane(LineSearch):
         self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Place | None = None) -> None:
-        """Show a new draft; the cursor moves to `spot`, if given."""
+        """Show a new draft, and move the cursor to `spot`, if given."""
         here = self.table.spot if spot is None else spot
         self.leave_cell()
         self.table.mark(frozenset())
@@ -68,7 +66,7 @@ class LinePane(LineSearch):
         self.table.go_to(here)
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
-        """Accept typed text, then make a change; return whether the change was made."""
+        """Accept typed text and make a change; return whether the change was made."""
         if not self.settle():
             return False
         self.session.followed = []
@@ -111,7 +109,7 @@ class LinePane(LineSearch):
     # findings
 
     def action_next_finding(self) -> None:
-        """Go to the next row with a failure, else a warning, else a missing value."""
+        """Move to the next row with a failure, else with a warning, else with a missing value."""
         rows, here = self.table.rows, self.table.cursor
         around = [*range(here + 1, len(rows)), *range(here + 1)]
         for state in (State.FAIL, State.WARN, State.UNKNOWN):
@@ -165,9 +163,7 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Fill one column of the marked rows, or of all rows with the same component as this
-        row.
-        """
+        """Edit one column of the marked rows, or of all rows with the component of this row."""
         table = self.table
         spots = table.chosen
         if not table.marked:
@@ -257,10 +253,10 @@ class LinePane(LineSearch):
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """Return the selected rows; if pieces are mixed with clamps of other pieces, show a message
-        and return ().
+        """Return the selected rows, unless pieces are mixed with clamps of other pieces.
 
-        Such clamps have no position among pieces that are pasted or moved.
+        Such clamps have no position among pieces that are pasted or moved. If there are any, a
+        message is shown and () is returned.
         """
         chosen = self.table.chosen
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
@@ -290,7 +286,7 @@ class LinePane(LineSearch):
             self._edit(LineCell(self.workspace, spot, column))
 
     def _edit(self, cell: LineCell) -> None:
-        """Edit a value after accepting text typed in another cell."""
+        """Edit a value, after accepting the text typed in another cell."""
         if refused := cell.refused:
             self.workspace.tell(refused)
         if refused or not self.settle():

@@ -1,4 +1,4 @@
-"""Verdict next to the picture, with lines that link to the affected rows."""
+"""Pane with the verdict, whose lines link to the rows concerned."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """Pane with the verdict: values at the anchor and the top, and the findings with their reasons.
+    """Pane with the verdict: values at the anchor and the top, and findings with their reasons.
 
     Parameters
     ----------
-    go_to : called with the rows of a chosen line, or () to go back, and with the text of the line
+    go_to : called with the rows and the text of a chosen line, or with () to go back
     """
 
     BINDINGS = key_table.bindings("verdict")
@@ -50,7 +50,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         self._chosen = 0
 
     def say(self, view: View | None, note: str = "") -> None:
-        """Show the verdict of a view, and a note below."""
+        """Show the verdict of a view, followed by a note."""
         parts = [*_parts(view, note)]
         self._lines, self._texts = [each for each, _ in parts], [text for _, text in parts]
         self._chosen = min(self._chosen, len(self._lines) - 1)
@@ -119,7 +119,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
 
 def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, RenderableType]]:
-    """Yield the lines of the verdict with their rendering."""
+    """Yield the lines of the verdict, each with its rendering."""
     head = headline(view)
     style = "dim" if head.state is None else theme.LOOKS[head.state]
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
@@ -138,6 +138,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, Renderab
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """Return the headline with its sign; an `old` verdict has an ellipsis as its sign."""
+    """Return the headline of the verdict, after its sign or, if it is `old`, after an ellipsis."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

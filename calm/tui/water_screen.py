@@ -1,4 +1,4 @@
-"""Water screen: a form for each environment, with its current profile."""
+"""Water screen, with a form for each environment and its current profile."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -52,8 +52,9 @@ _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGri
 
 
 class WaterScreen(screen.DraftScreen):
-    """Depth, density, current and wind of each environment; the line is solved in the environment
-    shown.
+    """Screen for depth, density, current and wind of each environment.
+
+    The line is solved in the environment shown.
     """
 
     BINDINGS = key_table.bindings("water")
@@ -98,20 +99,20 @@ class WaterScreen(screen.DraftScreen):
 
     @property
     def water(self) -> WaterForm:
-        """The displayed environment in the current draft."""
+        """The environment shown, in the current draft."""
         standing = self.session.standing
         here = standing.environment
         return WaterForm(self.session.draft, here if here in standing.environments else None)
 
     @property
     def environment_file(self) -> str | None:
-        """Environment file given on the command line, if it is the current environment."""
+        """Environment file given on the command line, if it is the environment shown."""
         standing, draft = self.session.standing, self.session.draft
         here = standing.environment
         return None if here in standing.environments or draft.problems else here
 
     def titles(self) -> tuple[str, str]:
-        """Return the title and the verdict."""
+        """Return the title, and the verdict in the environment shown."""
         state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
@@ -159,7 +160,7 @@ class WaterScreen(screen.DraftScreen):
             grid.show_profile(*water.table(*_place(grid)), water.depth)
 
     def _is_gone(self, part: Widget) -> bool:
-        """Return whether a part of the form does not apply to the current input forms."""
+        """Return whether a widget is hidden because its property is given in another form."""
         form = _FORMS.get(type(part))
         if form is None:
             return False
@@ -173,7 +174,7 @@ class WaterScreen(screen.DraftScreen):
         return bool(form) and key in ("density", "current") and water.form(*place) != form
 
     def replaced(self) -> None:
-        """Show another draft; discard typed text and values of replaced forms."""
+        """Show another draft; discard typed text, and the values remembered from other forms."""
         self._left.clear()
         self.discard_typing()
         self.show_draft()
@@ -181,7 +182,7 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file; return whether this succeeded, and report any failure."""
+        """Change the file, return whether this succeeded, and show the reason for a failure."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -190,18 +191,21 @@ class WaterScreen(screen.DraftScreen):
         return is_made
 
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
-        """Replace the current by a table with the given rows."""
+        """Replace the current by a table."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
     # typed text
 
     @property
     def is_typing(self) -> bool:
-        """Whether typed text has not been written to the draft yet."""
+        """Whether text was typed that is not in the draft yet."""
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
-        """Accept typed text; the first invalid value stays in its field and is reported."""
+        """Write typed text to the draft, and return whether all values are valid.
+
+        The first invalid value stays in its field, with a message.
+        """
         if not all(grid.settle() for grid in self.query(ProfileGrid)):
             return False
         for field in self.query(Field):
@@ -218,7 +222,7 @@ class WaterScreen(screen.DraftScreen):
         return True
 
     def discard_typing(self) -> None:
-        """Discard typed text that has not been written to the draft."""
+        """Discard typed text that is not in the draft yet."""
         for field in self.query(Field):
             field.reset(field.begun)
         for grid in self.query(ProfileGrid):
@@ -242,7 +246,7 @@ class WaterScreen(screen.DraftScreen):
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     def _preview(self, grid: ProfileGrid, copied: CopiedTable, headings: list[str]) -> None:
-        """Show a preview of pasted rows, with columns that can be corrected."""
+        """Show a preview of pasted rows, in which the column headings can be corrected."""
         columns = grid.cells.headings
 
         def taken(text: str) -> Rows:
@@ -268,9 +272,7 @@ class WaterScreen(screen.DraftScreen):
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Use a pasted table as the current, in any form, unless it is pasted into a table of the
-        form.
-        """
+        """Use a pasted table as the current, unless another table of the form receives it."""
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
@@ -279,7 +281,7 @@ class WaterScreen(screen.DraftScreen):
 
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
-        """Change the form of the current or the density, restoring earlier values if any."""
+        """Change the form of a property, restoring the values that it had in this form before."""
         place, form, message = _place(event.choice), event.form, ""
         if form == "file":
             self.action_load_current()
@@ -300,7 +302,7 @@ class WaterScreen(screen.DraftScreen):
         self.call_after_refresh(self._first_of(place, form).focus)
 
     def _first_of(self, place: Place, form: str) -> Widget:
-        """Return the first widget of a form's value, or the next widget below."""
+        """Return the first widget for a property in a given form, or the next widget below."""
         key = "-".join(place)
         if form == "table":
             return self.query_one(f"#{key}-table GridCells")
@@ -386,8 +388,9 @@ class WaterScreen(screen.DraftScreen):
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
-        """Read a current from CSV or NetCDF; the file then refers to it, or holds a copy of its
-        profile.
+        """Read a current from CSV or NetCDF.
+
+        The mooring file then refers to this file, or contains a copy of its profile.
         """
 
         def take(texts: dict[str, str] | None) -> None:
@@ -433,7 +436,7 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Discard invalid typed text, or undo the last change."""
+        """Discard typed text if it is invalid, else undo the last change."""
         if self.settle():
             super().action_undo()
         else:
@@ -441,7 +444,7 @@ class WaterScreen(screen.DraftScreen):
             self.show_draft()
 
     def action_back(self) -> None:
-        """Return to the line; valid typed text is accepted, invalid text discarded."""
+        """Return to the line; typed text is accepted if valid, else discarded."""
         self.settle()
         self.dismiss()  # not awaited, because this ends the loop that would wait
 

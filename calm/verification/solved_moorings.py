@@ -1,7 +1,7 @@
 """Verification against two moorings solved by others: S1000, and CDMS-1 of Berteaux's manual (C16).
 
-S1000 is a float on 1000 m of elastic cable in a sheared current. CDMS-1 was solved by two other
-programs.
+S1000 is a float on 1000 m of elastic cable in a sheared current. Two other programs have solved
+CDMS-1.
 """
 
 from dataclasses import replace
@@ -26,7 +26,7 @@ _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """Return the line of the mooring S1000, with its cable divided into equal parts."""
+    """Return the line of the mooring S1000, whose cable may be divided into equal parts."""
     part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return published_case.line_of(
         published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
@@ -35,7 +35,7 @@ def s1000_mooring(parts: int = 1) -> Line:
 
 @cache
 def solved_s1000(degrees: float) -> Solution:
-    """Return the solution for the mooring S1000 at an angle step [degrees]."""
+    """Solve the mooring S1000 at an angle step [degrees]."""
     return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
 
 
@@ -59,7 +59,10 @@ def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
 
 
 def _order(coarse: float, fine: float) -> float:
-    """Return the order of convergence of the float's depth as marched, from two angle steps."""
+    """Return the order of convergence of the float's depth, from two angle steps [degrees].
+
+    The depths are those of the march, before extrapolation.
+    """
     errors = [
         abs(float_depth(solved_s1000(degrees).as_marched) - DEPTH) for degrees in (coarse, fine)
     ]
@@ -70,9 +73,9 @@ _EXPECTED = DEPTH, OFFSET, TENSION, KNOCKDOWN
 
 S1000 = published_case.Source(
     "S1000",
-    """The reference case of accuracy and speed, `lines/s1000.yaml`: a float of 4000 N and 0.6 m² of
-drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water, in a
-current of 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. Its figures come from an
+    """`lines/s1000.yaml` is the reference case for accuracy and speed: a float of 4000 N with 0.6
+m² of drag area, on 1000 m of cable (10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN) in 1100 m of water. The
+current is 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. The expected values come from an
 initial-value integration of the differential equations with bracketing; the tests compare them with
 a second independent integration.""",
     (
@@ -115,9 +118,7 @@ def _rope(length: float, diameter: float, weight: float, modulus: float, ct: flo
 
 
 def cdms_1_mooring(ct: float = 0.0) -> Line:
-    """Return the line of the mooring CDMS-1, with a given tangential drag coefficient of its
-    cables.
-    """
+    """Return the line of the mooring CDMS-1 for a given tangential drag coefficient."""
     meter = LinePiece(2.0, False, -20.0 * GRAVITY, published_case.HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
     return published_case.line_of(
@@ -125,7 +126,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
         _rope(10.0, 0.007, 0.12, 1.38e11, ct),
         meter, kevlar[0], meter, kevlar[1], meter, kevlar[2],
         *[_sphere(0.51, 23.0, 0.95)] * 10,
-        meter,  # the release has the meters' figures
+        meter,  # the release has the same values as a meter
         _rope(4.8, 0.022, 2.33, 0.0, ct),
         anchor_height=0.55,
     )  # fmt: skip
@@ -133,7 +134,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
 
 @cache
 def solved_cdms_1() -> Solution:
-    """Return CALM's solution for CDMS-1 at default settings, with the anchor at the origin."""
+    """Solve the mooring CDMS-1 at default settings, with the anchor at the origin."""
     return solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
 
 
@@ -147,8 +148,9 @@ def height_at(solution: Solution, node: int) -> float:
 
 
 def nodes_of_tensions(solution: Solution) -> list[int]:
-    """Return the nodes with a printed tension: below the sphere, below the third meter, and at the
-    anchor.
+    """Return the nodes for which a tension is published.
+
+    They are below the sphere, below the third current meter, and at the anchor.
     """
     last: list[int] = solution.piece_nodes[[0, _THIRD_METER, -1], 1].tolist()
     return last
@@ -199,29 +201,30 @@ sphere, below the third meter and at the anchor [kgf].
 """
 
 _PROGRAM = (
-    "Heights 1 m and tensions 2 %: the two programs err by 1 to 4 % themselves and differ from "
-    "each other by as much."
+    "1 m for heights and 2 % for tensions: the two programs have errors of 1 to 4 % and differ "
+    "from each other as much."
 )
-_RANGE = "The programs' range, with half a unit of their last digit."
+_RANGE = "The range of the programs, plus half a unit of their last digit."
 
 CDMS_1 = published_case.Source(
     "CDMS-1",
-    """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
-of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D
-users guide. From the top: a sphere of 1.2 m, 10 m of wire, three current meters with 98 m of Kevlar
-below the first two and 212.9 m below the third, ten glass balls, a release, 4.8 m of chain and the
-anchor, in 525 m of water. The current is 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
+    """CDMS-1 is an intermediate mooring of the user manual of Berteaux's CDMS package (C16). The
+users guide of R. Dewey's *Mooring Design & Dynamics* (MD&D) prints the results of Berteaux's SSMOOR
+and of MD&D. From the top, the mooring has a sphere of 1.2 m, 10 m of wire, three current meters
+with 98 m of Kevlar below the first two and 212.9 m below the third, ten glass balls, a release, 4.8
+m of chain and the anchor, in 525 m of water. The current is 1.5, 0.6 and 0.1 m/s at heights of 525,
+325 and 0 m.
 
-**Why the programs differ.** MD&D's tensions are 2 % above SSMOOR's from the third meter down. The
-gap is the downward part of the normal drag: on an inclined line a drag normal to the line has a
-component that pushes it down and takes tension off its lower part. SSMOOR and CALM include it; the
-drag law of the MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the
-current) does not. The users guide blames |U|Uᵢ in place of Uᵢ², but these are the same in a current
-of one direction. An independent solution with rigid links and segments of 0.25 to 1 m
-gives 815.1 kgf at the anchor with normal drag, 826.6 with MD&D's law: each within 0.3 % of the
-program it stands for. SSMOOR's offset is 4 to 6 m shorter than everyone else's. CALM takes normal
-drag and no tangential drag here; it agrees with the independent solution to 0.1 m in height and
-0.2 % in tension.""",
+**Why the programs differ.** From the third meter down, MD&D's tensions are 2 % above SSMOOR's. The
+difference is the downward component of the normal drag on an inclined line, which reduces the
+tension in the lower part of the line. SSMOOR and CALM include this component. The drag law of the
+MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the current) does not. The
+users guide attributes the difference to |U|Uᵢ instead of Uᵢ², but these are equal in a current of
+one direction. An independent solution with rigid links and segments of 0.25 to 1 m has 815.1 kgf at
+the anchor with normal drag, and 826.6 kgf with MD&D's law. Each is within 0.3 % of the program with
+the same law. SSMOOR's offset is 4 to 6 m shorter than all others. CALM, here with normal drag and
+no tangential drag, agrees with the independent solution to 0.1 m in height and 0.2 % in
+tension.""",
     (
         *(
             case
@@ -234,7 +237,7 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             )
         ),
         Case("C16 both programs: offset of the sphere", 74.0, "m", 3.0,
-             "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
+             "71 to 77 m: SSMOOR has 71.0, MD&D 75.5, the independent solution 76.8 m.",
              lambda: _OFFSET.of(solved_cdms_1()), Kind.PUBLISHED),
         Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
              lambda: _ends().lean, Kind.PUBLISHED),
@@ -245,7 +248,7 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             "better.", Kind.INDEPENDENT),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
-                 "0.2 %: the printed data define the mooring no better.", got,
+                 "0.2 %, the accuracy of the printed data of the mooring.", got,
                  Kind.INDEPENDENT)
             for name, kgf, got in (
                 ("anchor, horizontal", 131.6, lambda: _ends().horizontal / GRAVITY),
