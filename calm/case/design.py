@@ -538,7 +538,7 @@ class Result:
         """Pieces of the file, leg by leg."""
         if not self.several:
             return self.leg.components
-        tables = [leg.components.head(len(leg.leg.pieces)) for leg in self.legs]
+        tables = [leg.components.rows(slice(len(leg.leg.pieces))) for leg in self.legs]
         pieces = self.file.pieces
         whole = Components.joined(tables)
         return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))

@@ -137,7 +137,7 @@ class Leg:
         line = assemble_line(pieces, solver, self.water.gravity)
         if self.top.free and solver.buoy_drag == "immersed":
             floating = assemble_floating(pieces, self.file.environment, self.water)
-            line = replace(line, floating=floating)
+            line = line if floating is None else replace(line, floating=floating)
         for piece in pieces:
             if piece.length is None:
                 with parts.naming_the_piece(pieces):
@@ -160,6 +160,8 @@ class Leg:
 
         Raises NoEquilibrium if no length fits.
         """
+        if all(piece.length is not None for piece in file.pieces):
+            return file
         pieces = tuple(
             piece
             if piece.length is not None

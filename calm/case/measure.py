@@ -51,7 +51,7 @@ def shape_of(solution: Solution) -> Shape:
 
 def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
     """Append the anchor, upright below the lower end of the line, to the components."""
-    end = LineEnd(above[-1], anchor, depth)
+    end = LineEnd(above.rows(slice(-1, None))[0], anchor, depth)
     return Components.joined([above, _standing(Components, anchor, end)])
 
 

@@ -13,9 +13,12 @@ from types import FunctionType
 from typing import Any, ParamSpec, TypeVar
 
 from calm.errors import NoEquilibrium
+from calm.physics.line import Line, Water, once_per_input
 
 MOST = 256
 """Number of outcomes that are kept; older ones are discarded."""
+
+Key = tuple[str | bytes, ...]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -29,7 +32,7 @@ class Memory:
     """
 
     def __init__(self) -> None:
-        self._outcomes: OrderedDict[bytes, Any] = OrderedDict()
+        self._outcomes: OrderedDict[Key, Any] = OrderedDict()
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
@@ -39,7 +42,7 @@ class Memory:
         """Return the outcome of a solver for its arguments, from the cache if possible. A cached
         `NoEquilibrium` is raised again.
         """
-        key = _digits((solver.__module__, solver.__qualname__, given, named))
+        key = _key(solver, given, named)
         with self._lock:
             known = key in self._outcomes
             if known:
@@ -93,7 +96,18 @@ def _names(record: type) -> tuple[str, ...]:
     return tuple(each.name for each in fields(record))
 
 
-def _digits(given: object) -> bytes:
+def _key(solver: Callable[..., object], given: tuple[object, ...], named: object) -> Key:
+    """Return the key of an outcome: the name of the solver, and its serialised inputs."""
+    inputs = (_of_arrays(one) if isinstance(one, Line | Water) else _written(one) for one in given)
+    return solver.__module__, solver.__qualname__, *inputs, _written(named)
+
+
+@once_per_input
+def _of_arrays(given: Line | Water) -> bytes:
+    return _written(given)
+
+
+def _written(given: object) -> bytes:
     written = io.BytesIO()
     _Describing(written).dump(given)
     return written.getvalue()

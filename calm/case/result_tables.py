@@ -148,9 +148,9 @@ class ColumnTable(Columnar, Generic[Row]):
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
         return tuple(map(self.record, *plain))
 
-    def head(self, count: int) -> Self:
-        """Return the first rows."""
-        return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
+    def rows(self, chosen: slice) -> Self:
+        """Return a table of some of the rows."""
+        return type(self)(**{name: part[chosen] for name, part in self.__getstate__().items()})
 
     def with_row(self, row: Row) -> Self:
         """Return a copy of the table with one more row."""

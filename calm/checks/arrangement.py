@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from math import cos, radians, sin
 
@@ -302,7 +301,7 @@ def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
             pulls.append((abs(lift - drag * rise.rise_speed**2), ascent, "R"))
         if pulls:
             pull, when, case = max(pulls)
-            yield replace(_verdict(part, pull, when), case=case)
+            yield _verdict(part, pull, when).but(case=case)
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
@@ -410,4 +409,4 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
         return at_most(part, pull, breaking, message, _HOLDS)
     message = f"{load}; its `grip` is unknown."
     not_judged = verdict_on(part, State.NOT_JUDGED, message, value=pull)
-    return replace(not_judged, lacks=Lack(part.label, "grip"))
+    return not_judged.but(lacks=Lack(part.label, "grip"))

@@ -89,7 +89,7 @@ def checked_environment(
     states = {_of(finding): finding.state.severity for finding in given}
     failed = {_of(finding) for finding in given if finding.state is State.FAIL}
     others = [
-        replace(one, state=State.WARN)
+        one.but(state=State.WARN)
         if one.situation == STRUMMING and one.state is State.FAIL and _of(one) not in failed
         else one
         for findings in changed
@@ -150,7 +150,7 @@ def assessment_of(
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
     if first.result is not None and not moving(stand.leg for stand in in_environments):
         still = equilibrium.find(situations.STILL_ONLY, name, first.environment)
-        findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
+        findings.insert(0, still.but(case=situations.case_of(1, AS_GIVEN)))
     return Assessment(
         name=name,
         in_environments=tuple(in_environments),
@@ -179,11 +179,11 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 
     def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
         return tuple(
-            replace(
-                one,
-                case=one.case
-                or situations.case_of(numbers[one.environment], one.situation)
-                + "w" * (one.rule in _WAVE_RULES),
+            one
+            if one.case
+            else one.but(
+                case=situations.case_of(numbers[one.environment], one.situation)
+                + "w" * (one.rule in _WAVE_RULES)
             )
             for one in strength.with_one_weight(found, weights)
         )
@@ -206,7 +206,7 @@ def cased(
     """Add the load case of the environment to findings about currents and drag coefficients."""
     numbers = _numbers(in_environments)
     return [
-        replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
+        one.but(case=situations.case_of(numbers[one.environment], AS_GIVEN))
         if one.rule in (currents.name, drag_coefficient.name)
         else one
         for one in findings
@@ -289,13 +289,20 @@ def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
     situations.
     """
     assert situation.result is not None
-    file, result = situation.result.file, estimated_result(situation.result)
+    file, result = situation.result.file, _judged(situation)
     end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
     return [
         (rule, [one for one in rule.judge(result) if anchored or one.place != end])
         for rule in STANDING
         if is_judged(file, rule)
     ]
+
+
+@lru_cache(maxsize=16)
+def _judged(situation: Situation) -> LegResult:
+    """Return the result of a situation with the lower bounds of estimates."""
+    assert situation.result is not None
+    return estimated_result(situation.result)
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
@@ -311,7 +318,7 @@ def _findings_in_waves(
     if given.result is None:
         return
     acceptance = Acceptance.of_file(given.result.file, day)
-    evidence = MooringInWaves.of(estimated_result(given.result).leg)
+    evidence = MooringInWaves.of(_judged(given).leg)
     for each in IN_WAVES:
         yield from acceptance.findings(each, each.judge(evidence), mooring, environment)
 
@@ -443,7 +450,7 @@ def _probable(
     or in all.
     """
     return tuple(
-        replace(one, probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
+        one.but(probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
         if one.limit is not None and situation in (None, one.situation)
         else one
         for one in findings

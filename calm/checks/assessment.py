@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
-from functools import partial
+from functools import lru_cache, partial
 from typing import TypeVar
 
 from calm.case.leg import Leg
@@ -32,6 +32,7 @@ from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
+from calm.files.definition import EstimatedFigure
 from calm.files.pieces import parts_of
 from calm.files.rule_texts import LOADED, RULES
 from calm.quantities import say
@@ -248,17 +249,17 @@ class Acceptance:
         to unknown.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
-        own = {} if part is None or not figures else part.component.estimates
-        used = [one for name, one in own.items() if name in figures]
-        if part is None or not used or finding.state not in (State.PASS, State.FAIL):
+        if part is None or not figures or finding.state not in (State.PASS, State.FAIL):
+            return finding
+        estimates = part.component.estimates
+        used = tuple(one for name, one in estimates.items() if name in figures)
+        if not used:
             return finding
         passes = finding.state is State.PASS
-        estimates = " ".join(f"Its {one}." for one in used)
-        return replace(
-            finding,
+        return finding.but(
             state=State.ESTIMATED if passes else State.UNKNOWN,
-            message=f"{finding.message} {estimates}",
-            estimates=tuple(used),
+            message=f"{finding.message} {_in_words(used)}",
+            estimates=used,
             lacks=None if passes else Lack(part.label, used[0].quantity),
         )
 
@@ -286,7 +287,7 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
 
     The accepted load becomes the limit of a finding without limit.
     """
-    accepted = replace(finding, state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
+    accepted = finding.but(state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
     load, tension = accept.load, finding.value
     if load is None or tension is None or finding.rule not in LOADED:
         return accepted
@@ -295,8 +296,13 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
             f"{finding.message} The `accept` in line {accept.line} allows at most "
             f"{say('load', load)}."
         )
-        return replace(finding, message=message)
-    return accepted if finding.limit is not None else replace(accepted, limit=load, sense="<=")
+        return finding.but(message=message)
+    return accepted if finding.limit is not None else accepted.but(limit=load, sense="<=")
+
+
+@lru_cache(maxsize=64)
+def _in_words(estimates: tuple[EstimatedFigure, ...]) -> str:
+    return " ".join(f"Its {one}." for one in estimates)
 
 
 def estimated(leg: Leg) -> Leg:

@@ -148,7 +148,7 @@ def assessment_of(
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if found and max(fast) < situations.LEAST_CURRENT:
         still = situations.equilibrium.find(situations.STILL_ONLY, name, first)
-        findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
+        findings.insert(0, still.but(case=situations.case_of(1, AS_GIVEN)))
     surface = bool(whole.for_surface)
     accepted = [*(one for stand in in_environments for one in stand.accepted), *findings]
     return Assessment(

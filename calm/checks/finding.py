@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import cached_property, partial
 from math import ceil, inf, isfinite
 from operator import attrgetter
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, Self, TypeVar
 
 from calm.files import Accept, LinePart, Place
 from calm.files.definition import EstimatedFigure
@@ -179,6 +179,17 @@ class Verdict:
     missing: MissingFigure | None = None
     case: str | None = None
 
+    def but(self, **changed: Any) -> Self:
+        """Return a copy with changed fields.
+
+        A check has tens of thousands of verdicts, and `dataclasses.replace` takes far longer.
+        """
+        values = vars(self) | changed
+        values.pop("utilisation", None)  # a cached property of findings
+        copy = object.__new__(type(self))
+        vars(copy).update(values)
+        return copy
+
     @property
     def margin(self) -> float | None:
         """Distance of the value from its limit, in its unit; negative if the limit is exceeded."""
@@ -263,7 +274,7 @@ def unknown(
     """
     lacking = of or part
     lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
-    return replace(verdict_on(part, State.UNKNOWN, message, remedy, value), lacks=lack)
+    return verdict_on(part, State.UNKNOWN, message, remedy, value).but(lacks=lack)
 
 
 def verdict_on(
@@ -317,16 +328,17 @@ class Rule:
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
     ) -> Finding:
         """Convert a verdict of this rule to a finding."""
-        return Finding(
-            **(
-                vars(verdict)
-                | {"source": verdict.source or self.source, "case": verdict.case or self.case}
-            ),
+        found = object.__new__(Finding)  # as in `Verdict.but`
+        vars(found).update(_NOT_ACCEPTED, **vars(verdict))
+        vars(found).update(
+            source=verdict.source or self.source,
+            case=verdict.case or self.case,
             mooring=mooring,
             environment=environment,
             rule=self.name,
             situation=situation,
         )
+        return found
 
 
 def rule(
@@ -405,6 +417,14 @@ class Finding(Verdict):
         if self.missing is not None:
             return self.missing.places
         return () if self.place is None else (self.place,)
+
+
+_NOT_ACCEPTED = {
+    one.name: one.default
+    for one in fields(Finding)
+    if one.name in ("accept", "unaccepted", "probability", "estimates")
+}
+"""Fields of a new finding that a rule does not set."""
 
 
 def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:

@@ -1,7 +1,6 @@
 """Rules on deployment and recovery: back-up buoyancy, launch, ascent."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from math import isnan
 
 from calm.case.warnings import counted_working_load
@@ -220,7 +219,7 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
             named = ", ".join(piece.label for piece in pieces[:3])
             more = f" and {len(pieces) - 3} more" if len(pieces) > 3 else ""
             message = f"{what} {named}{more}: the line doubles back and may tangle."
-            yield replace(verdict_on(pieces[0], State.WARN, message, remedy), case=case)
+            yield verdict_on(pieces[0], State.WARN, message, remedy).but(case=case)
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:

@@ -5,7 +5,6 @@ pieces.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 
 from calm.checks.assessment import MISSING
 from calm.checks.finding import Finding, MissingFigure, State, Verdict, grouped_by, rule
@@ -85,7 +84,7 @@ def gathered(
             tuple(dict.fromkeys(one.place for one in group if one.place)),
             component.estimates.get(quantity),
         )
-        found[use, quantity] = [replace(one, missing=figure) for one in group]
+        found[use, quantity] = [one.but(missing=figure) for one in group]
     return found
 
 

@@ -1,7 +1,6 @@
 """Strength rules: loads on every piece, minimum tension of the line, and holding of the anchor."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -393,7 +392,7 @@ def with_one_weight(
     for one in findings:
         lead = governing.get(one.place)
         too_light = one.rule in ANCHOR_RULES and one.remedy is not None and one.limit is not None
-        yield replace(one, remedy=lead.remedy) if lead is not None and too_light else one
+        yield one.but(remedy=lead.remedy) if lead is not None and too_light else one
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 from calm.case.leg import Leg
@@ -156,10 +156,8 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
     if verdict.state is not State.FAIL or not waves.warnings:
         return verdict
     message = f"{verdict.message} {' '.join(waves.warnings)}"
-    return replace(
-        verdict, state=State.UNKNOWN, message=message, remedy="Set the rope's `stiffness`.",
-        limit=None, sense=None,
-    )  # fmt: skip
+    remedy = "Set the rope's `stiffness`."
+    return verdict.but(state=State.UNKNOWN, message=message, remedy=remedy, limit=None, sense=None)
 
 
 def _years(count: float) -> str:

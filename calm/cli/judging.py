@@ -124,10 +124,11 @@ def load_ahead(environments: int, drawn: bool) -> None:
 
     expect_many(SOLVES * environments)
     if drawn:
-        import calm.report.check_report
-        import calm.report.html  # noqa: F401
+        import calm.report.check_report  # noqa: F401
         from calm.drawing.typesetting import signs
+        from calm.report.html import read_templates
 
+        read_templates()
         signs()  # reads the font
 
 

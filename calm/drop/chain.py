@@ -68,6 +68,11 @@ class Elements:
         return bool(self.lift.any())
 
     @cached_property
+    def thins(self) -> bool:
+        """Whether at least one load becomes thinner as it stretches."""
+        return bool(self.thinning.any())
+
+    @cached_property
     def share(self) -> Floats:
         """(2, k) fractions of each load that act on the upper and on the lower node of its bar."""
         return np.stack([1.0 - self.place, self.place])

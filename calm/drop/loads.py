@@ -94,12 +94,14 @@ def loads_on(
     current, shear, density = sea.at(-height)
     flow = current - velocity
     dense = density / REFERENCE_DENSITY
-    grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
+    grown = dense
+    if on.thins:
+        grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
     lift, stiffness, wet, wetting, push = _afloat(chain, sea, height, density)
-    speed = np.sqrt((flow * flow).sum(axis=0) + slowest**2)
-    along = on.directional * (flow * axis).sum(axis=0)
+    speed = np.sqrt(_products(flow, flow) + slowest**2)
+    along = on.directional * _products(flow, axis)
     across = flow - along * axis
-    size = np.sqrt((across * across).sum(axis=0) + slowest**2)
+    size = np.sqrt(_products(across, across) + slowest**2)
     kn, kt = grown * variation * on.normal_drag, on.directional * grown * on.tangential_drag
     square, slope, aside, oblique = _friction(chain, kt, along, speed, slowest)
     sized = kn * size
@@ -110,27 +112,35 @@ def loads_on(
     normal = (wet * kn / size * across)[:, np.newaxis] * across
     by_flow = normal + (skewed * axis)[:, np.newaxis] * axis
     by_axis = axis[:, np.newaxis] * (skewed * across - turned * axis) - along * normal
-    by_axis[_DIAGONAL] += turned
+    _diagonal(by_axis)[...] += turned
     if aside is not None:
         by_flow += (wet * aside * axis)[:, np.newaxis] * flow
     if oblique is not None:
         drag += oblique * flow
         by_flow += (wet * oblique / speed**2 * flow)[:, np.newaxis] * flow
         held = held + wet * oblique
-    by_flow[_DIAGONAL] += held
+    _diagonal(by_flow)[...] += held
     force = wet * drag + push
     force[2] += lift
     if on.lifts:
         raised = dense * on.lift * wet
         force[2] += raised * speed**2
         by_flow[2] += 2.0 * raised * flow
-    by_height = wetting * drag
-    by_height -= by_flow[:, 0] * shear[0] + by_flow[:, 1] * shear[1] + by_flow[:, 2] * shear[2]
+    by_height = wetting * drag - np.einsum("ijk,jk->ik", by_flow, shear)
     by_height[2] += stiffness
     return Loads(force, by_flow, by_axis, by_height)
 
 
-_DIAGONAL = np.arange(3), np.arange(3)
+def _diagonal(matrices: Floats) -> Floats:
+    """Return the diagonals (3, k) of matrices (3, 3, k), as a view."""
+    view: Floats = np.einsum("iik->ik", matrices)
+    return view
+
+
+def _products(one: Floats, other: Floats) -> Floats:
+    """Return the (k,) scalar products of vectors (3, k)."""
+    products: Floats = np.einsum("ij,ij->j", one, other)
+    return products
 
 
 def _friction(

@@ -161,13 +161,13 @@ class Mover:
         on = self.chain.elements
         bar, (above, below) = on.bar, on.share
         chord = node[:, 1:] - node[:, :-1]
-        length = np.sqrt((chord * chord).sum(axis=0))
+        length = np.sqrt(np.einsum("ij,ij->j", chord, chord))
         axis = chord / length
-        height = above * node[2].take(bar) + below * node[2].take(bar + 1)
-        moving = above * velocity.take(bar, axis=1) + below * velocity.take(bar + 1, axis=1)
+        moving = np.concatenate([velocity, node[2:]])
+        at_load = above * moving.take(bar, axis=1) + below * moving.take(bar + 1, axis=1)
         loads = loads_on(
-            self.chain, self.sea, height, moving, axis.take(bar, axis=1), strain[bar], variation,
-            slowest,
+            self.chain, self.sea, at_load[3], at_load[:3], axis.take(bar, axis=1),
+            strain.take(bar), variation, slowest,
         )  # fmt: skip
         return loads, axis, length
 

@@ -7,14 +7,15 @@ and for a line in waves. SciPy has a banded solver, but takes longer to load tha
 to solve.
 """
 
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Numbers = NDArray[Any]
 
-CHUNK = 6
+CHUNK = 3
 """Number of blocks eliminated together; the block after them stays in the reduced system."""
 DENSE = 16
 """Largest number of blocks of a system that is solved as a single dense matrix."""
@@ -46,48 +47,82 @@ def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbe
 
 
 def _solved(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
-    count, size = diagonal.shape[-3:-1]
+    *many, count, size, columns = right.shape
     if count <= DENSE:
         return _densely(diagonal, upper, lower, right)
-    step = CHUNK + 1
-    chunks = -(-count // step)
-    diagonal, right = _padded(diagonal, chunks * step, True), _padded(right, chunks * step, False)
-    upper, lower = _padded(upper, chunks * step, False), _padded(lower, chunks * step, False)
-
-    def chunked(blocks: Numbers) -> Numbers:
-        return blocks.reshape(*blocks.shape[:-3], chunks, step, *blocks.shape[-2:])
-
-    diagonals, uppers, lowers, rights = map(chunked, (diagonal, upper, lower, right))
-    inside = _dense(
-        diagonals[..., :-1, :, :], uppers[..., : CHUNK - 1, :, :], lowers[..., : CHUNK - 1, :, :]
+    layout = _layout(count, size, columns)
+    rows = np.zeros((*many, layout.chunks * (CHUNK + 1) * size * layout.width), right.dtype)
+    rows[..., layout.places] = np.concatenate(
+        [part.reshape(*many, -1) for part in (diagonal, upper, lower, right)], axis=-1
     )
-    # right-hand sides: the block above the chunk, the block below the chunk, the given right side
-    beside = np.zeros((*inside.shape[:-1], 2 * size + right.shape[-1]), inside.dtype)
-    beside[..., 1:, :size, :size] = lowers[..., :-1, -1, :, :]
-    beside[..., -size:, size : 2 * size] = uppers[..., -2, :, :]
-    beside[..., 2 * size :] = rights[..., :-1, :, :].reshape(*inside.shape[:-1], -1)
-    interior = np.linalg.solve(inside, beside)
-    by_above, by_below, alone = np.split(interior, (size, 2 * size), axis=-1)
+    rows[..., layout.padding] = 1.0
+    rows = rows.reshape(*many, layout.chunks, (CHUNK + 1) * size, layout.width)
 
-    into, out = lowers[..., -2, :, :], uppers[..., :-1, -1, :, :]
-    last, first = np.s_[..., -size:, :], np.s_[..., 1:, :size, :]
-    least_diagonal = diagonals[..., -1, :, :] - into @ by_below[last]
-    least_diagonal[..., :-1, :, :] -= out @ by_above[first]
-    least_right = rights[..., -1, :, :] - into @ alone[last]
-    least_right[..., :-1, :, :] -= out @ alone[first]
+    inside = CHUNK * size
+    interior, last = rows[..., :inside, :], rows[..., inside:, :]
+    above, at_last, sides = slice(size), slice(size, 2 * size), slice(2 * size, None)
+    solved = np.linalg.solve(interior[..., :inside], interior[..., inside:-size])
+    into = last[..., inside - size : inside] @ solved[..., -size:, :]
+    out = last[..., :-1, :, -size:] @ solved[..., 1:, :size, :]
+    least = last[..., inside:-size] - into
+    least[..., :-1, :, at_last] -= out[..., above]
+    least[..., :-1, :, sides] -= out[..., sides]
     between = _solved(
-        least_diagonal,
-        -out @ by_below[first],
-        -into[..., 1:, :, :] @ by_above[..., 1:, -size:, :],
-        least_right,
+        least[..., at_last], -out[..., at_last], least[..., 1:, :, above], least[..., sides]
     )
 
-    found = alone - by_below @ between
-    found[..., 1:, :, :] -= by_above[..., 1:, :, :] @ between[..., :-1, :, :]
-    whole = np.concatenate(
-        [found.reshape(*rights[..., :-1, :, :].shape), between[..., np.newaxis, :, :]], axis=-3
+    found = solved[..., sides] - solved[..., at_last] @ between
+    found[..., 1:, :, :] -= solved[..., 1:, :, above] @ between[..., :-1, :, :]
+    whole = np.concatenate([found, between], axis=-2)
+    return whole.reshape(*many, -1, size, columns)[..., :count, :, :]
+
+
+class _Layout(NamedTuple):
+    """Places of a system in an array with a matrix for each chunk.
+
+    The rows of a matrix are those of the blocks of a chunk, the last of which stays in the reduced
+    system. Its columns are those of the other blocks, of the last block of the chunk above, of its
+    own last block, of the right-hand sides, and of the block below.
+
+    Attributes
+    ----------
+    chunks, width : number of matrices, and of their columns
+    places : place of every entry of the diagonal, the upper and lower blocks and the right-hand
+        sides
+    padding : diagonal of the blocks that fill up the last chunk
+    """
+
+    chunks: int
+    width: int
+    places: Numbers
+    padding: Numbers
+
+
+@lru_cache(maxsize=64)
+def _layout(count: int, size: int, columns: int) -> _Layout:
+    step, inside = CHUNK + 1, CHUNK * size
+    chunks, width = -(-count // step), inside + 3 * size + columns
+    block = np.arange(chunks * step)
+    within = block % step
+    own = np.where(within < CHUNK, within * size, inside + size)
+    before = np.where(within > 0, (within - 1) * size, inside)
+    after = np.where(within < CHUNK, np.append(own[1:], 0), width - size)
+    across = np.arange(size)
+    row = (block[:, np.newaxis] * size + across) * width
+
+    def places(first: Numbers, wide: int) -> Numbers:
+        return row[..., np.newaxis] + first[:, np.newaxis, np.newaxis] + np.arange(wide)
+
+    diagonal = places(own, size)
+    right = places(np.full_like(own, inside + 2 * size), columns)
+    given = (
+        diagonal[:count],
+        places(after, size)[: count - 1],
+        places(before, size)[1:count],
+        right[:count],
     )
-    return whole.reshape(*right.shape)[..., :count, :, :]
+    padding = diagonal[count:, across, across].ravel()
+    return _Layout(chunks, width, np.concatenate([part.ravel() for part in given]), padding)
 
 
 def _densely(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
@@ -106,13 +141,3 @@ def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
     ):
         np.einsum("...iaib->...iab", at)[...] = blocks  # a view
     return matrix.reshape(*many, count * size, count * size)
-
-
-def _padded(blocks: Numbers, count: int, is_diagonal: bool) -> Numbers:
-    """Extend blocks to a given number: the main diagonal with unit matrices, others with zeros."""
-    padded = np.zeros((*blocks.shape[:-3], count, *blocks.shape[-2:]), blocks.dtype)
-    there = blocks.shape[-3]
-    padded[..., :there, :, :] = blocks
-    if is_diagonal:
-        padded[..., there:, :, :] = np.eye(blocks.shape[-1])
-    return padded

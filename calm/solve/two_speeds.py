@@ -59,7 +59,9 @@ class _Pace:
         if self.compiled:
             return
         if self.child is not None:
-            self.compiled = self.child.poll() == 0
+            # a worker process cannot wait for the child of its parent, and `poll` returns 0 there
+            of_worker = parent_process() is not None
+            self.compiled = is_cached(self.solver.value) if of_worker else self.child.poll() == 0
             return
         work = max(self.announced, self.work)
         if work >= max(LOAD_FROM, 2.0 * self.checked_at):

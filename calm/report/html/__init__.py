@@ -54,6 +54,12 @@ def fragment(part: ReportPart) -> str:
     return f"<div>{shown}</div>"
 
 
+def read_templates() -> None:
+    """Read and compile the templates, once for all processes that are forked later."""
+    for name in ("parts.html.jinja", "page.html.jinja"):
+        _environment().get_template(name)
+
+
 @cache
 def _environment() -> Environment:
     from jinja2 import Environment, FunctionLoader, StrictUndefined

@@ -7,6 +7,7 @@ import pytest
 from calm.case import memory
 from calm.case.memory import Memory
 from calm.errors import NoEquilibrium
+from calm.physics.line import Water
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,24 @@ def test_the_same_digits_are_solved_once() -> None:
     assert kept.of(solver, first, 3.0) == kept.of(solver, first, factor=3.0) == 9.0
     assert kept.of(solver, Given(np.array([1.0, 2.0 + 1e-15])), 2.0) == pytest.approx(6.0)
     assert solved == [2.0, 3.0, 3.0, 2.0]
+
+
+def test_equal_water_is_one_key_and_another_current_is_another() -> None:
+    solved = []
+
+    def solver(water: Water) -> float:
+        solved.append(water)
+        return float(water.u.sum())
+
+    def water(speed: float) -> Water:
+        zero = np.zeros(2)
+        return Water(100.0, [0.0, 50.0], [speed, 0.0], zero, zero, zero + 1025.0)
+
+    kept, first = Memory(), water(0.5)
+    assert [kept.of(solver, each) for each in (first, first, water(0.5))] == [0.5] * 3
+    assert kept.of(solver, first.still()) == 0.0
+    assert kept.of(solver, water(0.25)) == 0.25
+    assert len(solved) == 3
 
 
 def test_functions_are_told_apart_by_what_they_enclose() -> None:

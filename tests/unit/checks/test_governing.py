@@ -1,6 +1,7 @@
 """Governing checks in the moorings of `lines/`: utilisation, sense, load case and conclusion."""
 
 import re
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 
@@ -51,6 +52,19 @@ def test_governing_use_is_that_of_every_situation_solved(name: str) -> None:
     ]
     expected = max(tilt / limit for tilt, limit in every)
     assert governing(found).utilisation == pytest.approx(expected)
+
+
+def test_a_changed_copy_is_that_of_dataclasses_and_has_a_utilisation_of_its_own() -> None:
+    found = next(one for one in _judged("tidal-adcp").every_finding() if one.rule == "tilt")
+    assert found.value is not None and found.utilisation is not None
+    copy = found.but(value=2.0 * found.value, case="9w")
+    assert copy == replace(found, value=2.0 * found.value, case="9w")
+    assert copy.utilisation == pytest.approx(2.0 * found.utilisation)
+
+
+def test_a_rule_sets_every_field_of_its_finding() -> None:
+    for one in _judged("tidal-adcp").every_finding():
+        assert {*vars(one)} - {"utilisation"} == {each.name for each in fields(Finding)}
 
 
 def test_the_governing_finding_is_not_that_of_the_least_margin() -> None:

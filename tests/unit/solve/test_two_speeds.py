@@ -64,6 +64,21 @@ def test_a_check_of_two_hundred_cases_does_not_compile(started) -> None:
     assert not runs_compiled(LEFT_OPEN)
 
 
+def test_a_worker_process_waits_for_the_code_that_its_parent_has_compiled(
+    started, monkeypatch
+) -> None:
+    """The child is not its own, so it looks into the cache."""
+    expect_many(COMPILE_FROM)
+    [child] = started
+    child.code = 0
+    monkeypatch.setattr(two_speeds, "parent_process", object)
+    count_lines(1.0, CompiledPart.LINE)
+    assert not runs_compiled(LEFT_OPEN)
+    monkeypatch.setattr(two_speeds, "is_cached", lambda law: True)
+    count_lines(1.0, CompiledPart.LINE)
+    assert runs_compiled(LEFT_OPEN)
+
+
 @pytest.mark.parametrize("announced", [COMPILE_FROM, 0])
 def test_a_child_compiles_while_the_solver_goes_on(started, announced) -> None:
     if announced:
