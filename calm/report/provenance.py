@@ -84,10 +84,9 @@ def input_hash(files: Sequence[MooringFile]) -> str:
     including those from a current file. The location of the files has no effect.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
-    line = canonical(files[0].pieces)
+    first = canonical(files[0].pieces)
     for file in files:
-        if file.pieces != files[0].pieces:
-            line = canonical(file.pieces)
+        line = first if file.pieces == files[0].pieces else canonical(file.pieces)
         others = map(canonical, (file.tow, file.environment, file.solver, file.checks))
         resolved = ",".join([canonical(file.name), line, *others])
         digest.update(f"[{resolved}]".encode("utf-8", "replace"))
