@@ -1,19 +1,22 @@
-"""Compilation of the physics functions ("laws") by numba, from the source that CPython runs, too.
+"""Compilation of the physics functions ("laws") to machine code, from the source that CPython runs,
+too.
 
 A *law* is a function over floats, named tuples and sequences of named tuples that CPython runs
-directly. The compiled law is the same function, but its globals refer to compiled laws; sequences
-become arrays, and sequences of named tuples arrays of records. The arithmetic is not reordered, so
-both give the same digits.
+directly. For compiled laws sequences are arrays, and sequences of named tuples arrays of records.
+`calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes machine
+code, which the user's cache keeps. The arithmetic is not reordered, so both give the same digits.
 """
 
+import ctypes
 import hashlib
 import os
+import struct
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
-from types import FunctionType
+from threading import Lock
 from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
@@ -23,13 +26,8 @@ Law = Callable[..., Any]
 SOURCES = ("physics", "solve", "batch")
 """Packages that contain functions to compile."""
 
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
-"""Compiler options. Laws allocate nothing, so reference counting of arrays is switched off for
-speed; they never divide by zero or raise an exception.
-"""
-
-NEWEST = (0, 68)
-"""Latest version of numba whose internals are compatible with `calm.physics.law_compiler`."""
+OPTIMISATION = 2
+"""Level of LLVM's optimisation, which never changes a digit."""
 
 Fn = TypeVar("Fn", bound=Law)
 
@@ -48,23 +46,57 @@ def set_row(rows: Any, i: int, row: Any) -> None:
     rows[i] = row
 
 
-_entries: dict[Law, Any] = {}
-
-
-def entry(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of the given arguments; later calls do not check types
-    again.
-
-    All later arguments must have these types; this saves time in short solves.
+class Compiled:
+    """A compiled law. All its arguments must have the kinds of the first ones, which saves time in
+    short solves.
     """
-    found = _entries.get(law)
-    if found is None:
-        numba: Any = __import__("numba")
-        dispatcher = kept(numba.njit, clone(law))
-        types = tuple(numba.typeof(argument) for argument in arguments)
-        dispatcher.compile(types)
-        found = _entries[law] = dispatcher.overloads[types].entry_point
-    return found
+
+    def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
+        from calm.physics.law_compiler import NOTHING, Row
+
+        self._given, self._result = _Layout(Row(None, kinds)), _Layout(result)
+        self._nothing = result == NOTHING
+        address = _address_of(law, lambda program: program.add_entry(_ENTRY, law, kinds, result))
+        self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the law; other threads continue meanwhile."""
+        result = ctypes.create_string_buffer(self._result.size)
+        self._call(self._given.written(arguments), result)
+        return None if self._nothing else self._result.read(result.raw)
+
+
+class Addressed:
+    """A compiled law of a named tuple and a number, which returns a number.
+
+    Other laws call it by its `address`, and are compiled without it.
+    """
+
+    def __init__(self, law: Law, task: Any) -> None:
+        self._task = _Layout(task)
+        self.address = _address_of(law, lambda program: program.add_function(_ENTRY, law, task))
+        self._call = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p, ctypes.c_double)(
+            self.address
+        )
+
+    def __call__(self, task: Any, x: float) -> float:
+        """Call the law; other threads continue meanwhile."""
+        found: float = self._call(self._task.written(task), x)
+        return found
+
+
+_entries: dict[Law, Any] = {}
+_lock = Lock()
+
+
+def entry(law: Law, *arguments: Any) -> Compiled:
+    """Return a law compiled for the kinds of the given arguments."""
+    with _lock:
+        if law not in _entries:
+            result = _kind_asked(get_type_hints(law).get("return"))
+            _entries[law] = Compiled(law, tuple(map(_kind_of, arguments)), result)
+        found: Compiled = _entries[law]
+        return found
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
@@ -72,109 +104,206 @@ def outcome(law: Law, compiled: bool, *given: Any) -> Any:
     return (entry(law, *given) if compiled else law)(*given)
 
 
-def by_address(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of the given arguments, to be called by its address.
-
-    Its additional last argument and its result are floats. Its callers are compiled without it,
-    which saves its compilation time for each caller. As for `entry`, all later arguments must have
-    these types.
+def by_address(law: Law, task: Any) -> Addressed:
+    """Return a law of a named tuple like the given one and of a number, to be called by its
+    address.
     """
-    found = _entries.get(law)
-    if found is None:
-        numba: Any = __import__("numba")
-        types = tuple(numba.typeof(argument) for argument in arguments)
-        signature = numba.float64(*types, numba.float64)
-        found = _entries[law] = kept(
-            lambda law, **options: numba.cfunc(signature, **options)(law), clone(law)
-        )
-    return found
+    with _lock:
+        if law not in _entries:
+            _entries[law] = Addressed(law, _kind_of(task))
+        found: Addressed = _entries[law]
+        return found
 
 
-@cache
-def called(law: Law) -> Any:
-    """Return a law compiled for inclusion in the compiled code of its callers."""
-    import numba
+def _kind_of(value: Any, hint: Any = None) -> Any:
+    """Return the kind of a value for `calm.physics.law_compiler`."""
+    from calm.physics.law_compiler import BY_NAME, FUNCTION, NOTHING, Array, Row
 
-    if law is set_row:
-        return _record_setter()
-    njit: Any = numba.njit
-    dispatcher = njit(clone(law), forceinline=law in _within, **_linked_options())
-    resolve, plain = dispatcher.get_call_template, numba.types.unliteral
-
-    def once_for_all_numbers(types: Any, named: Any) -> Any:
-        """Compile the law once for all values of an integer, not once per constant."""
-        return resolve(tuple(map(plain, types)), named)
-
-    dispatcher.get_call_template = once_for_all_numbers
-    return dispatcher
-
-
-def _linked_options() -> dict[str, Any]:
-    """Return the compiler options of a law that is called by other laws only."""
-    wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return {**OPTIONS, **wrappers, "pipeline_class": _law_compiler()}
+    if hint in BY_NAME:
+        return BY_NAME[hint]
+    if value is None:
+        return NOTHING
+    if isinstance(value, tuple):
+        named = type(value) if hasattr(value, "_fields") else None
+        hints = get_type_hints(named).values() if named else [None] * len(value)
+        return Row(named, tuple(_kind_of(a, b) for a, b in zip(value, hints, strict=True)))
+    if isinstance(value, np.ndarray):
+        fields = value.dtype.fields
+        if fields is None:
+            return Array(_number_kind(value.dtype), value.ndim)
+        kinds = tuple(_number_kind(own[0]) for own in fields.values())
+        return Array(Row(_records[value.dtype], kinds), value.ndim)
+    if isinstance(value, Addressed):
+        return FUNCTION
+    return BY_NAME[type(value)]
 
 
-@cache
-def _law_compiler() -> Any:
-    """Return the compiler class for laws, or numba's own class if numba is newer than `NEWEST`."""
-    numba: Any = __import__("numba")
-    if numba.version_info.short > NEWEST:
-        return numba.core.compiler.Compiler
-    from calm.physics.law_compiler import LawCompiler
+def _number_kind(of: Any) -> str:
+    from calm.physics.law_compiler import REAL, WHOLE
 
-    return LawCompiler
+    return {np.dtype(np.float64): REAL, np.dtype(np.int64): WHOLE}[of]
 
 
-@cache
-def _record_setter() -> Law:
-    """Return the compiled form of `set_row`, which copies a record field by field."""
-    numba: Any = __import__("numba.extending")
+def _kind_asked(hint: Any) -> Any:
+    """Return the kind of a result from its type."""
+    from calm.physics.law_compiler import BY_NAME, NOTHING, Row
 
-    def set_record(rows, i, row):  # type: ignore[no-untyped-def]
-        raise NotImplementedError
-
-    @numba.extending.overload(set_record, jit_options=_linked_options())
-    def for_types(rows, i, row):  # type: ignore[no-untyped-def]
-        names: dict[str, Any] = {}
-        fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)
-        exec(f"def by_field(rows, i, row):\n{fields}", names)
-        return names["by_field"]
-
-    return set_record
+    if hint in BY_NAME:
+        return BY_NAME[hint]
+    if hint in (None, type(None)):
+        return NOTHING
+    named = hint if hasattr(hint, "_fields") else None
+    hints = get_type_hints(named).values() if named else get_args(hint)
+    return Row(named, tuple(map(_kind_asked, hints)))
 
 
-def clone(law: Law) -> Law:
-    """Copy a function: the copy calls the compiled versions of CALM's functions, and its tables
-    are arrays.
+class _Layout:
+    """Conversion of values of a kind to and from numbers of eight bytes."""
+
+    def __init__(self, kind: Any) -> None:
+        from calm.physics.law_compiler import size_of
+
+        self.kind, self.size = kind, 8 * size_of(kind)
+        codes, words = _layout_of(kind, "given")
+        self._struct = struct.Struct(codes)
+        self._numbers = eval(f"lambda given: ({''.join(word + ', ' for word in words)})", _NAMES)
+
+    def written(self, value: Any) -> bytes:
+        """Return the bytes of a value; arrays are written as their addresses."""
+        return self._struct.pack(*self._numbers(value))
+
+    def read(self, data: bytes) -> Any:
+        """Return the value of bytes."""
+        return _built(self.kind, iter(self._struct.unpack(data)))
+
+
+def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
+    """Return the codes of the numbers of a value for `struct`, and the expressions that read
+    them.
     """
-    assert isinstance(law, FunctionType)
-    names = {**law.__globals__}
-    for name in law.__code__.co_names:
-        value = names.get(name)
-        if isinstance(value, FunctionType) and value.__module__.startswith("calm."):
-            names[name] = called(value)
-        elif type(value) is tuple and value and all(type(x) is float for x in value):
-            names[name] = np.array(value)
-    clone = FunctionType(law.__code__, names, law.__name__, law.__defaults__, law.__closure__)
-    clone.__module__, clone.__qualname__ = law.__module__, law.__qualname__
-    return clone
+    from calm.physics.law_compiler import FUNCTION, REAL, Array, Row
+
+    if isinstance(kind, Row):
+        parts = [_layout_of(each, f"{given}[{i}]") for i, each in enumerate(kind.members)]
+        return "".join(codes for codes, _ in parts), [word for _, words in parts for word in words]
+    if isinstance(kind, Array):
+        shape = [f"{given}.shape[{k}]" for k in range(kind.dimensions)]
+        return "q" * (1 + len(shape)), [f"address_of({given})", *shape]
+    if kind == FUNCTION:
+        return "q", [f"{given}.address"]
+    return "d" if kind == REAL else "q", [given]
 
 
-def kept(compiler: Callable[..., Any], law: Law) -> Any:
-    """Compile a law, and store the result on disk if a cache folder exists."""
-    import numba
+def _address_of_array(array: Any) -> int:
+    """Return the address of the data of an array without gaps."""
+    if not array.flags.c_contiguous:
+        raise ValueError("compiled laws need arrays without gaps")
+    return _pointer_at(id(array) + _DATA).value or 0
 
-    folder, options = cache_folder(), {**OPTIONS, "pipeline_class": _law_compiler()}
-    if folder is None:
-        return compiler(law, **options)
-    settings: Any = numba.config
-    chosen = settings.CACHE_DIR
-    settings.CACHE_DIR = str(folder)  # read as the function is decorated
+
+_pointer_at = ctypes.c_void_p.from_address
+_DATA = object.__basicsize__
+"""Where an array object has the address of its data: numpy's C interface fixes it as the first
+field. `ctypes.data` takes thirty times as long, for the thirty arrays of a short solve.
+"""
+_NAMES = {"address_of": _address_of_array}
+
+
+def _built(kind: Any, numbers: Iterator[Any]) -> Any:
+    """Return a value of a kind from its numbers."""
+    from calm.physics.law_compiler import TRUTH, Row
+
+    if isinstance(kind, Row):
+        members = [_built(each, numbers) for each in kind.members]
+        return tuple(members) if kind.named is None else kind.named(*members)
+    return bool(next(numbers)) if kind == TRUTH else next(numbers)
+
+
+_ENTRY = "calm.entry"
+_engines: list[Any] = []
+
+
+def _address_of(law: Law, add: Callable[[Any], None]) -> int:
+    """Return the address of a law's machine code, from the cache or compiled now."""
+    import llvmlite.binding as llvm
+
+    from calm.physics import law_compiler
+
+    for name in law_compiler.FROM_MATH:
+        llvm.add_symbol(f"calm.{name}", _in_c(name))
+    target = _machine()
+    folder, name = cache_folder(), f"{law.__module__}.{law.__qualname__}"
+    file = folder and folder / f"{name}-{_machine_name()}.o"
     try:
-        return compiler(law, cache=True, **options)
-    finally:
-        settings.CACHE_DIR = chosen
+        code = file.read_bytes() if file else b""
+    except OSError:
+        code = b""
+    if not code:
+        for listener in on_compilation:
+            listener()
+        program = law_compiler.Program(_within)
+        add(program)
+        module = llvm.parse_assembly(program.text())
+        module.triple, module.data_layout = target.triple, str(target.target_data)
+        tuning = llvm.create_pipeline_tuning_options(OPTIMISATION)
+        builder = llvm.create_pass_builder(target, tuning)
+        builder.getModulePassManager().run(module, builder)
+        code = target.emit_object(module)
+        if file:
+            _store(file, code)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    _engines.append(engine)
+    address: int = engine.get_function_address(_ENTRY)
+    return address
+
+
+on_compilation: list[Callable[[], None]] = []
+"""Functions to call when a law is compiled that is not in the cache."""
+
+
+def _store(file: Path, code: bytes) -> None:
+    """Write machine code to the cache if possible, completely or not at all."""
+    try:
+        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as whole:
+            whole.write(code)
+        os.replace(whole.name, file)
+    except OSError:
+        return
+
+
+@cache
+def _machine() -> Any:
+    """Return LLVM's description of this machine."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    features = llvm.get_host_cpu_features().flatten()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=features, opt=OPTIMISATION, codemodel="jitdefault",
+        jit=True,
+    )  # fmt: skip
+
+
+@cache
+def _machine_name() -> str:
+    """Return a short name of this machine and of LLVM's version, whose machine code is kept."""
+    import llvmlite.binding as llvm
+
+    features = sorted(llvm.get_host_cpu_features().items())
+    given = (llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvm.llvm_version_info)
+    return hashlib.sha256(repr(given).encode()).hexdigest()[:12]
+
+
+def _in_c(name: str) -> int:
+    """Return the address of a function of the C library, which CPython's `math` calls, too."""
+    windows: Any = getattr(ctypes, "cdll", None)
+    library = windows.ucrtbase if sys.platform == "win32" else ctypes.CDLL(None)
+    address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value
+    assert address is not None
+    return address
 
 
 def packed(value: Any) -> Any:
@@ -203,22 +332,23 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
 @cache
 def record_type(named: type) -> np.dtype[Any]:
     """Return the numpy record type of a named tuple of numbers."""
-    return np.dtype(
-        [
-            (name, np.intp if kind is int else np.float64)
-            for name, kind in get_type_hints(named).items()
-        ]
-    )
+    fields = get_type_hints(named).items()
+    record = np.dtype([(name, np.int64 if kind is int else np.float64) for name, kind in fields])
+    _records[record] = named
+    return record
+
+
+_records: dict[np.dtype[Any], type] = {}
 
 
 @cache
 def cache_folder() -> Path | None:
     """Return the folder for compiled code, or None if no folder can be written.
 
-    `NUMBA_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
-    has its own subfolder, since numba itself only checks a single source file.
+    `CALM_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
+    has its own subfolder.
     """
-    given = os.environ.get("NUMBA_CACHE_DIR")
+    given = os.environ.get("CALM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # its old name
     folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -233,7 +363,9 @@ def is_cached(law: str) -> bool:
     process.
     """
     folder = cache_folder()
-    return folder is not None and next(folder.rglob(f"*.{law}-*.nbi"), None) is not None
+    return (
+        folder is not None and next(folder.glob(f"*.{law}-{_machine_name()}.o"), None) is not None
+    )
 
 
 def _user_cache() -> Path:

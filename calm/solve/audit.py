@@ -37,7 +37,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
     law = line.strumming
 
     def taken(column: Floats) -> Any:
-        return np.array(column) if compiled else column.tolist()
+        return np.ascontiguousarray(column) if compiled else column.tolist()
 
     records: Any = np.array(knots, record_type(Knot))
     return Moored(

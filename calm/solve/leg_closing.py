@@ -5,7 +5,7 @@ The Jacobian (`slopes`) is updated by Broyden's rule as long as each step reduce
 these do not converge.
 """
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
@@ -374,8 +374,3 @@ def do_task(job: NetTask, _: float) -> float:
     if job.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
     return float(failure)
-
-
-def do_by_address(ask: Callable[[NetTask, float], float], job: NetTask) -> float:
-    """Call the compiled form of `do_task` by its address."""
-    return ask(job, 0.0)
