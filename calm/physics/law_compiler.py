@@ -928,7 +928,8 @@ class _Body(_Instructions):
         kind = given[0].kind
         for each in given:
             kind = common(kind, each.kind)
-        best, *others = (self.as_kind(each, kind) for each in given)
+        numbers: list[Number] = [self.as_kind(each, kind) for each in given]
+        best, *others = numbers
         op = ast.Gt if function is max else ast.Lt
         for each in others:
             test = self.compared(op, each, best)

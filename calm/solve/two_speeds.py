@@ -20,7 +20,7 @@ from calm.physics.compiled import cache_folder, is_cached
 from calm.physics.line import Line
 from calm.solve.solution import Settings
 
-LOAD_FROM = 10
+LOAD_FROM = 40
 """Number of lines above which it pays to load compiled code from the cache."""
 COMPILE_FROM = 1200
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
