@@ -10,16 +10,17 @@ code, which the user's cache keeps. The arithmetic is not reordered, so both giv
 import ctypes
 import hashlib
 import os
-import struct
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
+
+from calm.physics.law_kinds import FROM_MATH, NOTHING, Layout, Row, kind_asked, kind_of, record_type
 
 Law = Callable[..., Any]
 
@@ -52,9 +53,7 @@ class Compiled:
     """
 
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
-        from calm.physics.law_compiler import NOTHING, Row
-
-        self._given, self._result = _Layout(Row(None, kinds)), _Layout(result)
+        self._given, self._result = Layout(Row(None, kinds)), Layout(result)
         self._nothing = result == NOTHING
         address = _address_of(law, lambda program: program.add_entry(_ENTRY, law, kinds, result))
         self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
@@ -73,7 +72,7 @@ class Addressed:
     """
 
     def __init__(self, law: Law, task: Any) -> None:
-        self._task = _Layout(task)
+        self._task = Layout(task)
         self.address = _address_of(law, lambda program: program.add_function(_ENTRY, law, task))
         self._call = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p, ctypes.c_double)(
             self.address
@@ -93,8 +92,8 @@ def entry(law: Law, *arguments: Any) -> Compiled:
     """Return a law compiled for the kinds of the given arguments."""
     with _lock:
         if law not in _entries:
-            result = _kind_asked(get_type_hints(law).get("return"))
-            _entries[law] = Compiled(law, tuple(map(_kind_of, arguments)), result)
+            result = kind_asked(get_type_hints(law).get("return"))
+            _entries[law] = Compiled(law, tuple(map(kind_of, arguments)), result)
         found: Compiled = _entries[law]
         return found
 
@@ -110,113 +109,9 @@ def by_address(law: Law, task: Any) -> Addressed:
     """
     with _lock:
         if law not in _entries:
-            _entries[law] = Addressed(law, _kind_of(task))
+            _entries[law] = Addressed(law, kind_of(task))
         found: Addressed = _entries[law]
         return found
-
-
-def _kind_of(value: Any, hint: Any = None) -> Any:
-    """Return the kind of a value for `calm.physics.law_compiler`."""
-    from calm.physics.law_compiler import BY_NAME, FUNCTION, NOTHING, Array, Row
-
-    if hint in BY_NAME:
-        return BY_NAME[hint]
-    if value is None:
-        return NOTHING
-    if isinstance(value, tuple):
-        named = type(value) if hasattr(value, "_fields") else None
-        hints = get_type_hints(named).values() if named else [None] * len(value)
-        return Row(named, tuple(_kind_of(a, b) for a, b in zip(value, hints, strict=True)))
-    if isinstance(value, np.ndarray):
-        fields = value.dtype.fields
-        if fields is None:
-            return Array(_number_kind(value.dtype), value.ndim)
-        kinds = tuple(_number_kind(own[0]) for own in fields.values())
-        return Array(Row(_records[value.dtype], kinds), value.ndim)
-    if isinstance(value, Addressed):
-        return FUNCTION
-    return BY_NAME[type(value)]
-
-
-def _number_kind(of: Any) -> str:
-    from calm.physics.law_compiler import REAL, WHOLE
-
-    return {np.dtype(np.float64): REAL, np.dtype(np.int64): WHOLE}[of]
-
-
-def _kind_asked(hint: Any) -> Any:
-    """Return the kind of a result from its type."""
-    from calm.physics.law_compiler import BY_NAME, NOTHING, Row
-
-    if hint in BY_NAME:
-        return BY_NAME[hint]
-    if hint in (None, type(None)):
-        return NOTHING
-    named = hint if hasattr(hint, "_fields") else None
-    hints = get_type_hints(named).values() if named else get_args(hint)
-    return Row(named, tuple(map(_kind_asked, hints)))
-
-
-class _Layout:
-    """Conversion of values of a kind to and from numbers of eight bytes."""
-
-    def __init__(self, kind: Any) -> None:
-        from calm.physics.law_compiler import size_of
-
-        self.kind, self.size = kind, 8 * size_of(kind)
-        codes, words = _layout_of(kind, "given")
-        self._struct = struct.Struct(codes)
-        self._numbers = eval(f"lambda given: ({''.join(word + ', ' for word in words)})", _NAMES)
-
-    def written(self, value: Any) -> bytes:
-        """Return the bytes of a value; arrays are written as their addresses."""
-        return self._struct.pack(*self._numbers(value))
-
-    def read(self, data: bytes) -> Any:
-        """Return the value of bytes."""
-        return _built(self.kind, iter(self._struct.unpack(data)))
-
-
-def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
-    """Return the codes of the numbers of a value for `struct`, and the expressions that read
-    them.
-    """
-    from calm.physics.law_compiler import FUNCTION, REAL, Array, Row
-
-    if isinstance(kind, Row):
-        parts = [_layout_of(each, f"{given}[{i}]") for i, each in enumerate(kind.members)]
-        return "".join(codes for codes, _ in parts), [word for _, words in parts for word in words]
-    if isinstance(kind, Array):
-        shape = [f"{given}.shape[{k}]" for k in range(kind.dimensions)]
-        return "q" * (1 + len(shape)), [f"address_of({given})", *shape]
-    if kind == FUNCTION:
-        return "q", [f"{given}.address"]
-    return "d" if kind == REAL else "q", [given]
-
-
-def _address_of_array(array: Any) -> int:
-    """Return the address of the data of an array without gaps."""
-    if not array.flags.c_contiguous:
-        raise ValueError("compiled laws need arrays without gaps")
-    return _pointer_at(id(array) + _DATA).value or 0
-
-
-_pointer_at = ctypes.c_void_p.from_address
-_DATA = object.__basicsize__
-"""Where an array object has the address of its data: numpy's C interface fixes it as the first
-field. `ctypes.data` takes thirty times as long, for the thirty arrays of a short solve.
-"""
-_NAMES = {"address_of": _address_of_array}
-
-
-def _built(kind: Any, numbers: Iterator[Any]) -> Any:
-    """Return a value of a kind from its numbers."""
-    from calm.physics.law_compiler import TRUTH, Row
-
-    if isinstance(kind, Row):
-        members = [_built(each, numbers) for each in kind.members]
-        return tuple(members) if kind.named is None else kind.named(*members)
-    return bool(next(numbers)) if kind == TRUTH else next(numbers)
 
 
 _ENTRY = "calm.entry"
@@ -227,9 +122,7 @@ def _address_of(law: Law, add: Callable[[Any], None]) -> int:
     """Return the address of a law's machine code, from the cache or compiled now."""
     import llvmlite.binding as llvm
 
-    from calm.physics import law_compiler
-
-    for name in law_compiler.FROM_MATH:
+    for name in FROM_MATH:
         llvm.add_symbol(f"calm.{name}", _in_c(name))
     target = _machine()
     folder, name = cache_folder(), f"{law.__module__}.{law.__qualname__}"
@@ -241,7 +134,9 @@ def _address_of(law: Law, add: Callable[[Any], None]) -> int:
     if not code:
         for listener in on_compilation:
             listener()
-        program = law_compiler.Program(_within)
+        from calm.physics.law_compiler import Program
+
+        program = Program(_within)
         add(program)
         module = llvm.parse_assembly(program.text())
         module.triple, module.data_layout = target.triple, str(target.target_data)
@@ -327,18 +222,6 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
     item = get_args(kind)[0]
     of = np.dtype(np.float64) if item is float else record_type(item)
     return lambda part: np.array(part if isinstance(part, np.ndarray) else list(part), of)
-
-
-@cache
-def record_type(named: type) -> np.dtype[Any]:
-    """Return the numpy record type of a named tuple of numbers."""
-    fields = get_type_hints(named).items()
-    record = np.dtype([(name, np.int64 if kind is int else np.float64) for name, kind in fields])
-    _records[record] = named
-    return record
-
-
-_records: dict[np.dtype[Any], type] = {}
 
 
 @cache

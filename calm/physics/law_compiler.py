@@ -4,136 +4,45 @@ A law uses only numbers, named tuples, sequences of numbers or named tuples, and
 `math`, so that types follow from its arguments. Its operations are translated one by one, in their
 order and with the meaning that they have in Python; LLVM must not rearrange them.
 
-Every number takes eight bytes. A sequence is the address of its first number and its shape. A named
-tuple is a row of numbers, whether it is a value or an element of a sequence, and is passed by its
-address, since no law changes one. Indices are not checked.
+Named tuples are passed by their address, since no law changes one. Indices are not checked.
 """
 
 import ast
 import builtins
 import math
 import operator
-import struct
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from types import FunctionType, ModuleType
-from typing import Any, NamedTuple, get_type_hints
+from typing import Any
+
+from calm.physics.law_instructions import (
+    ArrayView,
+    Global,
+    Held,
+    Instructions,
+    Made,
+    Number,
+    number_of,
+    row_of,
+)
+from calm.physics.law_kinds import (
+    FROM_MATH,
+    NOTHING,
+    REAL,
+    TRUTH,
+    WHOLE,
+    Array,
+    Row,
+    common,
+    size_of,
+    wanted_by,
+)
 
 Law = Callable[..., Any]
 
-REAL, WHOLE, TRUTH, FUNCTION = "double", "i64", "i1", "ptr"
-"""Kinds of single numbers, by their names in LLVM. A function is given by its address, and takes a
-named tuple and a number.
-"""
-BY_NAME: dict[Any, str] = {float: REAL, int: WHOLE, bool: TRUTH}
-
-
-class Row(NamedTuple):
-    """Kind of a tuple: its class, if it has names, and the kinds of its members."""
-
-    named: Any
-    members: tuple[Any, ...]
-
-
-class Array(NamedTuple):
-    """Kind of a sequence: the kind of its elements, and its number of dimensions."""
-
-    item: Any
-    dimensions: int
-
-
-NOTHING = Row(None, ())
-
-
-@cache
-def size_of(kind: Any) -> int:
-    """Return how many numbers a value takes."""
-    if isinstance(kind, Row):
-        return sum(map(size_of, kind.members))
-    return 1 + kind.dimensions if isinstance(kind, Array) else 1
-
-
-@cache
-def places_of(row: Row) -> tuple[int, ...]:
-    """Return the position of every member of a row, in numbers."""
-    return tuple(sum(map(size_of, row.members[:i])) for i in range(len(row.members)))
-
-
-@cache
-def wanted_by(named: Any) -> tuple[Any, ...]:
-    """Return the kinds that a named tuple asks of its members, None where it leaves them open."""
-    return tuple(BY_NAME.get(hint) for hint in get_type_hints(named).values())
-
-
-def common(one: Any, other: Any) -> Any:
-    """Return the kind of a variable that has values of two kinds."""
-    if one == other:
-        return one
-    if isinstance(one, Row) and isinstance(other, Row) and len(one.members) == len(other.members):
-        pairs = zip(one.members, other.members, strict=True)
-        return Row(one.named or other.named, tuple(common(a, b) for a, b in pairs))
-    numbers = (TRUTH, WHOLE, REAL)
-    if one in numbers and other in numbers:
-        return max(one, other, key=numbers.index)
-    raise TypeError(f"a value is {one} as well as {other}")
-
-
-class Number(NamedTuple):
-    """A number, as LLVM writes it; with its value if it is known."""
-
-    kind: str
-    text: str
-    known: Any = None
-
-
-class Held(NamedTuple):
-    """A row or a sequence in memory, by its address. A `passing` one may be overwritten later."""
-
-    kind: Any
-    address: str
-    passing: bool = False
-
-
-class Made(NamedTuple):
-    """A tuple of values, which is not in memory."""
-
-    kind: Row
-    members: tuple[Any, ...]
-
-
-class ArrayView(NamedTuple):
-    """A sequence: the address of its data, and its shape."""
-
-    kind: Array
-    data: str
-    shape: tuple[str, ...]
-
-
-class Global(NamedTuple):
-    """A function, class or module that a law names."""
-
-    value: Any
-
-
-def number_of(value: Any) -> Number:
-    """Return a known number."""
-    if isinstance(value, bool):
-        return Number(TRUTH, str(value).lower(), value)
-    if isinstance(value, int):
-        return Number(WHOLE, str(value), value)
-    return Number(REAL, f"0x{struct.unpack('>Q', struct.pack('>d', value))[0]:016X}", value)
-
-
-def row_of(members: Any, named: Any = None) -> Made:
-    """Return a tuple of values."""
-    members = tuple(members)
-    return Made(Row(named, tuple(each.kind for each in members)), members)
-
-
 INTRINSIC = {"sqrt": "llvm.sqrt.f64", "copysign": "llvm.copysign.f64"}
-FROM_MATH = ("log", "pow", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "floor")
-"""Functions that the C library computes, for CPython as well."""
 ARITHMETIC = {
     ast.Add: ("add", "fadd", operator.add),
     ast.Sub: ("sub", "fsub", operator.sub),
@@ -227,7 +136,7 @@ class Program:
         address to which a result of a wanted kind is written.
         """
         given = Held(Row(None, kinds), "%given")
-        entry = _Instructions(self)
+        entry = Instructions(self)
         _, result = entry.call_law(law, [entry.member(given, i) for i in range(len(kinds))])
         if wanted != NOTHING:
             entry.write(result, "%result", wanted)
@@ -238,7 +147,7 @@ class Program:
 
     def add_function(self, symbol: str, law: Law, task: Any) -> None:
         """Add a function of the address of a named tuple and of a number, that returns a number."""
-        entry = _Instructions(self)
+        entry = Instructions(self)
         _, result = entry.call_law(law, [Held(task, "%task"), Number(REAL, "%x")])
         value = entry.as_kind(result, REAL).text
         body = "\n".join([*entry.reserved, *entry.lines])
@@ -272,165 +181,9 @@ class Uncompilable(TypeError):
 
 
 RESULT = "return"
-MOST_COPIED_ONE_BY_ONE = 8
 
 
-class _Instructions:
-    """Instructions one after the other, and the memory that they reserve."""
-
-    def __init__(self, program: Program) -> None:
-        self.program = program
-        self.lines: list[Any] = []
-        self.reserved: list[str] = []
-        self.count = 0
-
-    def emit(self, text: str) -> None:
-        self.lines.append(text)
-
-    def fresh(self) -> str:
-        self.count += 1
-        return f"%t{self.count}"
-
-    def value(self, kind: str, text: str) -> Number:
-        """Emit an instruction with a result."""
-        name = self.fresh()
-        self.lines.append(f"{name} = {text}")
-        return Number(kind, name)
-
-    def reserve(self, kind: Any) -> str:
-        """Reserve memory for a value, and return its address."""
-        name = self.fresh()
-        self.reserved.append(f"{name} = alloca [{size_of(kind)} x i64], align 8")
-        return name
-
-    def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return an address that is some numbers further."""
-        if place in (0, "0"):
-            return address
-        name = self.fresh()
-        step = "i64" if unit == 1 else f"[{unit} x i64]"
-        self.lines.append(f"{name} = getelementptr {step}, ptr {address}, i64 {place}")
-        return name
-
-    def read(self, kind: Any, address: str, passing: bool = False) -> Any:
-        """Return the value at an address; a row stays there."""
-        if isinstance(kind, Row):
-            return Held(kind, address, passing)
-        if isinstance(kind, Array):
-            if not passing:
-                return Held(kind, address)
-            return self.viewed(Held(kind, address))
-        if kind == TRUTH:
-            whole = self.value(WHOLE, f"load i64, ptr {address}")
-            return self.value(TRUTH, f"icmp ne i64 {whole.text}, 0")
-        return self.value(kind, f"load {kind}, ptr {address}")
-
-    def write(self, value: Any, address: str, kind: Any) -> None:
-        """Write a value, converted to a kind, to an address."""
-        if isinstance(kind, Row):
-            if isinstance(value, Held) and value.kind.members == kind.members:
-                size = size_of(kind)
-                if size > MOST_COPIED_ONE_BY_ONE:
-                    self.emit(
-                        f"call void @llvm.memcpy.p0.p0.i64(ptr align 8 {address}, "
-                        f"ptr align 8 {value.address}, i64 {8 * size}, i1 false)"
-                    )
-                    return
-            members = [self.member(value, i) for i in range(len(kind.members))]
-            for member, own, place in zip(members, kind.members, places_of(kind), strict=True):
-                self.write(member, self.at(address, place), own)
-        elif isinstance(kind, Array):
-            view = self.viewed(value)
-            self.emit(f"store ptr {view.data}, ptr {address}")
-            for k, length in enumerate(view.shape, 1):
-                self.emit(f"store i64 {length}, ptr {self.at(address, k)}")
-        else:
-            number = self.as_kind(value, kind)
-            if kind == TRUTH:
-                number = self.as_kind(number, WHOLE)
-            self.emit(f"store {number.kind} {number.text}, ptr {address}")
-
-    def member(self, row: Any, i: int) -> Any:
-        """Return a member of a tuple."""
-        if isinstance(row, Made):
-            return row.members[i]
-        address = self.at(row.address, places_of(row.kind)[i])
-        return self.read(row.kind.members[i], address, row.passing)
-
-    def viewed(self, array: Any) -> ArrayView:
-        """Return the address of the data of a sequence, and its shape."""
-        if isinstance(array, ArrayView):
-            return array
-        data = self.value(FUNCTION, f"load ptr, ptr {array.address}").text
-        shape = [
-            self.value(WHOLE, f"load i64, ptr {self.at(array.address, k)}").text
-            for k in range(1, array.kind.dimensions + 1)
-        ]
-        return ArrayView(array.kind, data, tuple(shape))
-
-    def kept(self, value: Any) -> Any:
-        """Return a value that does not change if a variable is set again."""
-        if isinstance(value, Held) and value.passing:
-            address = self.reserve(value.kind)
-            self.write(value, address, value.kind)
-            return Held(value.kind, address)
-        if isinstance(value, Made):
-            return Made(value.kind, tuple(map(self.kept, value.members)))
-        return value
-
-    def as_kind(self, value: Any, kind: Any) -> Any:
-        """Convert a value to a kind."""
-        if value.kind == kind:
-            return value
-        if isinstance(kind, Row):
-            members = (
-                self.as_kind(self.member(value, i), own) for i, own in enumerate(kind.members)
-            )
-            return Made(kind, tuple(members))
-        if not isinstance(value, Number):
-            raise TypeError(f"{value.kind} is not {kind}")
-        if value.known is not None and kind in (REAL, WHOLE):
-            return number_of(float(value.known) if kind == REAL else int(value.known))
-        how = {(TRUTH, WHOLE): "zext", (TRUTH, REAL): "uitofp", (WHOLE, REAL): "sitofp"}
-        if (value.kind, kind) not in how:
-            raise TypeError(f"{value.kind} is not {kind}")
-        return self.value(kind, f"{how[value.kind, kind]} {value.kind} {value.text} to {kind}")
-
-    def address_of(self, row: Any) -> str:
-        """Return the address of a tuple, which is written to memory if it is not there."""
-        if isinstance(row, Held):
-            return row.address
-        address = self.reserve(row.kind)
-        self.write(row, address, row.kind)
-        return address
-
-    def call_law(self, law: Any, given: list[Any]) -> tuple[Any, Any]:
-        """Call a law; return the kind of its result, and the result."""
-        names = law.__code__.co_varnames[: law.__code__.co_argcount]
-        for i, name in enumerate(names):
-            hint = law.__annotations__.get(name)
-            wanted = BY_NAME.get(getattr(builtins, hint, None) if isinstance(hint, str) else hint)
-            if wanted:
-                given[i] = self.as_kind(given[i], wanted)
-        kinds = tuple(each.kind for each in given)
-        symbol, kind = self.program.translated(law, kinds)
-        words = []
-        for each in given:
-            if isinstance(each.kind, Row):
-                words.append(f"ptr {self.address_of(each)}")
-            elif isinstance(each.kind, Array):
-                view = self.viewed(each)
-                words += [f"ptr {view.data}", *(f"i64 {length}" for length in view.shape)]
-            else:
-                words.append(f"{each.kind} {each.text}")
-        if isinstance(kind, str):
-            return kind, self.value(kind, f"call {kind} {symbol}({', '.join(words)})")
-        address = "null" if kind == NOTHING else self.reserve(kind)
-        self.emit(f"call void {symbol}({', '.join([f'ptr {address}', *words])})")
-        return kind, self.read(kind, address)
-
-
-class _Body(_Instructions):
+class _Body(Instructions):
     """Translation of the body of a law.
 
     `known` are the kinds of its variables and of its result. If one is `widened` by a later

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.compiled import record_type
+from calm.physics.law_kinds import record_type
 from calm.physics.line import Floats, Line, Water, once_per_input
 from calm.physics.referee import Moored, RefereeBody, RefereeShape, element_loads, strumming
 from calm.physics.stretch import Knot
