@@ -36,8 +36,8 @@ class CalmError(Exception):
 class Problem:
     """A mistake at one position of a file.
 
-    `line` and `column` count from 1; 0 means the file as a whole. `lacks` describes an incomplete
-    file, if nothing is wrong but something is missing: ``no length on wire 2``.
+    `line` and `column` count from 1; line 0 stands for the whole file. `lacks` is empty unless the
+    file is merely incomplete; it then names the missing value, such as ``no length on wire 2``.
     """
 
     path: str
@@ -60,8 +60,8 @@ class InputError(CalmError):
 
 
 def refused(path: object, *messages: str, line: int = 0, column: int = 1) -> InputError:
-    """Create the error for a file that cannot be used, with one problem per message; `line` 0 means
-    the whole file.
+    """Create an InputError for a file, with one problem per message; `line` 0 stands for the whole
+    file.
     """
     place = str(path), line, column if line else 0
     return InputError([Problem(*place, one_line(message)) for message in messages])
@@ -79,9 +79,9 @@ class NoEquilibrium(CalmError):
     status : str
         One of the statuses of the result format, e.g. ``"no-equilibrium"``, ``"slack"``.
     message, advice : str
-        What is wrong, with figures; and what the user can change.
+        The reason, with values, and a change that the user can try.
     piece : int, optional
-        Index of the piece concerned, which replaces ``{piece}`` in the message.
+        Index of the affected piece, whose name replaces ``{piece}`` in the message.
     """
 
     def __init__(self, status: str, message: str, advice: str, piece: int | None = None) -> None:
@@ -97,7 +97,7 @@ class NoEquilibrium(CalmError):
         return NoEquilibrium(self.status, self.wording.format(piece=piece), self.advice)
 
     def to_dict(self) -> dict[str, str]:
-        """Return `status`, `message` and `advice` as JSON data, in place of a result."""
+        """Return `status`, `message` and `advice` as JSON data, for output instead of a result."""
         return {"status": self.status, "message": self.message, "advice": self.advice}
 
 
@@ -118,9 +118,10 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 
 
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
-    """Return a line that names a missing library and the command that installs it.
+    """Return a line with the name of a missing library and the command that installs it.
 
-    Returns None if the missing module belongs to CALM or has no name, which is a program error.
+    Return None if the missing module belongs to CALM or has no name, because the cause is then a
+    program error.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):
@@ -138,8 +139,8 @@ def unexpected(error: Exception) -> str:
 
 
 def internal_failure(error: Exception) -> NoEquilibrium:
-    """Convert an internal error or a missing library to a failed result, so that the other lines
-    are solved.
+    """Convert an internal error or a missing library to a failed result, so that the remaining
+    lines can still be solved.
     """
     if isinstance(error, ModuleNotFoundError) and (advice := how_to_install(error)):
         need, _, command = advice.partition(": ")
@@ -160,9 +161,7 @@ def one_line(text: str) -> str:
 
 
 def unknown(what: str, text: str, known: Iterable[str]) -> str:
-    """Return the message `what` with the most similar known name, or with all names if they are
-    few.
-    """
+    """Append the most similar known name to the message `what`, or all names if they are few."""
     names = list(known)
     near = nearest(text, names)
     if near:
@@ -173,8 +172,8 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
 
 
 def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
-    """Return the message for a value that is not allowed, with the most similar allowed value, else
-    `offer`.
+    """Return the message for a value that is not allowed. It ends with the most similar allowed
+    value or, if no value is similar, with `offer`.
     """
     choices = list(allowed)
     meant = nearest(text, choices) or offer
@@ -185,32 +184,32 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
-    Names are selected by similar letters, or else by containing every word of the text, and then
-    ranked by their words and numbers: for ``chain-g30-16``, ``chain-short-g30-16`` precedes
-    ``chain-g80-16``; for ``ADCP``, ``ADCP 450 m`` is found.
+    Candidates are the names with similar letters or, if there are none, the names that contain
+    every word of the text. They are ranked by the similarity of their words and numbers: for
+    ``chain-g30-16``, ``chain-short-g30-16`` ranks above ``chain-g80-16``. For ``ADCP``,
+    ``ADCP 450 m`` is returned.
     """
     given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)
-    alike = difflib.get_close_matches(given, names, 50)
-    if not alike and any(len(word) > 2 and word.isalpha() for word in wanted):
-        alike = [name for name in names if {*wanted} <= {*_parts(name)}]
-    return max(alike, key=lambda name: _likeness(wanted, _parts(name)), default=None)
+    candidates = difflib.get_close_matches(given, names, 50)
+    if not candidates and any(len(word) > 2 and word.isalpha() for word in wanted):
+        candidates = [name for name in names if {*wanted} <= {*_parts(name)}]
+    return max(candidates, key=lambda name: _likeness(wanted, _parts(name)), default=None)
 
 
 def _parts(name: str) -> list[str]:
-    """Split a name into words and numbers; a size in millimetres counts as a number."""
+    """Split a name into words and numbers; a size in millimetres, such as ``12mm``, is a number."""
     parts = re.split(r"[\W_]+", name.casefold())
     return [re.sub(r"(?<=\d)mm$", "", part) for part in parts if part]
 
 
 def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
     """Mean similarity between the wanted parts and the parts of a name; 1 if all are equal."""
-    best = [max((_alike(one, other) for other in parts), default=0.0) for one in wanted]
+    best = [max((_similarity(one, other) for other in parts), default=0.0) for one in wanted]
     return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
 
 
-def _alike(one: str, other: str) -> float:
-    """Similarity of two words by their letters, or of two numbers by their ratio."""
+def _similarity(one: str, other: str) -> float:
     if one.isdecimal() and other.isdecimal():
         least, greatest = sorted((float(one), float(other)))
         return least / greatest if greatest else 1.0

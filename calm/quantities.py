@@ -1,7 +1,7 @@
 """The quantities that CALM reports: names, symbols, units and meanings.
 
 Table headings, CSV headers, plot labels and the manual use this table, so that a quantity has the
-same name and unit everywhere. A second table has the quantities that instruments measure.
+same name and unit everywhere. A second table lists the quantities that instruments measure.
 """
 
 from collections.abc import Mapping
@@ -86,8 +86,8 @@ class Quantity:
     def say(self, value: float | None, *beside: float | None) -> str:
         """Format a value [`unit`] in the display unit, with the unit, such as ``113.2 m``.
 
-        A force whose usual unit is kN is in N if it is below 1 kN, and so are all values `beside`
-        it.
+        A force whose usual unit is kN is shown in N if it and all values `beside` it are below 1
+        kN.
         """
         if value is None or value != value:
             return "unknown"
@@ -223,8 +223,8 @@ def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
     """Return display unit, factor from the unit of results to the display unit, and number of
     decimals.
 
-    A quantity with a small usual unit, such as mm, keeps it. The number of decimals is chosen so
-    that the resolution is about that of the usual unit.
+    A quantity with a small usual unit, such as mm, keeps this unit. The number of decimals
+    preserves the resolution of the usual unit.
     """
     dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
     chosen = "" if display and dimension != "force" else _shown.get(dimension, "")
@@ -237,11 +237,13 @@ def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
 def show_in(units: Mapping[str, str]) -> None:
     """Set the display units for this process.
 
-    Data files remain in SI units. Quantities with a small usual unit (diameters in mm) keep it.
+    Data files remain in SI units. Quantities with a small usual unit, such as diameters in mm, keep
+    this unit.
 
     Parameters
     ----------
-    units : unit by dimension of `SHOWN_UNITS`; other dimensions keep their usual units
+    units : display unit for each dimension in `SHOWN_UNITS`; a missing dimension keeps its usual
+        unit
     """
     _shown.clear()
     _layout.cache_clear()
@@ -249,7 +251,7 @@ def show_in(units: Mapping[str, str]) -> None:
 
 
 def shown_units() -> dict[str, str]:
-    """Return the units set by `show_in`, by dimension."""
+    """Return the display units set by `show_in`, by dimension."""
     return dict(_shown)
 
 
@@ -290,11 +292,11 @@ class MeasuredQuantity:
 
     Attributes
     ----------
-    archive : its name in OceanSITES files
-    standard_name, long_name, units : attributes of the variable that is written
-    dimension : dimension of its unit, as in `calm.units`
-    sought, usual : CF standard names, and usual names of variables, by which it is found in files
-    noise : standard deviation of a good sensor, the default if the user gives none
+    archive : name in OceanSITES files
+    standard_name, long_name, units : attributes of the variable in files written by CALM
+    dimension : dimension of the unit, as in `calm.units`
+    sought, usual : CF standard names and common variable names by which input files are searched
+    noise : standard deviation of a good sensor; the default unless the user specifies one
     """
 
     archive: str
@@ -333,9 +335,9 @@ manufacturers.
 
 
 def chosen_quantities(text: str | None) -> tuple[str, ...]:
-    """Split a text such as ``temperature,salinity`` into names; None selects all names.
+    """Split a text such as ``temperature,salinity`` into names; None selects all quantities.
 
-    UsageError: a name is unknown; names in OceanSITES files are accepted, too.
+    The names in OceanSITES files are accepted, too. UsageError: a name is unknown.
     """
     archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
     wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]

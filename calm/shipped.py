@@ -1,6 +1,7 @@
 """Locate files installed with CALM: component catalogue, example lines, manual and templates.
 
-In an installation the first three are inside the package; in a checkout they are next to it.
+In an installation the first three are inside the package; in a checkout they are next to the
+package.
 """
 
 import importlib.resources
@@ -9,7 +10,7 @@ from typing import Literal
 
 
 def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
-    """Return the folder of the shipped catalogue, lines or manual.
+    """Return the folder of the shipped catalogue, example lines or manual.
 
     Raises
     ------
@@ -33,15 +34,12 @@ TEMPLATES: dict[Template, str] = {
     "slack-surface": "marker buoy on chain and floating rope, 60 m",
     "tow": "body behind a ship, at the depth wanted",
 }
-"""Kinds of template moorings, with descriptions.
-
-A template accepts no unknown figure, since that is a decision of whoever signs the design.
-
-None accepts a figure that is not known: that is for whoever signs the design.
+"""Kinds of template moorings, with descriptions. No template accepts an unknown value, because this
+is a decision of the person who signs the design.
 """
 
 
 def template(kind: Template) -> str:
-    """Return the text of the template of a kind."""
+    """Return the text of the template for a kind of mooring."""
     folder = importlib.resources.files("calm") / "templates"
     return (folder / f"{kind}.yaml").read_text(encoding="utf-8")

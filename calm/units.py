@@ -72,11 +72,10 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "latitude": Dimension("a latitude", "deg", {"deg": 1.0}),
     "longitude": Dimension("a longitude", "deg", {"deg": 1.0}),
 }  # fmt: skip
-"""All dimensions by name.
-
-Angles are in degrees and temperatures in degrees Celsius, as in files and reports. Salinities are
-practical salinities. A mass fraction is converted to one as for sea water of the reference
-composition, by the factor that defines it (Millero et al. 2008, Deep-Sea Research I 55, 50-72).
+"""All dimensions by name. Angles are in degrees and temperatures in degrees Celsius, as in files
+and reports. Salinities are practical salinities. A mass fraction is converted to a practical
+salinity with the factor for sea water of the reference composition (Millero et al. 2008, Deep-Sea
+Research I 55, 50-72).
 """
 
 _SPELLINGS = {
@@ -145,12 +144,11 @@ class QuantityError(ValueError):
     Attributes
     ----------
     complaint : str
-        What is wrong, to be read after the invalid text: "needs a unit".
+        The fault, worded to follow the invalid text: "needs a unit".
     suggestion : str or None
         The corrected text, if a correction is known.
     is_other : bool
-        Whether the text is of another dimension, so that either its unit or its number may be
-        wrong.
+        Whether the text has another dimension, so that its unit or its number may be wrong.
     """
 
     def __init__(
@@ -187,7 +185,7 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
 
 @functools.lru_cache(maxsize=4096)
 def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
-    """Return the value of a text without surrounding blanks."""
+    """Parse a stripped text to its SI value."""
     wanted = DIMENSIONS[dimension]
     if dimension in HEMISPHERES:
         try:
@@ -286,7 +284,7 @@ def unit_factor(text: str, dimension: str) -> float:
         # Other scales have other zeros, which no factor can express.
         raise QuantityError("is not a temperature in degC", "degC" if unit == "C" else None)
     if dimension == "salinity":
-        # Pint would make a plain number of any ratio, and that would pass for a practical salinity.
+        # Pint converts any ratio to a plain number, which would pass for a practical salinity.
         raise QuantityError(f"is not {_described(wanted)}")
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
         raise QuantityError(f"cannot be read; {_described(wanted)} is needed")
@@ -294,15 +292,14 @@ def unit_factor(text: str, dimension: str) -> float:
 
 
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
-    """Return factor and offset between two units: a value x becomes ``factor * x + offset`` in the
-    other.
+    """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
     Factor and offset come from pint, which knows the zeros of temperature scales.
 
     Parameters
     ----------
-    text : the unit, such as ``"K"`` or ``"S m-1"``
-    wanted : the other unit, as pint writes it
+    text : original unit, such as ``"K"`` or ``"S m-1"``
+    wanted : target unit, as pint writes it
 
     Raises
     ------
@@ -360,7 +357,9 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
 
 
 def _tidy(unit: str) -> str:
-    """Return a single spelling for the variants of a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
+    """Convert all spellings of a unit to one spelling; `m s-1`, `m.s^-1` and `m·s⁻¹` are
+    examples.
+    """
     unit = unit.strip().replace("**", "^").replace("·", "*")
     unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)
@@ -391,7 +390,7 @@ def _factor_by_pint(unit: str, wanted: Dimension) -> float:
 
     registry = _registry()
     near = [known for known in wanted.units if known.lower() == unit.lower()]
-    # Units of other kinds and texts that are no unit at all leave pint by many exceptions.
+    # Pint raises many kinds of exceptions for other units and for texts that are not units.
     try:
         quantity = registry.Quantity(1.0, registry.parse_units(unit))
         return float(quantity.to(wanted.unit).magnitude)

@@ -9,7 +9,8 @@ def built_from() -> str:
     """Return the commit of this installation, such as ``4c1fd21``, with ``-dirty`` if a checkout
     has changes.
 
-    A wheel contains the commit in a file; in a checkout it is obtained from git. Empty if unknown.
+    A wheel stores the commit in a file; in a checkout, git supplies it. The text is empty if the
+    commit is unknown.
     """
     package = Path(__file__).parent
     written = package / "_shipped" / "commit"
@@ -19,14 +20,14 @@ def built_from() -> str:
 
 
 def commit_of(checkout: Path) -> str:
-    """Return the commit of a git checkout; empty if git or the checkout is missing."""
+    """Return the commit of a git checkout; empty if git is missing or this is not a checkout."""
     import subprocess
 
     if not (checkout / ".git").exists():
         return ""
     describe = ["git", "-C", str(checkout), "describe", "--always", "--exclude=*", "--dirty"]
     try:
-        asked = subprocess.run(describe, capture_output=True, text=True, check=False, timeout=10)
+        found = subprocess.run(describe, capture_output=True, text=True, check=False, timeout=10)
     except (OSError, subprocess.TimeoutExpired):
         return ""
-    return asked.stdout.strip()
+    return found.stdout.strip()

@@ -41,7 +41,7 @@ def beside(target: Path) -> Iterator[Path]:
     Raises
     ------
     OSError
-        The system rejects the file; the target is unchanged, and no temporary file is left.
+        The file could not be written; the target is unchanged and no temporary file remains.
     """
     part = target.with_name(f".{target.name[:_LONGEST]}.{os.urandom(6).hex()}{UNFINISHED}")
     part.touch(exist_ok=False)
@@ -67,7 +67,8 @@ def put(
     Raises
     ------
     OSError
-        The system refuses, for example because the disk is full; the old file is unchanged.
+        The file could not be written, for example because the disk is full; the old file is
+        unchanged.
     """
     with beside(target) as part:
         part.write_bytes(content)
@@ -81,8 +82,8 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Delete old temporary files in a folder: those for the file `name`, by default those for all
-    files.
+    """Delete old temporary files of the file `name` in a folder, or those of all files if no name
+    is given.
     """
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
@@ -134,7 +135,7 @@ def _give(part: Path, like: os.stat_result) -> None:
 def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
     """Read a small UTF-8 text file.
 
-    InputError: it cannot be read, is too large, or is not UTF-8.
+    InputError: the file cannot be read, is too large, or is not UTF-8.
     """
     return decoded(path, read_content(path, largest=largest)).removeprefix("\ufeff")
 
@@ -142,7 +143,7 @@ def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
 def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     """Return the bytes of a small regular file.
 
-    InputError: it is not a regular file, is too large, or cannot be read.
+    InputError: the path is not a regular file, or the file is too large or cannot be read.
     """
     with _regular(path):
         if path.stat().st_size > largest:
@@ -155,7 +156,7 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
 def read_head(path: Path, most: int) -> bytes:
     """Return the first bytes of a regular file.
 
-    InputError: it is not a regular file, or cannot be read.
+    InputError: the path is not a regular file, or the file cannot be read.
     """
     with _regular(path), path.open("rb") as file:
         return file.read(most)
@@ -163,9 +164,7 @@ def read_head(path: Path, most: int) -> bytes:
 
 @contextlib.contextmanager
 def _regular(path: Path) -> Iterator[None]:
-    """Raise InputError for a path that is not a regular file, and for a file that cannot be
-    read.
-    """
+    """Raise InputError if the path is not a regular file or the file cannot be read."""
     try:
         if path.is_dir():
             raise refused(path, "is a folder; a file is needed")
@@ -179,8 +178,11 @@ def _regular(path: Path) -> Iterator[None]:
 
 
 def no_such_file(path: Path) -> str:
-    """Return the message about a missing file, with the most similar file name in its folder that
-    has the same suffix. Without a suffix, or with .yml, a .yaml file may be suggested.
+    """Return the message about a missing file. It suggests the most similar file name in the same
+    folder.
+
+    The suggested name has the same suffix; for a name without a suffix or with .yml, it may be a
+    .yaml file.
     """
     with contextlib.suppress(OSError, ValueError):
         suffix = {"": ".yaml", ".yml": ".yaml"}.get(path.suffix, path.suffix)
@@ -197,7 +199,7 @@ def no_such_file(path: Path) -> str:
 def decoded(path: Path, content: bytes) -> str:
     """Decode the UTF-8 text of a file, with or without a byte-order mark.
 
-    InputError: it cannot be decoded.
+    InputError: the content is not UTF-8.
     """
     if b"\0" in content:
         raise refused(path, "is a binary file; text is needed")
@@ -209,13 +211,15 @@ def decoded(path: Path, content: bytes) -> str:
 
 
 class FileCache(Generic[T]):
-    """Cache of the last value read from files, identified by their names, times and sizes."""
+    """Cache of the last value computed from a set of files; the names, times and sizes of the files
+    are its key.
+    """
 
     def __init__(self) -> None:
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return the cached value, or call `read` if other files are given or a file has
+        """Return the cached value; call `read` if the list of files differs or one of them has
         changed.
         """
         stamp = _stamp(paths)
@@ -228,7 +232,9 @@ class FileCache(Generic[T]):
 
 
 def _stamp(paths: Sequence[Path]) -> Stamp | None:
-    """Return the names, times and sizes of files; None if these would not show a change."""
+    """Return the names, times and sizes of files. Return None if a file is missing, or so recent
+    that its time may not reveal a change.
+    """
     try:
         found = [(str(path), path.stat()) for path in paths]
     except (OSError, ValueError):

@@ -58,8 +58,9 @@ assert picture.startswith("<svg")
 ```
 
 The SVG has the size of A4. A long line is drawn smaller to fit, and a line with more than about 60
-rows needs a longer sheet. Texts never overlap and are never cut: long texts wrap. A wire of ten
-times the length is drawn slightly longer. The same input gives the same bytes.
+rows needs a longer sheet; a report divides it into several sheets. Texts never overlap and are
+never cut: long texts wrap. A wire of ten times the length is drawn slightly longer. The same input
+gives the same bytes.
 
 Surface moorings are drawn with the surface, and tows with their ship or helicopter:
 

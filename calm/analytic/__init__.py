@@ -1,9 +1,9 @@
 """Closed-form solutions for lines and cables, which are independent of the march and validate it.
 
-`catenary`: a line in still water; `uniform`: lines in a uniform stream, without weight and heavy,
-and Pode's cable functions; `villain_guillot`: towed cables whose drag is linear or quadratic in
-each component of the velocity; `chart`: Braconnot's charts. All SI and
-radians; each module states its equations, their range and their source.
+`catenary` has a line in still water. `uniform` has weightless and heavy lines in a uniform stream,
+and Pode's cable functions. `villain_guillot` has towed cables with a drag that is linear or
+quadratic in each velocity component. `chart` has Braconnot's charts. Units are SI and radians. Each
+module states its equations, their range of validity and their source.
 """
 
 from calm.analytic import catenary as catenary

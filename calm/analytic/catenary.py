@@ -5,8 +5,9 @@ below it (unstretched), an inextensible line of weight w per metre spans
 
     x = (H/w) [asinh(V/H) − asinh(V₀/H)],      z = [√(H² + V²) − √(H² + V₀²)] / w.
 
-Linear stretch adds H s/EA and (V² − V₀²)/(2 w EA), the weight being that of the unstretched metre.
-On a level seabed without friction V₀ does not fall below 0: the rest, L − V/w, lies on it under H.
+Linear stretch adds H s/EA to x and (V² − V₀²)/(2 w EA) to z, if w is the weight per unstretched
+metre. On a level seabed without friction V₀ does not fall below 0, and the remaining length, L −
+V/w, lies on the seabed with tension H.
 
 Source: H. M. Irvine, *Cable Structures*, MIT Press, 1981, chapter 2.
 """
@@ -35,7 +36,8 @@ def position(
 
     Returns
     -------
-    x, z : distance and height of the arc's end from the point [m]; arrays broadcast
+    x, z : horizontal distance and height from the known point to the end of the arc [m]; arrays
+        broadcast
     """
     s, h, v, w = (np.asarray(value, float) for value in (arc, horizontal, vertical, weight))
     top = v + w * s
@@ -174,7 +176,7 @@ def between(
     Notes
     -----
     The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so the pull is unique.
-    Newton's method converges to it if each step is halved until the miss decreases.
+    Newton's method converges to it if each step is halved until the position error decreases.
     """
     if not isfinite(x + z + length + weight):
         raise ValueError("the measures of a catenary must be finite")

@@ -24,13 +24,13 @@ class ChartSolution:
 
     Parameters
     ----------
-    phi_a, phi_b : angle of the cable, followed from A to B, to the current at its lower and upper
-        end [rad], from −π to π; negative where the cable descends
+    phi_a, phi_b : angle between the cable, in the direction from A to B, and the current at the
+        lower and at the upper end [rad], from −π to π; negative where the cable descends
     tension_a, tension_b : tension at the lower and upper end [N]
     height, distance, length : height of B above A, distance of B downstream of A, and length of the
         cable [m]
-    h0 : tension at the apex of the curve over the weight per metre, the unit of the chart [m]; 0
-        for a straight cable, which has no apex
+    h0 : tension at the apex of the curve divided by the weight per metre, which is the unit of
+        length of the chart [m]; 0 for a straight cable, which has no apex
     """
 
     phi_a: float
@@ -45,15 +45,15 @@ class ChartSolution:
 
 @dataclass(frozen=True)
 class ChartAnswer:
-    """Cables that have three given quantities, or the reason why there is none.
+    """All cables with three given quantities, or the reason why there is none.
 
     Parameters
     ----------
     status : ``converged``; else ``no-equilibrium``, ``inconsistent`` (the given quantities
-        contradict each other) or ``one-parameter-family`` (they do not fix the cable)
-    k : K
-    solutions : all solutions: cables that do not dip below A first, the first branch first
-    message, advice : reason and advice, without a solution
+        contradict each other) or ``one-parameter-family`` (they do not determine the cable)
+    k : K, as in `chart_solve`
+    solutions : the cables; cables that do not dip below A come first
+    message, advice : reason and advice if there is no solution
     """
 
     status: str
@@ -123,7 +123,7 @@ def chart_solve(
 
 
 def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | NoEquilibrium:
-    """Solve for sinking cables, with tensions divided by w; buoyant cables are mirrored before."""
+    """Solve for sinking cables, with tensions divided by w. The caller mirrors buoyant cables."""
     refusal = contradiction(known)
     if refusal:
         return refusal
@@ -146,7 +146,6 @@ def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolutio
 def _on_branch(
     branch: Branch, ends: Mapping[str, tuple[Branch, float] | None], sizes: Mapping[str, float]
 ) -> list[ChartSolution]:
-    """Find every cable that is part of one branch of the curve."""
     places = [end for end in ends.values() if end is not None]
     if any(place[0].sign != branch.sign for place in places):
         return []
@@ -180,7 +179,7 @@ _SCALES = ("length", "tension_b", "height", "tension_a", "distance")
 
 
 def _cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSolution | None:
-    """Scale a part of the curve to its given size; None if the scale would be negative."""
+    """Scale a part of the curve to its given size; None if the scale would not be positive."""
     unit = {name: float(size_of(branch, name, *piece)) for name in SIZES}
     name = next(name for name in _SCALES if name in sizes)
     scale = sizes[name] / unit[name] if unit[name] else 0.0
@@ -248,15 +247,15 @@ _LEAST_SLACK = 1e-12
 
 
 def family(what: str) -> NoEquilibrium:
-    """Return the outcome for quantities that many cables share."""
+    """Return the answer for quantities that a whole family of cables has in common."""
     return NoEquilibrium("one-parameter-family", what, "Replace one of these by another quantity.")
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Find a contradiction among the quantities of a sinking cable that holds for every K; None
-    without contradiction.
+    """Find a contradiction among the quantities of a sinking cable, whatever the value of K; None
+    if there is none.
 
-    Buoyant cables are mirrored before. The messages apply to buoyant and to sinking cables.
+    The caller mirrors buoyant cables. The messages are worded for both kinds of cable.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -293,9 +292,9 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
 
     Parameters
     ----------
-    k : K
-    known : the quantities, mirrored for a buoyant cable
-    floats : whether they were mirrored
+    k : K, as in `chart_solve`
+    known : the given quantities, mirrored for a buoyant cable
+    floats : whether the cable is buoyant, so that the quantities are mirrored
     """
     critical = float(critical_angle(k))
     shown = math.degrees(math.pi - critical if floats else critical)
@@ -337,8 +336,9 @@ def _none(message: str, advice: str) -> NoEquilibrium:
 def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
     """Return the straight cable at the critical angle, which is not part of a branch of the curve.
 
-    It matches three quantities [rad, m] to 1e-9, with tensions over w. The result is a refusal if
-    they do not determine its size, and None if there is no such cable.
+    The cable matches the three given quantities [rad, m], with tensions divided by w, to 1e-9.
+    NoEquilibrium is returned if the quantities do not determine its size, and None if they do not
+    match such a cable.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

@@ -1,21 +1,22 @@
 """One branch of the curve of a cable in a uniform current, in units of H₀ and wH₀.
 
-Plane, uniform current, drag normal to the cable only, w > 0 [N/m] the weight in water, φ the angle
-of the cable to the current, s the arc counted upwards along the curve::
+The cable lies in the plane of a uniform current and has only normal drag. With w > 0 the weight in
+water [N/m], φ the angle between cable and current, and s the arc length up the cable::
 
     dT/ds = w sin φ,    T dφ/ds = w g(φ),    g(φ) = cos φ + K |sin φ| sin φ,    K = ρ Cx D V²/(2w)
 
-In units of H₀ = T(apex)/w and w H₀ the cables of one K are pieces of one curve with its origin at
-the apex φ = 0. Beyond the critical angle φ_c, where g vanishes, lies a second branch with its apex
-at φ = 180°; it is the first branch of −K seen in a mirror, so `Branch` is both.
+In units of H₀ = T(apex)/w and w H₀, all cables with the same K are pieces of one curve with its
+origin at the apex φ = 0. Beyond the critical angle φ_c, where g vanishes, lies a second branch with
+its apex at φ = 180°. It is the mirror image of the first branch for −K, so `Branch` represents
+both.
 
 With u = cos φ and u_c = cos φ_c, dT/T = −du/g integrates to
 
     T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m,    m = (1 − u_c²)/(1 + u_c²)
 
-The bracket is written cosh λ. For K = 0 that λ is the parameter of the catenary; for every K it
-covers the whole curve, while φ would accumulate at φ_c. The arc and the abscissa are Gauss–Legendre
-quadratures in λ of smooth functions, accurate to rounding.
+The bracket is set equal to cosh λ. For K = 0, λ is the parameter of the catenary. For every K, λ
+resolves the whole branch, whereas points given by φ would crowd together at φ_c. Arc length and
+distance are Gauss–Legendre quadratures of smooth functions of λ, accurate to rounding.
 
 Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
 """
@@ -131,15 +132,17 @@ class Branch:
         return np.asarray(np.copysign(size, signed))
 
     def from_apex(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
-        """Return s′ and y′ of points, from the apex and downstream on either branch."""
+        """Return arc length s′ and distance y′ of points from the apex, with y′ positive downstream
+        on both branches.
+        """
         signed = np.asarray(parameter, dtype=np.float64)
         arc, distance = self.span(np.minimum(signed, 0.0), np.maximum(signed, 0.0))
         side = np.sign(signed)
         return side * arc, side * self.sign * distance
 
     def span(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
-        """Return arc length and distance between two points with start ≤ end, in units of H₀
-        (vectorised).
+        """Return arc length and distance between two points with start ≤ end, in units of H₀;
+        points may be arrays.
         """
         first, last = (
             np.asarray(side, dtype=np.float64) for side in np.broadcast_arrays(start, end)
@@ -151,8 +154,8 @@ class Branch:
         return total[0], total[1]
 
     def _span(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return (2, …) arc length and distance between two points on one side of the apex, 0 ≤
-        start ≤ end.
+        """Return arc length and distance, shape (2, …), between two points on one side of the apex,
+        0 ≤ start ≤ end.
         """
         # a short piece is integrated directly, since the difference of two long ones loses digits
         short = end - start <= _PANEL
@@ -172,8 +175,8 @@ class Branch:
         return total
 
     def _panel(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return (2, …) arc length and distance from `start` to `end`, at most a panel apart or
-        both far from the apex.
+        """Return arc length and distance, shape (2, …), from `start` to `end`. These points are at
+        most one panel apart, or both are far from the apex.
         """
         width = end - start
         places = start + width * _NODES.reshape(-1, *([1] * start.ndim))

@@ -1,10 +1,10 @@
 """Search on a branch of the curve for all cables that match the given quantities.
 
-A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. With λ_B > |λ_A| its upper end is B;
-λ_A < 0 if it dips below its lower end. The ratio of two given sizes (tensions over w, height,
-distance, length) does not depend on H₀. That leaves
+A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. Its upper end is B, so λ_B > |λ_A|.
+If the cable dips below its lower end, λ_A is negative. The ratio of two given sizes (tensions
+divided by w, height, distance, length) does not depend on H₀. The search therefore has
 
-- no search if both angles, or one angle and the ratio of the tensions, are given;
+- no unknown if both angles, or one angle and the ratio of the tensions, are given;
 - one unknown if one angle, or the ratio of the tensions, is given;
 - two unknowns for length, distance and a third size: the ratio D/L then relates λ_B to λ_A.
 
@@ -12,9 +12,9 @@ A residual is scanned on a grid that is fine for short pieces and extends to whe
 straight to rounding. Changes of sign are refined, and minima close to zero are examined for a pair
 of roots.
 
-For length, distance and a third size, the mean of cos ψ over the piece is D/L, and the third is a
-share of the length. If a grid of both ends shows that both conditions may be met, Powell's method
-finds the solution.
+If length, distance and a third size are given, the mean of cos ψ over the piece must be D/L, and
+the third size must be a known fraction of the length. Powell's method starts from every pair of
+ends on a grid near which both conditions may be met.
 """
 
 from collections.abc import Callable, Mapping
@@ -46,17 +46,17 @@ class ChartSearch:
     Parameters
     ----------
     branch : branch to search
-    sizes : given values of tension_a, tension_b (over w), height, distance (mirrored like the
-        branch ), and length, all in metres
+    sizes : given values of tension_a and tension_b (divided by w), height, distance (mirrored like
+        the branch) and length, all in metres
     """
 
     branch: Branch
     sizes: Mapping[str, float]
 
     def pieces(self, start: float | None, end: float | None) -> list[Piece]:
-        """Find all parts of the branch with the given end angles, if any, and the given sizes.
+        """Find all parts of the branch that have the given sizes and, if given, the end angles.
 
-        Without a given end, two of the sizes must determine the ratio of the tensions.
+        If neither end is given, two of the sizes must determine the ratio of the tensions.
         """
         if end is not None and end <= 0.0:
             return []
@@ -93,7 +93,7 @@ class ChartSearch:
         return None
 
     def _raised(self, start: ArrayLike, ratio: float) -> Floats:
-        """Return λ_B, at which the tension is exp(ratio) times the tension at `start`."""
+        """Return λ_B, where the tension is exp(ratio) times the tension at `start`."""
         return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
 
     def _residual(self, path: Path, places: Floats) -> Floats:
@@ -161,8 +161,8 @@ def merged(*grids: Floats) -> Floats:
 
 
 def reach(branch: Branch) -> float:
-    """Return the λ beyond which, within rounding, only tension and arc length change, in proportion
-    to each other.
+    """Return the λ beyond which the cable is straight within rounding, so that tension and arc
+    length grow in proportion.
     """
     return 40.0 / branch.exponent + 20.0
 
@@ -191,7 +191,9 @@ def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) ->
 
 
 def steps_with_zero(value: Floats) -> NDArray[np.intp]:
-    """Return the steps of a scan in which the sign changes, by the index of their first point."""
+    """Return the steps of a scan in which the sign changes, each as the index of its first
+    point.
+    """
     change = (np.sign(value[:-1]) != np.sign(value[1:])) & (value[:-1] != 0.0)
     change &= np.maximum(np.abs(value[:-1]), np.abs(value[1:])) > _NOISE
     return np.flatnonzero(change)
@@ -225,8 +227,8 @@ class LengthSearch:
     ----------
     branch : branch to search
     cosine : D/L, with D mirrored like the branch
-    third, share : str, float
-        tension_a, tension_b or height; that size over the length.
+    third, share : name of the third size (tension_a, tension_b or height), and this size divided by
+        the length
     """
 
     branch: Branch

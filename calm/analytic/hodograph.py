@@ -1,7 +1,8 @@
 """Heavy line in a uniform stream, with drag quadratic in the normal velocity: exact integrals.
 
-With φ the angle between the line going up and the way upstream, s up the line, w its weight and R
-its normal drag per metre when square to the stream, p = w/R:
+φ is the angle between the upward direction of the line and the upstream direction, and s the arc
+length up the line. Per metre of line, w is the weight and R the drag if it is normal to the stream.
+With p = w/R:
 
     dT/ds = w sin φ + F,      T dφ/ds = −R D(φ),      D = sin²φ − p cos φ,      0 ≤ φ ≤ π.
 
@@ -10,13 +11,13 @@ D = (u − cos φ)(cos φ + 1/u). With a = tan(φc/2) and
 
     a cot(φ/2) = tanh m  (φ > φc)    or    coth m  (φ < φc),
 
-the whole of either branch is m = 0 (the line level) to ∞ (straight at φc), up the line, and
+each branch extends up the line from m = 0 (line horizontal) to m = ∞ (straight at φc), and
 
     ∫ (p sin φ/D) dφ,      ∫ dφ/D,      ∫ (cos²φ/D) dφ
 
-are elementary in m. So is the tension, for F = 0, F = f R (Pode: constant along the line) and
-F = f R cos²φ (tangential drag as the square of its own component), F changing sign at 90°. Arc,
-distance and height follow from the tension by one smooth quadrature in m.
+are elementary functions of m. So is the tension for F = 0, for F = f R (Pode's constant friction)
+and for F = f R cos²φ (drag quadratic in the tangential velocity), where F changes sign at 90°. Arc
+length, distance and height follow from the tension by one smooth quadrature in m.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class Hodograph:
     weight_ratio : p = w/R > 0 [-]
     friction : f ≥ 0 [-]
     law : how f acts: "constant", F = f R, or "square", F = f R cos²φ
-    steep : the branch φ > φc; else φ < φc
+    steep : whether the branch is φ > φc instead of φ < φc
 
     Raises
     ------
@@ -146,7 +147,9 @@ class Hodograph:
         return weight + self.friction * np.abs(here - upright)
 
     def _rubbing(self, m: Floats) -> Floats:
-        """Return the increasing function ∫ F/(f R D) dφ, integrated from φ and up to a constant."""
+        """Return the integral ∫ F/(f R D) dφ from φ, up to a constant. The integral increases with
+        φ.
+        """
         u, a = self._u, self._a
         sine, cosine = self._half_angle(m)
         straight = 2.0 * m / self._sine
@@ -201,10 +204,10 @@ class Hodograph:
         return [0.0, *(cuts if step > 0.0 else reversed(cuts)), step]
 
     def advance(self, start: float, arc: float) -> float:
-        """Return the step of m for a given arc length in units of T₀/R, or −`start` if the line
-        becomes horizontal before.
+        """Return the step of m for an arc length in units of T₀/R; return −`start` if the line
+        becomes horizontal before the arc ends.
 
-        The start is a finite m. The arc counts up the line and is negative downwards.
+        `start` is finite. An arc up the line is positive.
         """
         from scipy.optimize import brentq
 
@@ -257,13 +260,13 @@ class Station(NamedTuple):
 
     Attributes
     ----------
-    angle : between the line going up and the way upstream [rad]
+    angle : angle between the upward direction of the line and the upstream direction [rad]
     tension : tension [N]
     x : distance upstream of the given end [m]
     z : height above the given end [m]
 
-    All have the shape of the given arcs. A towed cable, given at its body, has angles below 90°; a
-    mooring line is inclined downstream and has angles above 90° (90° + tilt). The force at the
+    All arrays have the shape of the given arcs. A cable above a towed body has angles below 90°. A
+    mooring line is inclined downstream, so its angles are above 90° (90° + tilt). The force at the
     given end is the load below it: a body of weight W in water and drag D pulls with T₀ = √(W² +
     D²) at the angle atan2(W, D); for a float of buoyancy B the angle is atan2(B, −D).
     """

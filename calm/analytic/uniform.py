@@ -1,26 +1,27 @@
 """Shape of a line in a uniform horizontal stream, with a quadratic normal drag R sin²φ per metre.
 
-R is the drag per metre of a line normal to the stream, ½ρ Cn D V². The same frame serves towed
-cables and moorings (see `Station`). With s up the line, the equations are
+R is the drag per metre of a line normal to the stream, ½ρ Cn D V². The same coordinates serve towed
+cables and moorings (see `Station`). With s the arc length up the line, the equations are
 
     dT/ds = w sin φ + F,      T dφ/ds = −(R sin²φ − w cos φ),      dx/ds = cos φ,      dz/ds = sin φ
 
-with a tangential drag F. Without weight T is constant and the shape is a catenary on its side; with
-weight the tension is elementary, and the coordinates need one quadrature. If F = 0, the tension
-difference between two points is exactly w times their difference in height.
+with a tangential drag F. Without weight T is constant and the shape is a catenary turned by 90°.
+With weight the tension is an elementary function of φ, and the coordinates need one quadrature. If
+F = 0, the tension difference between two points is exactly w times their difference in height.
 
 Sources: L. Pode, *Tables for computing the equilibrium configuration of a flexible cable in a
 uniform stream*, David Taylor Model Basin report 687, 1951; E. E. Zajac, Bell System Technical
 Journal 36, 1957, for the critical angle.
 
-Pode's cable functions are those of the heavy line with a tangential drag F that does not depend on
-the angle, unlike ½ρ Ct πD (V cos φ)². From the point where the line is normal to the stream, with p
-= w/R, f = F/R and T₀ at this point,
+Pode's cable functions describe a heavy line whose tangential drag F does not depend on the angle,
+unlike ½ρ Ct πD (V cos φ)². Relative to the point where the line is normal to the stream and has the
+tension T₀, with p = w/R and f = F/R,
 
     τ = T/T₀ = exp ∫ (f + p sin α)/(sin²α − p cos α) dα,      R s/T₀ = σ = ∫ τ dα/(sin²α − p cos α),
 
-ξ and η likewise with τ cos α and τ sin α, all from φ to 90°. They satisfy τ − 1 = p η + f σ.
-Source: L. Pode, David Taylor Model Basin report 687, 1951; tabulated were f = 0.01, 0.02 and 0.03.
+where all integrals run from φ to 90°. The integrals for ξ and η have τ cos α and τ sin α in the
+place of τ. The functions satisfy τ − 1 = p η + f σ. Pode's report tabulates f = 0.01, 0.02 and
+0.03.
 """
 
 from typing import NamedTuple
@@ -41,10 +42,10 @@ def neutral_line(
 
     Parameters
     ----------
-    arc : distance s from the given end, up the line; negative down [m]
+    arc : distance s from the given end, up the line; negative down the line [m]
     tension : T > 0 [N]
     angle : φ₀ at the given end, between 0 and π [rad]
-    normal_drag : R > 0, per metre square to the stream [N/m]
+    normal_drag : R > 0, drag per metre of a line normal to the stream [N/m]
 
     Arrays broadcast.
 
@@ -69,12 +70,12 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    weight_ratio : p = w/R ≥ 0, weight over normal drag square to the stream, per metre [-]
+    weight_ratio : p = w/R ≥ 0, weight divided by the drag of a line normal to the stream [-]
 
     Raises
     ------
     ValueError
-        p is negative. A line lighter than water is the vertical mirror image.
+        p is negative. A line lighter than water is the vertical mirror image of a heavy line.
     """
     p = np.asarray(weight_ratio, float)
     if not np.all(p >= 0.0):
@@ -107,15 +108,15 @@ def tension_ratio(
 ) -> Floats:
     """Return the ratio of a heavy line's tensions at two angles, in closed form.
 
-    Without friction and from 90° it is [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)), u = cos
-    φc.
+    Without friction and for φ₀ = 90°, the ratio is
+    [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)) with u = cos φc.
 
     Parameters
     ----------
     angle : φ, 0 to π, of any shape [rad]
     start : φ₀, 0 to π, on the same side of the critical angle [rad]
     weight_ratio : p = w/R > 0 [-]
-    friction : f ≥ 0: maximum tangential over maximum normal drag per metre [-]
+    friction : f ≥ 0, ratio of maximum tangential to maximum normal drag per metre [-]
     law : "square": tangential drag f R cos²φ; "constant": f R at any angle (Pode)
 
     Raises
@@ -148,25 +149,25 @@ def heavy_line(
 
     Parameters
     ----------
-    arc : distance s from the given end, up the line; negative down; any shape [m]
+    arc : distance s from the given end, up the line; negative down the line; any shape [m]
     tension : T₀ > 0 at the given end [N]
     angle : φ₀ at the given end, −π to π [rad]
     weight : w > 0, weight per metre in the fluid [N/m]
-    normal_drag : R > 0, per metre square to the stream [N/m]
-    tangential_drag : per metre along the stream, ≥ 0 [N/m]
+    normal_drag : R > 0, drag per metre of a line normal to the stream [N/m]
+    tangential_drag : drag per metre of a line along the stream, ≥ 0 [N/m]
     law : dependence on the angle: "square" (cos²φ) or "constant"
 
     Raises
     ------
     ValueError
-        A value is outside its range, or a line straight at the critical angle has no tension left
-        before the arc is reached.
+        A value is outside its range, or the tension of a straight line at the critical angle falls
+        to zero within the arc.
 
     Notes
     -----
-    Below the point where it is horizontal the line rises again, with an angle below 0 or above π.
-    Seen from its other end that part is an ordinary line whose angle differs by π. A line lighter
-    than water is the vertical mirror image of a line of weight −w.
+    Below the point where the line is horizontal it rises again, with an angle below 0 or above π.
+    Seen from its opposite end, this part is an ordinary line whose angle differs by π. A line
+    lighter than water is the vertical mirror image of a line of weight −w.
     """
     if not (0.0 < tension < np.inf and 0.0 < normal_drag < np.inf):
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
@@ -226,7 +227,7 @@ def _checked(angle: ArrayLike) -> Floats:
 
 
 class CableFunctions(NamedTuple):
-    """Values of Pode's functions, as arrays of the shape of the angles.
+    """Values of Pode's functions; the arrays have the shape of the angles.
 
     Attributes
     ----------
@@ -247,9 +248,9 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
 
     Parameters
     ----------
-    angle : φ, above the critical angle and up to π, of any shape [rad]; below 90° for a line that
-        is towed, its body at 90°. Above 90° (a moored line, the arc counted downwards and negative)
-        the tangential drag and its term in the identity change sign.
+    angle : φ, above the critical angle and up to π, of any shape [rad]; below 90° for a towed line
+        with its body at 90°. Above 90° (a moored line, whose arc length is negative because it is
+        counted downwards), the tangential drag and the term f σ change sign.
     weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` gives it for a critical angle
     friction : f = F/R ≥ 0 [-]
 

@@ -1,4 +1,5 @@
-"""Towed cable by Villain-Guillot: drag linear or quadratic in each velocity component.
+"""Villain-Guillot's solutions for a towed cable with drag linear or quadratic in each velocity
+component.
 
 A cable of weight μg per metre in the fluid (water or air) is towed at a speed V; α is the angle of
 its upward direction above the direction of tow, and s is counted from its lower end. The drag per
@@ -12,9 +13,9 @@ T/δ the radius of curvature,
 
     dT/T = (P/δ) dα,      dρ/ρ = (P − dδ/dα)/δ dα.
 
-For D = 1 and k_t = k_n the drag is the same force on every metre, and the cable is a catenary about
-the direction of the sum of this force and the weight. The case D = 1, k_t ≠ k_n is `unequal_cable`.
-D = 2 is the heavy line of `calm.analytic.uniform`, f = k_t/k_n.
+For D = 1 and k_t = k_n every metre has the same drag, and the cable is a catenary about the
+direction of the sum of drag and weight. The case D = 1, k_t ≠ k_n is `unequal_cable`. D = 2 is the
+heavy line of `calm.analytic.uniform`, f = k_t/k_n.
 """
 
 from math import hypot, pi
@@ -155,7 +156,7 @@ def straight_cable(
     tension : T₀ at the lower end [N]
     angle : α_d, from `straight_angle` [rad]
     weight : μg [N/m]
-    rubbing : tangential drag at this angle [N/m]
+    rubbing : tangential drag per metre at this angle [N/m]
     """
     sine, cosine = np.sin(angle), np.cos(angle)
     pull = tension + (weight * sine + rubbing) * arc
@@ -221,12 +222,13 @@ def unequal_cable(
     """Return the shape of a towed cable for D = 1 and k_t ≠ k_n, with elementary tension and
     quadrature for the coordinates.
 
-    Parameters (with V in place of V²) and errors are those of `quadratic_cable`; the angle must be
-    within π of α_d.
+    The parameters and errors are those of `quadratic_cable`, with V instead of V² in the drags. The
+    angle must be within π of α_d.
 
     Notes
     -----
-    With |α − α_d| = 2 arctan e^(−m) the arc is ∫ T dm/√((μg)² + (k_n V)²), m from −∞ to ∞.
+    With |α − α_d| = 2 arctan e^(−m), where m runs from −∞ to ∞, the arc length is
+    ∫ T dm/√((μg)² + (k_n V)²).
     """
     from scipy.optimize import brentq
 

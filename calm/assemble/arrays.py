@@ -1,4 +1,4 @@
-"""Conversion of a file's pieces and environment to the arrays of the march."""
+"""Conversion of the pieces and environment in a mooring file to the arrays of the march."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -43,7 +43,8 @@ _QUARTERS = np.array([0.25, 0.5, 0.75])
 def assemble_line(
     pieces: Sequence[files.Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
 ) -> Line:
-    """Build the line above the anchor, or the whole towed line, in the order of the pieces.
+    """Build the arrays of the line above the anchor, or of a whole towed line, in the order of the
+    pieces.
 
     A piece with a fitted length has length 0 until it is fitted.
 
@@ -134,9 +135,7 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a copy of a line whose clamps have their drag in axial flow, as during descent or
-    ascent.
-    """
+    """Return a copy of a line whose clamps have their drag in axial flow, for descent or ascent."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -160,8 +159,8 @@ def assemble_floating(
     """Return the surface properties of the first float; None if neither its draft nor its drag is
     known.
 
-    The hull is the component's `hull`, or follows from its kind for a sphere and a cylinder.
-    Without mass or volume the draft is unknown, and only `k_surface` has an effect.
+    A sphere or a cylinder has the hull of its kind unless the component specifies `hull`. If its
+    volume is unknown, so is the draft, and only `k_surface` has an effect.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)
@@ -190,7 +189,7 @@ def assemble_floating(
 
 
 def _volume(component: RigidComponent) -> float | None:
-    """Return the volume of the whole hull [m³]: that of the component, or the last row of its
+    """Return the displaced volume of the whole hull [m³], or else the last row of its displacement
     table.
     """
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
@@ -217,8 +216,8 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Build the water. Current and density have the levels of both profiles, viscosity has its own
-    levels; all are linear between levels.
+    """Build the water column. The levels of the current and density profiles are merged; viscosity
+    has its own levels. All values are linear between levels.
     """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
@@ -312,8 +311,8 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Bisect levels until `values` is linear between them; the given levels remain, where `values`
-    may have kinks.
+    """Bisect levels until `values` is linear between them. The given levels are kept, because
+    `values` may have kinks there.
     """
     while True:
         thickness = np.diff(levels)[:, np.newaxis]

@@ -14,14 +14,14 @@ class Index(WordIndex):
         self._figures: dict[str, Figures] = {}
 
     def figures(self, id: str) -> Figures:
-        """Return the values of a component by the keys of their columns."""
+        """Return the values of a component, keyed by column."""
         if id not in self._figures:
             self._figures[id] = figures_of(self.catalogue, id)
         return self._figures[id]
 
 
 def figures_of(catalogue: Catalogue, id: str) -> Figures:
-    """Return the values of a component or assembly by the keys of `COLUMNS`, in SI units."""
+    """Return the values of a component or assembly in SI units, by the keys of `COLUMNS`."""
     try:
         definition = catalogue.get(id)
         sheet = datasheet(definition, catalogue)

@@ -18,19 +18,21 @@ from calm.units import QuantityError, parse_quantity
 
 
 def net_buoyancy(component: files.Component, gravity: float) -> float:
-    """Return the net buoyancy in reference water, positive up [N, N/m], as specified or from masses
-    and gravity [m/s²].
+    """Return the net buoyancy in reference water, positive up [N, N/m].
+
+    The value is the specified buoyancy or weight, or else follows from the mass and the gravity
+    [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
 def mass_in_air(component: files.Component) -> float | None:
-    """Return the mass, per metre for a cable or chain, as specified or from the weight in water
-    [kg, kg/m].
+    """Return the specified mass in air, or compute it from the weight in water [kg; kg/m for a
+    cable or chain].
 
-    The weight in water is converted with the displaced volume, or with the density of the material;
-    steel is the default for a chain or an anchor. None if neither is known.
+    The conversion uses the displaced volume, or else the density of the material, which is steel by
+    default for a chain or an anchor. Return None if neither is known.
     """
     if component.mass is not None:
         return component.mass
@@ -49,8 +51,8 @@ def mass_in_air(component: files.Component) -> float | None:
 
 
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Return the drags Kn, Kt [N/(m/s)², per metre for cable or chain], and whether the drag
-    depends on the axis.
+    """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and whether the drag
+    depends on the inclination of the axis to the flow.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 def axial_drag_of(component: files.Component) -> float:
     """Return the drag K of a clamped component in flow along the line [N/(m/s)²].
 
-    This is its tangential drag, or its drag in any direction if it does not depend on the axis.
+    This is the tangential drag, or Kn if the drag does not depend on the direction of the flow.
     """
     kn, kt, directional = drag_of(component)
     return kt if directional else kn
@@ -110,10 +112,10 @@ def axial_drag_of(component: files.Component) -> float:
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
-    A cable's Kn includes strumming; with Bourget & Marichal's law it is the value at rest, which
-    the march increases. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or chain has no Ct,
-    the default for this law gives the same friction as the other laws, Ct π/Cn: 0.012, 0.022 and
-    0.031 by finish.
+    A cable's Kn includes strumming. With Bourget & Marichal's law, Kn is the value without
+    strumming, which the march increases. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or
+    chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031, depending on the
+    finish), so that the friction is the same as in the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -165,8 +167,8 @@ class Datasheet:
     Attributes
     ----------
     net_buoyancy : net buoyancy, positive up [N]
-    kn, kt : drag normal and tangential to the axis, in newtons at 1 m/s [N/(m/s)²]; `kn` is None
-        for an anchor, and `kt` its drag in the fall
+    kn, kt : drag normal and tangential to the axis at 1 m/s [N/(m/s)²]; for an anchor, `kn` is None
+        and `kt` is the drag during the anchor drop
     cd_area : drag coefficient times area, normal to the axis [m²]
     """
 
@@ -177,10 +179,10 @@ class Datasheet:
 
 
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
-    """Return the derived values of a definition, or for an assembly their sums over its parts.
+    """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    None for an outline, and for an assembly whose parts override values of a component or are
-    missing in the catalogue (`catalogue` None: no catalogue at all).
+    Return None for an outline, and for an assembly if one of its parts overrides values of its
+    component or is missing in the catalogue (`catalogue` None: there is no catalogue).
     """
     if isinstance(definition, files.Component):
         return _of_component(definition, 1.0)
@@ -217,7 +219,7 @@ def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Com
 
 
 def _of_component(component: files.Component, metres: float) -> Datasheet:
-    """Return the values for a length of cable or chain, or for a rigid piece."""
+    """Return the derived values of a rigid piece, or of a length of cable or chain [m]."""
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component)

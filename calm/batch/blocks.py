@@ -1,4 +1,4 @@
-"""Solution of blocks of times in threads, and output of the blocks in order."""
+"""Solution of blocks of profiles in threads, and output of the blocks in order."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ Done = TypeVar("Done", covariant=True)
 
 @dataclass(frozen=True)
 class Progress:
-    """Numbers of profiles that a batch has solved so far.
+    """Progress of a batch.
 
     Attributes
     ----------
-    done, total : solved profiles, and all profiles
-    endings : number of solved profiles by ending
+    done, total : number of finished profiles, and of all profiles
+    endings : number of finished profiles by category of their status
     """
 
     done: int
@@ -48,7 +48,7 @@ class SolvedBlock(NamedTuple):
 
 
 class BlockTask(NamedTuple):
-    """Profiles of a block, and the layout of the result file.
+    """Input for the solution of a block: its profiles, and the layout of the result file.
 
     Attributes
     ----------
@@ -72,22 +72,22 @@ def solve_block(batch: Batch, task: BlockTask) -> SolvedBlock:
 
 
 class Promise(Protocol[Done]):
-    """Work in progress, in a thread or on another machine."""
+    """Running task, in a thread or on another machine."""
 
     def result(self) -> Done:
-        """Wait for the work, and return its result."""
+        """Wait for the task to finish, and return its result."""
         ...
 
 
 def in_order(
     submit: Callable[[Task], Promise[Done]], tasks: Iterable[Task], ahead: Callable[[], int]
 ) -> Iterator[Done]:
-    """Yield the results of tasks in the order of the tasks, whatever the order of completion.
+    """Yield the results of tasks in the order of the tasks, even if later tasks finish first.
 
     Parameters
     ----------
-    submit : starts a task
-    ahead : returns the number of tasks that may be in progress
+    submit : function that starts a task
+    ahead : function that returns the maximum number of tasks in progress
     """
     under_way: deque[Promise[Done]] = deque()
     for task in tasks:
@@ -103,7 +103,7 @@ def in_threads(
 ) -> Generator[Done]:
     """Solve tasks in threads, and yield the results in the order of the tasks.
 
-    A consumer that stops early cancels the waiting tasks and waits for those in progress.
+    If the consumer stops early, waiting tasks are cancelled and running tasks are completed.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def write_solved(
     Parameters
     ----------
     layout, block, output, last : see `calm.dataset.netcdf.write_netcdf`
-    progress : called before the first block, and after each
+    progress : called before the first block, and after each block
     """
     counts = np.zeros(len(STATUSES), np.int64)
     total = layout.sizes["time"]

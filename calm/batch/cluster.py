@@ -30,8 +30,8 @@ def on_cluster(
 ) -> Generator[SolvedBlock]:
     """Solve blocks on the workers of a dask scheduler, and yield the results in order.
 
-    Workers may join and leave. Another worker solves the blocks of a lost one, and the call waits
-    for the first worker.
+    The function waits for the first worker. Workers may join and leave; the blocks of a lost worker
+    are solved by another one.
 
     Parameters
     ----------
@@ -41,8 +41,8 @@ def on_cluster(
     Raises
     ------
     UsageError
-        No scheduler answers; the workers have no CALM; the
-        scheduler is lost, or one block loses its worker again and again.
+        The scheduler does not answer or is lost; CALM is not installed on the workers; or one block
+        loses its worker again and again.
     """
     from distributed import CancelledError, Client, KilledWorker
 
@@ -84,7 +84,7 @@ def solve_there(mooring: Design, task: BlockTask) -> SolvedBlock:
 
 @lru_cache(maxsize=2)
 def _ready(mooring: Design) -> Batch:
-    """Return the prepared batch of a mooring, which is cached, since every block needs it and
+    """Return the prepared batch of a mooring. It is cached because every block needs it and its
     preparation is slow.
     """
     return Batch(mooring)

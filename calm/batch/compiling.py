@@ -1,4 +1,4 @@
-"""Compilation of the batch solver before the first profile, and its progress message."""
+"""Compilation of the batch solver before the first profile, with a message for the user."""
 
 from collections.abc import Callable
 from time import perf_counter
@@ -10,7 +10,7 @@ from calm.physics.compiled import cache_folder, on_compilation
 
 
 def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
-    """Compile the solver or load it from the cache, and report compilation only."""
+    """Compile the solver or load it from the cache; only a compilation is reported."""
     started, reported = perf_counter(), False
 
     def announce() -> None:

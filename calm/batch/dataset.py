@@ -1,4 +1,6 @@
-"""Layout of a batch result before the solution, and its blocks as arrays."""
+"""Layout of a batch result, which is known before the solution, and conversion of blocks to
+arrays.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +32,8 @@ _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 def laid_out(
     layout: ResultLayout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """Return the arrays of all time-dependent variables of a layout for a range of times,
-    by name.
+    """Return the arrays of all time-dependent variables of a layout, by name, for a range of
+    times.
     """
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)
@@ -103,7 +105,7 @@ def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
 
 
 def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
-    """Describe the mooring as a station; if its file has no position, at the position of the
+    """Describe the mooring as a station; if its file has no position, use the position of the
     currents.
     """
     name, position = mooring.file.name or "mooring", mooring.file.position
@@ -115,7 +117,6 @@ def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
 
 
 def _time_unit(time: NDArray[np.datetime64]) -> str:
-    """Find the coarsest unit in which all times are whole numbers."""
     since = time.astype("datetime64[ns]", copy=False).view(np.int64)
     parts = [since[start : start + 65536] for start in range(0, len(since), 65536)]
     return next(

@@ -1,4 +1,4 @@
-"""Access to a finished batch result: its labels, its parts and its statuses."""
+"""Access to a finished batch result: its labels, its columns and its statuses."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Convert errors while reading a finished result to helpful messages (context manager).
+    """Replace exceptions that occur while a finished result is read with helpful messages (context
+    manager).
 
     Raises UsageError instead of any exception of the libraries.
     """
@@ -48,15 +49,15 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
-    """Return the labels stored in a result, such as `clamp_label`; empty if there are no such
-    parts.
+    """Return the labels in a variable of a result, such as `clamp_label`; empty if the result has
+    no such variable.
     """
     return tuple(map(str, dataset[name].values)) if name in dataset else ()
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Find the variables for a part of the line in a result: the prefix of their names, and the
-    column.
+    """Find the prefix of the variable names and the column number for a part of the line in a
+    result.
 
     Parameters
     ----------

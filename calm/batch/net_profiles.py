@@ -1,9 +1,9 @@
-"""Solution of a net of legs for many current profiles, by the compiled search of
+"""Solution of a net of legs for many current profiles, with the compiled search of
 `calm.solve.leg_marches`.
 
-The search for each profile starts from the net in still water, or if there is no equilibrium in
-still water, from the net in the current of its file. If this fails, or if the seabed is a grid, the
-profile is solved as in `calm run`.
+The search for each profile starts from the net in still water or, if there is no equilibrium in
+still water, from the net in the current of its file. If the search fails, or if the seabed is a
+depth grid, the profile is solved as in `calm run`.
 """
 
 from collections.abc import Callable
@@ -65,14 +65,15 @@ class NetRows(NamedTuple):
 
 
 class NetArrays(NamedTuple):
-    """Work arrays and start of the search for the profiles of a net.
+    """Work arrays, and starting point of the search for the profiles of a net.
 
     Attributes
     ----------
     on, still : work arrays for a profile; the water without current
-    start, slopes, scale : unknowns and slopes of the net at the start, and their scales
+    start, slopes, scale : unknowns of the net at the starting point, their Jacobian and their
+        scales
     x : work array for the unknowns
-    piece, clamp : index of the first piece and clamp of each leg in the rows
+    piece, clamp : row of the first piece and of the first clamp of each leg in `NetRows`
     weight : weight of the anchor of each leg [N]; inf without an anchor
     """
 
@@ -130,8 +131,10 @@ def solve_net_rows(
 
 
 def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
-    """Return whether a solution is valid: no leg is out of the water or below the seabed, no anchor
-    is lifted, and the net is held horizontally.
+    """Return whether a solution is valid.
+
+    No leg may be above the surface or below the seabed, no anchor may be lifted, and the net must
+    be held horizontally.
     """
     near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
@@ -185,7 +188,7 @@ def write_net(net: NetProblem, arrays: NetArrays, rows: NetRows, case: int) -> N
 
 @dataclass(frozen=True)
 class NetProfiles:
-    """A net prepared for many profiles."""
+    """Solver of a net for many profiles."""
 
     net: Design
 
@@ -205,7 +208,7 @@ class NetProfiles:
 
     @cached_property
     def at_rest(self) -> Result | None:
-        """Results of the net in still water; None if a check fails."""
+        """Results of the net in still water; None without a valid equilibrium."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return result_together(self.net, self.still, self.still.legs)
@@ -213,8 +216,8 @@ class NetProfiles:
 
     @cached_property
     def base(self) -> NetSolution | None:
-        """Start of the search: the solution of the net in still water or, if there is none, in the
-        current of its file.
+        """Starting point of the search: the solution in still water or, if there is none, in the
+        current of the file.
         """
         with suppress(NoEquilibrium):
             return self.still or self.net.standing
@@ -222,8 +225,8 @@ class NetProfiles:
 
     @cached_property
     def slopes(self) -> tuple[Floats, Floats] | None:
-        """Jacobian of the net at the start, and its scales; None if each profile must be solved on
-        its own.
+        """Jacobian of the net at the starting point, and the scales of its unknowns; None if each
+        profile must be solved on its own.
         """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
@@ -244,8 +247,9 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """Solve profiles, and return their columns by name; outcomes are written to `status` for
-        profiles whose status is 0.
+        """Solve profiles, and return the result columns by name.
+
+        Profiles whose status is not 0 are skipped; `status` is updated for the others.
 
         Parameters
         ----------
@@ -304,7 +308,7 @@ class NetProfiles:
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:
-        """Compute the result columns from the rows."""
+        """Compute the result columns from the rows of all profiles."""
         file, count = self.net.file, len(rows.shares)
         pieces, clamps, legs = (row.shape[1] for row in rows)
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
@@ -372,7 +376,7 @@ class NetProfiles:
         self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
         status: NDArray[np.int8],
     ) -> None:  # fmt: skip
-        """Solve a profile on its own, as in `calm run`."""
+        """Solve one profile as in `calm run`."""
         (depth, u, v, w), still = current, self.still
         read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]

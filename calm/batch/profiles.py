@@ -52,13 +52,13 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 class Profiles(Columnar):
     """Results of a mooring for n profiles, with NaN if `status` is not 0.
 
-    If the profiles were given as an array with more dimensions, n stands for all of these. Depths,
-    offsets and knockdown are in m, tensions and forces in N, tilt in degrees; the p components are
-    in the order of the file, with the anchor last, and the m clamps are listed down the line.
+    If the profiles were given as an array with more dimensions, these replace n. Depths, offsets
+    and knockdown are in m, tensions and forces in N, tilt in degrees. The p components are in the
+    order of the file, with the anchor last, and the m clamps are listed down the line.
 
-    Further attributes are the batch columns: those of `Components` have the shape (n, p), those of
-    `Clamps`, such as ``clamp_depth``, (n, m), and those of the ends (n,), or (n, l) for the legs of
-    a net. `Profiles.columns` lists them.
+    Further attributes are the batch columns, which `Profiles.columns` lists. Columns of
+    `Components` have the shape (n, p), columns of `Clamps`, such as ``clamp_depth``, the shape (n,
+    m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
 
     Attributes
     ----------
@@ -78,8 +78,8 @@ class Profiles(Columnar):
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """Return the batch columns of one dimension: `component`, `clamp`, or empty for the
-        ends.
+        """Return the batch columns of one dimension: `component`, `clamp`, or an empty text for the
+        ends of the line.
         """
         return {
             "component": Components.columns(Output.BATCH),
@@ -132,9 +132,10 @@ class Profiles(Columnar):
         return Dataset(variables, coords=labels)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a data frame with one row per profile and one column per quantity and label:
-        ``frame["tilt", "adcp"]``; values of the whole line have the label 0, or the label of the
-        leg.
+        """Return a data frame with one row per profile, and one column per quantity and label.
+
+        An example of a column is ``frame["tilt", "adcp"]``. Values of the whole line have the label
+        0, or the label of the leg.
         """
         import pandas
 
@@ -212,13 +213,13 @@ def _recorded(mooring: Design, given: Any) -> Levels:
 
 @dataclass(frozen=True)
 class Batch:
-    """A mooring or a net prepared for many profiles, which may be solved in several calls."""
+    """Solver of a mooring or a net for many profiles, which may be solved in several calls."""
 
     mooring: Design
 
     @cached_property
     def water(self) -> Water:
-        """Water of the mooring, with no current except that driven by the wind."""
+        """Water of the mooring without current, except the wind-driven surface drift."""
         return assemble_water(replace(self.mooring.file.environment, current=_STILL))
 
     @cached_property
@@ -234,7 +235,7 @@ class Batch:
         *,
         workers: int | None = None,
     ) -> Profiles:
-        """Solve profiles of the prepared mooring (see `solve_profiles`)."""
+        """Solve profiles; for parameters and errors see `solve_profiles`."""
         if workers is not None and workers < 1:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
@@ -273,8 +274,8 @@ class Batch:
         return _measured(leg, rows, status)
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
-        """Return whether each profile (n,) has a level with an impossible speed, or deeper than any
-        ocean.
+        """Return whether each profile (n,) has a level with an impossible speed, or a level deeper
+        than any ocean.
         """
         greatest = self.mooring.file.environment.maximum_speed
         depth, u, v, w = current
@@ -300,7 +301,7 @@ class Batch:
 
     @cached_property
     def _starts(self) -> Floats:
-        """Return the start values of the search for every profile of a line."""
+        """Starting values of the search, which are the same for all profiles of a line."""
         leg = self.mooring.moored
         line, none = leg.line, np.zeros((0, 1))
         rows = Results(
@@ -343,7 +344,9 @@ class Batch:
         room: int,
         starts: Floats | None,
     ) -> Floats:
-        """Solve profiles from given starts; without starts, compute and return them first."""
+        """Solve profiles and return the starting values of the search, which are computed if
+        `starts` is None.
+        """
         line, water = leg.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
@@ -378,7 +381,7 @@ def processors() -> int:
 def _checked(
     u: ArrayLike, v: ArrayLike, depth: ArrayLike, w: ArrayLike | None
 ) -> tuple[tuple[int, ...], tuple[Floats, Floats, Floats, Floats]]:
-    """Check the input arrays; return the shape of the profiles, and depth, u, v, w as
+    """Check the input arrays. Return the dimensions of the profiles, and depth, u, v, w as
     two-dimensional arrays.
     """
     east, north, down = _numbers(u), _numbers(v), _numbers(depth)
@@ -410,7 +413,7 @@ def _numbers(values: ArrayLike) -> NDArray[Any]:
 
 
 def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
-    """Return the results of the profiles in the dimensions of the input."""
+    """Reshape the results from n profiles to the dimensions of the input."""
     columns: dict[str, Any] = {
         name: array.reshape(shape + array.shape[1:])
         for name, array in vars(profiles).items()
@@ -420,8 +423,8 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
-    """Build the results of the profiles, with the anchor, and with the knockdown relative to the
-    shape in still water.
+    """Build the results from the rows of all profiles. The anchor is added, and the knockdown is
+    the difference from the depths in still water.
     """
     pieces, clamps, ends = rows
     above = leg.file.pieces[:-1]

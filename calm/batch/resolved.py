@@ -1,4 +1,4 @@
-"""Complete input of a batch result as JSON, and a hash over this input and the measured values."""
+"""Complete input of a batch result as JSON, and a hash of this input and the measured values."""
 
 import hashlib
 import json
@@ -30,7 +30,7 @@ replace it.
 
 
 class InputHash:
-    """SHA-256 over the text of an input, followed by the measured values."""
+    """SHA-256 hash of the text of an input, followed by the measured values."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
@@ -68,14 +68,16 @@ def resolved_input(
 
 
 def with_input(text: str) -> Attributes:
-    """Return the attributes for an input whose measured values are not hashed yet; the length of
-    the hash is final.
+    """Return the attributes for an input whose measured values are still to be hashed. The
+    placeholder for the hash has its final length.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 
 
 def _plain(value: Any) -> Any:
-    """Convert a model to mappings, lists, text and numbers, without None and irrelevant keys."""
+    """Convert a data model to mappings, lists, text and numbers, without None and irrelevant
+    keys.
+    """
     if isinstance(value, BaseModel):
         return _known({name: getattr(value, name) for name in type(value).model_fields})
     if is_dataclass(value):

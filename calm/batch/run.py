@@ -1,4 +1,4 @@
-"""Solution of every profile of a record in blocks, and output as one file, complete or none."""
+"""Solution of every profile of a record in blocks, and output as one file."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -35,8 +35,8 @@ def run_batch(
 ) -> dict[str, int]:
     """Solve a mooring for every profile of a record, and write the result file.
 
-    The file gets its final name when it is complete. If the run ends earlier, no new file remains,
-    and an older result is kept.
+    The file gets its final name when it is complete. If the run stops earlier, no new file remains,
+    and an older result is not overwritten.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def run_batch(
     block : profiles in a block, which is a chunk of the result; by default `BLOCK`, or
         `BLOCK_OF_NET`
     scheduler : address of a dask scheduler whose workers solve the blocks
-    progress : called before the first block, and after each
+    progress : called before the first block, and after each block
     tell : called with messages for the user
 
     Returns

@@ -1,7 +1,7 @@
-"""Solution of successive profiles by the search of `calm.solve`, and calculation of the results.
+"""Solution of successive profiles with the search of `calm.solve`, and calculation of the results.
 
 A profile is solved to a tolerance of about a millionth of the depth, and without an audit. The
-results are extrapolated from the shapes on cuts and on halved cuts.
+results are extrapolated from solutions with segments of two lengths, one half of the other.
 """
 
 from collections.abc import Callable
@@ -49,9 +49,9 @@ class ProfileLevels(NamedTuple):
 
     Attributes
     ----------
-    read, joined : levels of the profile, and all levels after the merge: see `lay_profile`
+    read, joined : levels of the profile, and all levels after the merge (see `lay_profile`)
     levels, intervals, bends : as in `Sea`
-    fixed : (f, 4) depth, addition to u and to v, and density of the levels added to all profiles
+    fixed : (f, 4) levels that are merged with every profile: depth, additional u and v, and density
     """
 
     read: Floats
@@ -63,7 +63,7 @@ class ProfileLevels(NamedTuple):
 
 
 def levels_for(count: int, water: Water) -> ProfileLevels:
-    """Create work arrays for profiles of `count` levels, with the water of a mooring."""
+    """Create work arrays for profiles of up to `count` levels in the water of a mooring."""
     most = count + len(water.level)
     intervals: Any = np.zeros(most + 2, record_type(Interval))
     fixed = np.column_stack([water.level, water.u, water.v, water.density])
@@ -78,11 +78,12 @@ def levels_for(count: int, water: Water) -> ProfileLevels:
 
 
 class ProfileArrays(NamedTuple):
-    """Work arrays for a profile and the shape of the line.
+    """Work arrays for the water of a profile, and properties of the line.
 
     Attributes
     ----------
-    may_lie : whether a piece of a sub-surface line may lie on the seabed
+    on : work arrays for the levels of a profile
+    may_lie : (p,) whether each piece may lie on the seabed in a sub-surface mooring
     """
 
     on: ProfileLevels
@@ -106,7 +107,8 @@ def solve_rows(
 
     Parameters
     ----------
-    first : whether they are the first profiles of a mooring, so that `starts` must be computed
+    first : whether these are the first profiles of a mooring, so that the starting values of the
+        search must be computed
     depth : (1 or n, k) depth of the levels [m]
     u, v, w : (n, k) current [m/s]; NaN for missing values
     endings : (n,) outcome of each profile
@@ -133,7 +135,8 @@ def solve_rows(
 def sea_of(
     on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
 ) -> tuple[int, Sea]:
-    """Build the water of a profile; the outcome is FOUND, NO_CURRENT or LEVELS_COINCIDE.
+    """Build the water of a profile. Return it with the outcome, which is FOUND, NO_CURRENT or
+    LEVELS_COINCIDE.
 
     Parameters
     ----------
@@ -154,7 +157,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return the problem with the water of the profile that was read last."""
+    """Return the problem of a line with the water of the profile in the work arrays."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -172,7 +175,7 @@ def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem
 
 
 def refused_at_once(limits: Limits) -> int:
-    """Return the outcome of a line that is rejected without a search; FOUND if a search is
+    """Return the outcome for a line that can be rejected without a search; FOUND if a search is
     needed.
     """
     refused = limits.refused_at_rest if limits.at_rest else limits.refused
@@ -182,7 +185,7 @@ def refused_at_once(limits: Limits) -> int:
 
 
 def lies_on_seabed(problem: LineProblem, arrays: ProfileArrays) -> bool:
-    """Return whether a piece of a sub-surface line lies on the seabed where it must not."""
+    """Return whether a piece other than chain of a sub-surface line lies on the seabed."""
     found, record = problem.work.found, problem.work.records[FINE]
     if found[SOUGHT] != BELOW:
         return False
@@ -200,7 +203,7 @@ def tilt_of(x: float, y: float, z: float) -> float:
 def measure(
     problem: LineProblem, referee: Referee, arrays: ProfileArrays, results: Results, case: int
 ) -> None:
-    """Write the results of a profile's shape to the row of the profile."""
+    """Compute the results from the shape of the line, and write them to the row of the profile."""
     found, record = problem.work.found, problem.work.records[FINE]
     nodes = int(found[NODES])
     find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
@@ -231,7 +234,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of all pieces of a head, which form one rod."""
+    """Set the tilt of the pieces at the head of the line, which form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
@@ -252,7 +255,7 @@ def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float
 
 
 def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
-    """Write the results at the clamps, down the line."""
+    """Write the results of the clamps to the row of the profile, in order down the line."""
     record = problem.work.records[FINE]
     nodes, row = int(problem.work.found[NODES]), 0
     for n in range(1, nodes):
@@ -273,7 +276,7 @@ def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
 
 
 def used_buoyancy(problem: LineProblem) -> float:
-    """Return the used fraction of the surface floats' buoyancy."""
+    """Return the fraction of the surface floats' buoyancy that is in use."""
     found = problem.work.found
     sought = int(found[SOUGHT])
     if sought == BELOW:
@@ -311,7 +314,9 @@ def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -
 
 
 def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Interpolate a column of a table at a depth, for which the first deeper level is k."""
+    """Interpolate a column of a table linearly at a depth; k is the index of the first deeper
+    level.
+    """
     if k == 0:
         return float(table[0, c])
     if k == count:
@@ -372,8 +377,8 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Return a column of a table at a depth (see `between`), without interpolation error at level
-    k.
+    """Return a column of a table at a depth (see `between`), without interpolation error if level k
+    is at this depth.
     """
     if k < count and table[k, 0] == depth:
         return float(table[k, c])

@@ -1,4 +1,4 @@
-"""Read, assemble, solve and check a mooring file, for every command."""
+"""Read, assemble and solve mooring files, for all commands."""
 
 from calm.case.design import Design as Design
 from calm.case.design import Result as Result

@@ -1,7 +1,7 @@
 """Parameters that `calm size` can vary: ``LABEL.buoyancy``, ``.length`` or ``.count``.
 
-A change is made in the models of the file, as if the file contained the new value; all derived
-values follow.
+A change acts on the data model of the file, as if the file contained the new value. All derived
+values change accordingly.
 """
 
 import re
@@ -42,13 +42,13 @@ class Adjustment:
     ----------
     text : name of the parameter, e.g. ``top float.buoyancy``
     file : the mooring before the change
-    parts : parts that change together, before the change
-    dimension : dimension of the number, a key of `calm.units.DIMENSIONS`
+    parts : parts that change together, in their original state
+    dimension : dimension of the value, a key of `calm.units.DIMENSIONS`
     now : value before the change
     range : default smallest and largest value
-    to : function that returns the mooring with another value
-    bounded : whether a range may not begin below that of `range`
-    whole : whether only whole numbers are valid
+    to : function that returns the mooring with a new value
+    bounded : whether the lower end of `range` is also a limit for a range given by the user
+    whole : whether the value must be a whole number
     note : remark for the user
     """
 
@@ -65,12 +65,10 @@ class Adjustment:
 
     @property
     def unit(self) -> str:
-        """SI unit of the parameter."""
         return DIMENSIONS[self.dimension].unit
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Labels of the parts that the parameter changes."""
         return tuple(part.label for part in self.parts)
 
 
@@ -179,7 +177,9 @@ _NUMBERED = re.compile(r"(.+) \d+")
 
 
 def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece]:
-    """Remove from the labels of a copy the numbers that distinguish equal labels of its item."""
+    """Return the pieces of one copy of an item, with numbers removed from labels that differ only
+    by their numbers in the item.
+    """
     stems = Counter(
         found[1] for part in parts_of(item) if (found := _NUMBERED.fullmatch(part.label))
     )
@@ -210,8 +210,9 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
     Parameters
     ----------
-    text : the label of a part of the line, or the common label of several without their numbers, or
-        for a count the label of an assembly; a point; ``buoyancy``, ``length`` or ``count``
+    text : a label, a point, and ``buoyancy``, ``length`` or ``count``. The label is that of one
+        part, or the common part of several numbered labels, such as ``glass`` for ``glass 1`` and
+        ``glass 2``; for a count it may be the label of an assembly
     file : the mooring in which the label is looked up
 
     Raises
@@ -240,10 +241,11 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """Parse the range of a parameter, each limit with its unit; the default is the range of the
-    adjustment.
+    """Parse the lower and upper end of a range, each with its unit. Without texts, return the
+    default range of the parameter.
 
-    Raises UsageError if an end has a wrong dimension, or the ends are in the wrong order.
+    Raises UsageError if an end has the wrong dimension or is not allowed, or if the ends are in the
+    wrong order.
     """
     if texts is None:
         low, high = change.range

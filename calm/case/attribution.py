@@ -1,18 +1,19 @@
 """Attribution of a mooring's knockdown and excursion to the drag of each part.
 
 Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
-multiplied by λ_i. The share of drag i is that of Aumann and Shapley,
+multiplied by λ_i. The share of drag i is its Aumann–Shapley value,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
-All drags increase together from zero to full size, and at every stage each is attributed the change
-that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). This is the only rule with
-this property that is independent of the division of the line into components, and attributes zero
-to a drag without effect (Billera & Heath, Mathematics of Operations Research 7, 1982). Removing one
-component at a time does not work: the differences do not add up, since drags interact.
+All drags increase together from zero to full size. At every stage, each drag is attributed the
+change that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). Among the rules with
+this property, it is the only one that is independent of the division of the line into components
+and attributes zero to a drag without effect (Billera & Heath, Mathematics of Operations Research 7,
+1982). Removing one component at a time does not work: the differences do not add up, since drags
+interact.
 
-If drags are proportional to the square of the speed, the stage s = t² is the mooring in t times its
-current.
+If drags are proportional to the square of the speed, the stage s = t² is equivalent to a current
+multiplied by t.
 """
 
 from collections.abc import Callable, Sequence
@@ -62,17 +63,17 @@ replaced.
 
 @dataclass(frozen=True)
 class Attribution:
-    """Contributions of p drags, each on a piece or on a clamped instrument.
+    """Contributions of the drags of p pieces and clamped instruments.
 
-    The columns of `start` and `shares` are depth and excursion of a point of the line [m], and the
-    share in use of the buoyancy at the surface.
+    The columns of `start` and `shares` are the depth and the excursion of a point of the line [m],
+    and the used fraction of the surface float's buoyancy.
 
     Attributes
     ----------
-    parts : the p parts
+    parts : leg, piece and clamp (-1 for none) to which each drag belongs
     start : (3,) values without drag, or with the smallest drag
     shares : (p, 3) contribution of each drag; the sums are the total change
-    miss : (3,) error of the sums before they were scaled, as a share of the total change
+    miss : (3,) relative error of the sums before they were scaled to the total change
     """
 
     parts: list[SolverPart]
@@ -92,10 +93,11 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that observes the point for such lines, solved with `SETTINGS`
-    start : (3,) the values without drag, in the columns of `Attribution`; None if the line has
-        no unique shape then, and the shares begin at `LEAST_DRAG`
-    whole : (3,) the values with full drag
+    near : function that prepares solutions close to given lines; it returns a function that solves
+        a variant of one line and returns the (3,) values at the point
+    start : (3,) values without drag, in the columns of `Attribution`; None if the line has no
+        unique shape without drag, in which case the shares begin at `LEAST_DRAG`
+    whole : (3,) values with full drag
 
     Raises
     ------
@@ -121,8 +123,8 @@ def attribute(
 
 
 def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None = None) -> Line:
-    """Return the line with its drags multiplied by factors; clamps have the same factors unless
-    others are given.
+    """Return the line with its drags multiplied by factors; by default, clamps have the factors of
+    the pieces.
     """
     return replace(
         line,
@@ -173,8 +175,8 @@ def _integral(
 
 
 def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return a function that solves variants of a single line, and observes the top of a piece or a
-    clamp.
+    """Return a function for the parameter `near` of `attribute`, for a single line and a point at a
+    clamp or at the top of a piece.
     """
 
     def near(lines: Sequence[Line]) -> Varied:
@@ -186,8 +188,8 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
 
 
 def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return a function that solves variants of a net, and observes the top of a piece or a
-    clamp.
+    """Return a function for the parameter `near` of `attribute`, for a net and a point at a clamp
+    or at the top of a piece.
     """
 
     def near(lines: Sequence[Line]) -> Varied:

@@ -1,7 +1,7 @@
 """Definition of a result column: title, unit, description, computation and outputs.
 
-The entries are in `calm.case.result_tables`, one for each column. Tables, JSON, CSV, NetCDF,
-batches, the builder and the manual read them, so a new entry appears in every output it names.
+`calm.case.result_tables` has one entry for each column. Tables, JSON, CSV, NetCDF, batches, the
+builder and the manual use these entries, so a new entry appears in every output that it names.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _CF_UNITS = {"": "1", "deg": "degree", "m/s": "m s-1"}
 
 
 class Output(Flag):
-    """Outputs in which a column appears. In Python every column is available as an array of its
+    """Outputs in which a column can appear. In Python, every column is available as an array of its
     table.
     """
 
@@ -50,9 +50,9 @@ _LAST = 1000
 class ResultColumn:
     """A column of a result table.
 
-    Each column is computed in one of four ways: `of_part` reads the piece or clamp of the file;
-    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor;
-    `derived` combines earlier columns; `of_row` is evaluated when an output shows a row.
+    Each column is computed in one of four ways. `of_part` reads the piece or clamp of the file.
+    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor.
+    `derived` combines earlier columns. `of_row` is evaluated when an output shows a row.
 
     Attributes
     ----------
@@ -63,11 +63,12 @@ class ResultColumn:
     prefix : prefix of the name in NetCDF and batches
     of_part : value for a piece or clamp of the file
     found : values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
-    at_anchor : value for the anchor, from a `LineEnd`, or for a clamp on it, from an `OnAnchor`
+    at_anchor : value for the anchor, from a `LineEnd`, or for a clamp on the anchor, from an
+        `OnAnchor`
     derived : values (…, n) from a namespace of earlier columns and `part`, the n pieces or clamps
     of_row : value from a row and the mooring file; no table stores it
-    worst : picks one value for the builder, where several pieces share a row
-    place : rank from the left in tables for people; columns without one come last
+    worst : function that selects the value for the builder if several pieces share a row
+    place : rank from the left in printed tables; columns without a rank come last
     attributes : additional attributes of the NetCDF variable
     """
 
@@ -113,8 +114,8 @@ class ResultColumn:
         return {**units, "long_name": meaning, **more}
 
     def value(self, row: Any, file: MooringFile) -> Any:
-        """Return the value to show for a row; None if the row has no such value, as clamps have no
-        length.
+        """Return the value to show for a row, or None for a missing value, such as the length of a
+        clamp.
         """
         return self.of_row(row, file) if self.of_row else getattr(row, self.name, None)
 
@@ -135,9 +136,9 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    title, unit, decimals : title, unit and digits of the quantity. By default it is the entry of
-        `QUANTITIES` with the name of the field, of which `title` may replace the heading; a field
-        without is text.
+    title, unit, decimals : title, unit and decimals of the quantity. Without `unit`, the quantity
+        is the entry of `QUANTITIES` with the name of the field, whose heading `title` replaces. A
+        field without such an entry is text.
     in_repr : whether the `repr` of a row includes the field
     default : default value of the field
     """
@@ -159,7 +160,8 @@ _known: dict[type[Any], tuple[ResultColumn, ...]] = {}
 def columns_of(record: type[Any]) -> tuple[ResultColumn, ...]:
     """Return the columns of a dataclass, in the order of its fields.
 
-    Fields declared without `column` take title and meaning from `QUANTITIES`.
+    Fields that are declared without `column` have the title and meaning of their entry in
+    `QUANTITIES`.
     """
     if record not in _known:
         _known[record] = tuple(_columns_of(record))
@@ -176,7 +178,7 @@ def _columns_of(record: type[Any]) -> Iterator[ResultColumn]:
 
 
 def shown_in(columns: Iterable[ResultColumn], output: Output) -> list[ResultColumn]:
-    """Return the columns that an output shows."""
+    """Return the columns that appear in an output."""
     return [one for one in columns if output in one.outputs]
 
 
@@ -190,7 +192,7 @@ def derive(columns: Iterable[ResultColumn], known: Mapping[str, Any]) -> dict[st
 
     Parameters
     ----------
-    known : the other columns by name, and `part`, the pieces or clamps
+    known : the remaining columns by name, and `part`, which lists the pieces or clamps
     """
     rows, found = SimpleNamespace(**known), {}
     for one in columns:

@@ -1,6 +1,6 @@
 """Designs read from files, and the results of solving them.
 
-A mooring is one leg with a free top and an anchor, a tow is one leg held at the ship, a net has
+A mooring is one leg with a free top and an anchor. A tow is one leg held at the ship. A net has
 several legs that join at nodes.
 """
 
@@ -67,8 +67,8 @@ _SKIN = 1e-3  # m above the surface, in which water turns into air
 class Design:
     """A mooring, a tow or a net of legs, as `calm.load` reads it from a file.
 
-    `solve` finds its equilibrium, `with_` gives a design with other values, and `environment` and
-    `legs` show what was read. A design is never changed::
+    `solve` finds the equilibrium, and `with_` returns a copy with changed values. `environment` and
+    `legs` are the contents of the file. A design is immutable::
 
         design = calm.load("mooring.yaml")
         longer = design.with_("wire 1", length="480 m")
@@ -79,7 +79,7 @@ class Design:
     file : contents of the file, in SI units
     for_surface, memory : see `Leg`
     lines, given_water : replacements for the lines and the water of the file
-    near : an equilibrium near which the search for that of several legs begins
+    near : known equilibrium of a similar net, from which the search for this net starts
     origin : path, environment and catalogues of the file; None for a design made in Python
     """
 
@@ -92,9 +92,6 @@ class Design:
     origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Design], tuple[object, ...]]:
-        """Pickle the fields and the line at its cut lengths; all other attributes are
-        recomputed.
-        """
         legs = vars(self).get("legs", ())
         known = tuple(leg.line for leg in legs if "line" in vars(leg))
         lines = known if known and len(known) == len(legs) else self.lines
@@ -120,13 +117,13 @@ class Design:
 
     @property
     def leg(self) -> Leg:
-        """Leg of a mooring or a tow; raises UsageError for several legs."""
+        """The only leg of a mooring or a tow; raises UsageError for several legs."""
         refuse_several(self.file)
         return self.legs[0]
 
     @property
     def moored(self) -> Leg:
-        """Leg of a mooring; raises UsageError for a tow and for several legs."""
+        """The only leg of a mooring; raises UsageError for a tow and for several legs."""
         refuse_all_but_moorings(self.file)
         return self.legs[0]
 
@@ -158,8 +155,8 @@ class Design:
         return self.water_of(self.environment) if self.several else self.legs[0].water
 
     def water_of(self, environment: Environment) -> Water:
-        """Return the water of an environment; if a leg is held above the surface, with still air
-        there.
+        """Return the water of an environment. If a leg of a net is held above the surface, there is
+        still air above the water.
         """
         if not self.several:
             return assemble_water(environment)
@@ -179,7 +176,7 @@ class Design:
         density = np.array([AIR_DENSITY, water.density_at(surface), *water.density[below]])
         return replace(water, level=level, u=u, v=v, w=w, density=density)
 
-    # with something changed
+    # changed copies
 
     def with_(
         self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
@@ -193,8 +190,10 @@ class Design:
 
         Parameters
         ----------
-        label : label of the piece or clamp whose keys are changed; without it, those of the file
-        environment : name of one of its `environments`, an environment file, or keys of its own
+        label : label of the piece or clamp whose keys are changed; by default, keys of the file are
+            changed
+        environment : name of an entry of `environments` in the file, an environment file, or
+            changed keys of the default environment
 
         Raises
         ------
@@ -212,13 +211,15 @@ class Design:
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
-        """Return a copy of the design with other lines for its legs, and optionally other water."""
+        """Return a copy of the design whose legs have the given lines, and optionally with other
+        water.
+        """
         near = self.standing if self.several else None
         return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
 
     def with_length(self, index: int, length: float) -> Design:
-        """Return a copy of the design with another unstretched length [m] of one piece of
-        the file.
+        """Return a copy of the design in which one piece of the file has a new unstretched length
+        [m].
         """
         number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
         own = index - self.legs[number].keys.first
@@ -226,8 +227,8 @@ class Design:
         return self.with_lines(lines)
 
     def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
-        """Return a copy of the design with other pieces in its legs, including stand-ins for
-        anchors.
+        """Return a copy of the design with the given pieces in each leg; stand-ins for anchors are
+        allowed.
         """
         if not self.several:
             return Design(
@@ -242,7 +243,7 @@ class Design:
         numbered = tuple(replace(piece, index=index) for index, piece in enumerate(listed))
         return Design(replace(self.file, pieces=numbered, legs=tuple(legs)))
 
-    # solved
+    # solutions
 
     @cached_property
     def standing(self) -> NetSolution:
@@ -252,8 +253,10 @@ class Design:
         return self.together(self.water, self.near)
 
     def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
-        """Solve several legs in given water, starting from another solution if given; raises
-        NoEquilibrium.
+        """Solve several legs in given water. The search starts from another solution if one is
+        given.
+
+        Raises NoEquilibrium if there is no equilibrium.
         """
         from calm.case.net import solve_together
 
@@ -285,12 +288,12 @@ class Design:
 
         Parameters
         ----------
-        environment : name of one of its `environments`, an environment file, or keys as in `with_`
+        environment : as in `with_`
 
         Raises
         ------
         NoEquilibrium
-            No equilibrium passes every check: `status`, `message` and `advice` say why.
+            No equilibrium passes every check; `status`, `message` and `advice` give the reason.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()
@@ -320,7 +323,10 @@ class Design:
 
 
 def solved_alone(leg: Leg) -> LegResult:
-    """Solve a leg alone, with its profilers at all positions; raises NoEquilibrium."""
+    """Solve a leg alone, and again with its profilers at several positions.
+
+    Raises NoEquilibrium if there is no equilibrium.
+    """
     solution = leg.equilibrium()
     still = leg.still_counterpart(solution)
     return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
@@ -333,7 +339,7 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
 
     Parameters
     ----------
-    still : the legs in still water; None for an unknown shape
+    still : solutions of the legs in still water; None for a leg whose shape is unknown
     """
     legs: list[LegResult] = []
     for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
@@ -375,21 +381,23 @@ def _upside_down(result: LegResult) -> str:
 class Result:
     """A converged design. Lengths and depths [m], forces [N], angles [degrees].
 
-    x and y are east and north of the anchor, the tow point, or for several legs the origin of the
-    file. A result with one leg also has the attributes of this leg, such as `top` and `anchor`.
+    x and y are distances to the east and north. Their origin is the anchor, the tow point or, for
+    several legs, the origin in the file. A result with one leg also has the attributes of this leg,
+    such as `top` and `anchor`.
 
     Attributes
     ----------
     design : the solved design
     status : ``converged``
     iterations, segments : number of marches, and of segments of the final shape
-    miss : largest distance of an end from its position; for one leg the distance in height [m]
+    miss : largest distance of an end from its required position; for one leg, the vertical distance
+        [m]
     closure : relative force residual, recomputed from the final coordinates
     accuracy : error estimates of the solver
     legs : results of the legs
     nodes : positions of the nodes
-    notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures of a result, set
-        by the packages above
+    notebook_form, netcdf_form, plot_form : functions that convert a result to HTML, NetCDF and
+        pictures; packages that import this one set them
     """
 
     design: Design
@@ -408,7 +416,7 @@ class Result:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings; those of the file come first."""
+        """All warnings, beginning with those of the file."""
         if not self.several:
             return self.leg.warnings
         return (
@@ -430,12 +438,12 @@ class Result:
 
     @property
     def held(self) -> tuple[EndLoad, ...]:
-        """Loads of the legs on other fixed ends, such as a ship or a pier."""
+        """Loads of the legs on fixed ends without an anchor, such as a ship or a pier."""
         return tuple(end for leg in self.legs for end in leg.ends if end.weight is None)
 
     @property
     def file(self) -> MooringFile:
-        """File of the design."""
+        """Contents of the design file."""
         return self.design.file
 
     @property
@@ -445,7 +453,7 @@ class Result:
 
     @property
     def water(self) -> Water:
-        """Water of the design."""
+        """Water depth, and current and density by level."""
         return self.design.water
 
     @property
@@ -465,7 +473,7 @@ class Result:
 
     @property
     def leg(self) -> LegResult:
-        """Result for the leg of a mooring or a tow; raises UsageError for several legs."""
+        """Result for the only leg of a mooring or a tow; raises UsageError for several legs."""
         if self.several:
             raise UsageError(
                 f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
@@ -475,7 +483,7 @@ class Result:
 
     @property
     def top(self) -> Top:
-        """Upper end of the leg."""
+        """Values at the upper end of the leg."""
         return self.leg.top
 
     @property
@@ -492,7 +500,7 @@ class Result:
 
     @property
     def body(self) -> TowedBody:
-        """Towed body; raises UsageError for a leg that is not towed."""
+        """Values at the towed body; raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.body, self.name)
 
     @property
@@ -517,7 +525,7 @@ class Result:
 
     @property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the leg with more drag on its cables, solved on first use."""
+        """Results of the leg if strumming increases the drag of its cables; solved on first use."""
         return self.leg.strumming_band
 
     @property
@@ -573,7 +581,7 @@ class Result:
         return self.components.to_pandas()
 
     def to_xarray(self) -> Any:
-        """Return the dataset that `calm run -o FILE.nc` writes: components, clamps, shape, with
+        """Return the dataset that `calm run -o FILE.nc` writes: components, clamps and shape, with
         units.
         """
         from io import BytesIO
@@ -608,7 +616,6 @@ class Result:
         return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
 
     def _ends(self) -> dict[str, dict[str, Any]]:
-        """Return the values at both ends of the leg, by name."""
         if self.towed:
             return {"tow_point": asdict(self.tow_point), "body": asdict(self.body)}
         return {"top": asdict(self.top), "anchor": asdict(self.anchor)}
@@ -681,9 +688,9 @@ def load(
     Parameters
     ----------
     path : the YAML file
-    environment : name of one of its `environments`, or an environment file
-    catalogs : additional catalogue files, whose definitions come before the shipped ones
-    text : text that replaces the file's content; files named in it are still relative to the file
+    environment : name of an entry of `environments` in the file, or an environment file
+    catalogs : additional catalogue files, whose definitions take precedence over the shipped ones
+    text : text that replaces the content of the file; paths in it remain relative to the file
 
     Raises
     ------
@@ -699,8 +706,8 @@ def load_in(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> list[Design]:
-    """Read a file as `load` does, in several environments. None selects the default environment and
-    all other environments of the file.
+    """Read a file as `load` does, once for each environment. None selects the default environment
+    and all environments that the file names.
 
     Raises InputError with the mistakes of all environments.
     """

@@ -1,7 +1,8 @@
 """Random draws of a mooring's uncertain inputs, and the mooring for each draw.
 
-The draws are a scrambled Sobol' sequence, with one number for each cause: all cables are too long
-by the same share, and the current is too fast by the same factor at all depths.
+The draws are a scrambled Sobol' sequence with one number for each uncertain input. In one draw, for
+example, all cables are too long by the same factor, and the current is too fast by the same factor
+at all depths.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -32,8 +33,8 @@ _ANGLE = "direction"
 
 
 class Draw(NamedTuple):
-    """One draw of all uncertain inputs: factors on the specified values, and a direction change
-    [degrees].
+    """One draw of all uncertain inputs: factors on the specified values, and a change of the
+    current direction [degrees].
     """
 
     current: float = 1.0
@@ -48,12 +49,8 @@ class Draw(NamedTuple):
 
 
 def checked_samples(samples: int) -> int:
-    """Return the number of samples if it is a power of two within the limits, else raise
-    UsageError.
-
-    Raises
-    ------
-    UsageError
+    """Return the number of samples; raise UsageError unless it is a power of two within the
+    limits.
     """
     if FEWEST <= samples <= MOST and samples & (samples - 1) == 0:
         return samples
@@ -78,9 +75,9 @@ def normals_of(samples: int, seed: int) -> Floats:
 def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
     """Convert standard normal numbers (n, causes) to draws.
 
-    A deviation is the standard deviation of a normal distribution about the given value. A pair
-    gives the 5th and 95th percentiles of a normal distribution for an angle, and of a lognormal
-    distribution for a factor.
+    A deviation is the standard deviation of a normal distribution about the specified value. A pair
+    is the 5th and 95th percentile of a distribution, which is normal for an angle and lognormal for
+    a factor.
     """
     columns = [
         (_angles if name == _ANGLE else _factors)(getattr(uncertainty, name), normals[:, i])
@@ -133,7 +130,9 @@ def drawn_line(line: Line, draw: Draw) -> Line:
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:
-    """Return the water with the inputs of a draw; levels keep their depths below the surface."""
+    """Return the water with the inputs of a draw. If the water depth changes, the levels keep their
+    depths below the surface.
+    """
     turn = radians(draw.direction)
     east, north = draw.current * cos(turn), draw.current * sin(turn)
     return replace(
@@ -146,8 +145,8 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(NoMemory):
-    """Solver for moorings close to a solved one: starts from its equilibrium, else solves from
-    scratch.
+    """Solver for moorings close to a solved one. It starts from the known equilibrium, and solves
+    from scratch if this fails.
     """
 
     def __init__(self, leg: Leg) -> None:
@@ -156,7 +155,9 @@ class Neighbours(NoMemory):
         self._still: Nearby | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Call a solver; `solve_mooring` starts from the known equilibrium."""
+        """Call a solver, but replace `solve_mooring` by a search that starts from the known
+        equilibrium.
+        """
         if solver is solve_mooring:
             solved: Any = self._solved
             return cast("T", solved(*given, **named))
@@ -179,9 +180,10 @@ class Neighbours(NoMemory):
 
 
 def drawn(leg: Leg, draws: Iterable[Draw]) -> Iterator[Leg]:
-    """Yield the leg of a mooring for each draw, solved from the equilibrium of the original leg.
+    """Yield the leg of a mooring for each draw; its solution starts from the equilibrium of the
+    original leg.
 
-    Raises NoEquilibrium if the original mooring has no equilibrium.
+    Raises NoEquilibrium if the original leg has no equilibrium.
     """
     neighbours = Neighbours(leg)
     for draw in draws:

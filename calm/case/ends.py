@@ -1,4 +1,4 @@
-"""Positions of the ends of a leg, and the loads on their supports."""
+"""Positions and loads at the ends of a leg."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:
 
 
 def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
-    """Return the error estimates of the solver, and the resulting error of the required anchor
+    """Return the error estimates of the solver, and the resulting error in the required anchor
     weight.
     """
     if leg.towed:
@@ -59,7 +59,9 @@ def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
 
 
 def top_of(solution: Solution, still: Solution | None) -> Top:
-    """Return the upper end of a leg; `still` is None if the shape in still water is not unique."""
+    """Return the values at the upper end of a leg; `still` is None if the shape in still water is
+    not unique.
+    """
     riding, upper = solution.riding, -1 if solution.line.towed else 0
     x, y, z = solution.position[upper]
     return Top(
@@ -87,7 +89,7 @@ def tow_point_of(solution: Solution) -> TowPoint:
 
 
 def body_of(solution: Solution) -> TowedBody:
-    """Return the towed body, or the free end of a bare cable."""
+    """Return the values at the towed body, or at the free end of a bare cable."""
     node = solution.body_node
     x, y, z = solution.position[node]
     pull = -solution.force[node]

@@ -22,7 +22,7 @@ from calm.physics.line import Floats, Line, Water
 from calm.solve import CompiledPart, expect_many
 
 SOLVES = 100.0
-"""Approximate number of equilibria that one explanation costs in computing time."""
+"""Computing time of one explanation, as an approximate number of equilibria."""
 
 CHANGE = 0.1
 """Relative change of buoyancy, drag and current in the what-if cases."""
@@ -30,7 +30,9 @@ CHANGE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """Contribution of the drag of a piece or clamp, a row of `Causes`."""
+    """Contribution of the drag of a piece or clamp; a row of `Causes`, where the values are
+    described.
+    """
 
     index: int
     label: str
@@ -48,10 +50,10 @@ class Causes(ColumnTable[Cause]):
     ----------
     index : (p,) index of the piece, or of the piece under the clamp
     label : (p,) label
-    clamped : (p,) whether it is a clamp
+    clamped : (p,) whether the part is a clamp
     drag : (p,) horizontal drag force [N]
-    knockdown, excursion, used_buoyancy : (p,) its contribution to these quantities of the mooring
-        [m], [m], [-]
+    knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities of the
+        mooring [m], [m], [-]
     """
 
     record = Cause
@@ -59,9 +61,7 @@ class Causes(ColumnTable[Cause]):
 
 @dataclass(frozen=True)
 class WhatIf:
-    """A named change of an input, and the resulting values or the reason why there is no
-    equilibrium.
-    """
+    """Result for a changed input: the new values, or the reason why there is no equilibrium."""
 
     name: str
     figures: Figures | None = None
@@ -74,13 +74,13 @@ class Explanation:
 
     Attributes
     ----------
-    label : label of the piece or clamp explained
-    quantities : the meaningful columns of `causes`: knockdown and excursion; for a line
-        without a unique shape in still water, excursion and the buoyancy in use
+    label : label of the explained piece or clamp
+    quantities : the columns of `causes` with a meaning: knockdown and excursion or, for a line
+        without a unique shape in still water, excursion and used buoyancy
     figures : values of the original mooring
     without_drag : part of each quantity that is not caused by drag
-    causes : contribution of each drag to the rest; None if unknown
-    miss : largest error of the sums of contributions before scaling, as a share of the total
+    causes : contribution of each drag to the remaining part; None if unknown
+    miss : largest relative error of the sums of contributions before they were scaled
     changes : results for more buoyancy, less drag, and more and less current
     notes : remarks for the user
     """
@@ -126,13 +126,13 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     Parameters
     ----------
     result : result of a mooring or a net
-    label : label of the piece (its upper end) or clamp to explain; by default ``top``, the free
-        end, for a net that of the first leg with a free end
+    label : label of the clamp, or of the piece whose upper end is explained. The default ``top`` is
+        the free end; in a net it is the free end of the first leg that has one
 
     Returns
     -------
-    Explanation : contributions from `calm.case.attribution`; the changes are solved anew,
-        with the settings of the result. A fitted piece keeps its length.
+    Explanation : contributions from `calm.case.attribution`. The mooring with a changed input is
+        solved with the settings of the result, and a fitted piece keeps its length.
 
     Raises
     ------
@@ -230,7 +230,7 @@ def _shares(
 
 
 def _point(result: Result, place: Place) -> attribution.SolverPart:
-    """Return the indices of leg, piece and clamp (or -1) of a part in the solver."""
+    """Return the indices of the leg, the piece and the clamp (-1 for none) of a part."""
     leg = leg_at(result, place)
     pieces, own = leg.file.pieces, replace(place, clamp=-1)
     index = next(piece.index for piece in pieces if piece.place == own)
@@ -258,7 +258,7 @@ def _causes(result: Result, shares: attribution.Attribution) -> Causes:
 
 
 def _drags(result: Result, parts: list[attribution.SolverPart]) -> Floats:
-    """Compute (p,) horizontal force of the water on each part [N]."""
+    """Compute the horizontal force of the water on each part (p,) [N]."""
     solutions = result.design.solutions
     found = []
     for leg, p, m in parts:

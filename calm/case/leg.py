@@ -1,6 +1,4 @@
-"""A leg of a design: its pieces from the upper to the lower end, and the supports of the
-two ends.
-"""
+"""A leg of a design: its pieces from the upper to the lower end, and the supports of both ends."""
 
 from __future__ import annotations
 
@@ -42,11 +40,11 @@ class Leg:
 
     Attributes
     ----------
-    file : file of this leg alone, its pieces counted from the upper end. A leg without an anchor,
-        other than a tow, has a stand-in with the id `STAND_IN` as its last piece
-    for_surface : whether the leg is meant to reach the surface; None decides this from the leg
-        itself. A leg that is checked after a change keeps this setting
-    memory : cache of solutions for other states of the file and other environments
+    file : file with this leg only; its pieces are counted from the upper end. If a leg that is not
+        a tow has no anchor, its last piece is a stand-in with the id `STAND_IN`
+    for_surface : whether the leg is designed to reach the surface; with None, this follows from the
+        leg itself. Changed copies that are checked keep the setting of the original leg
+    memory : cache of solutions for earlier states of the file and for other environments
     given_line, given_water : replacements for the line and the water of the file
     """
 
@@ -57,9 +55,6 @@ class Leg:
     given_water: Water | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Leg], tuple[object, ...]]:
-        """Pickle the fields and the line at its cut lengths; all other attributes are
-        recomputed.
-        """
         known = vars(self)
         line, water = (known.get(name, known[f"given_{name}"]) for name in ("line", "water"))
         return Leg, (self.file, self.for_surface, self.memory, line, water)
@@ -106,7 +101,9 @@ class Leg:
 
     @cached_property
     def water(self) -> Water:
-        """Current over the ground and density by level; the water depth is that at the anchor."""
+        """Water of the leg: current over the ground and density by level, and the water depth at
+        the anchor.
+        """
         return self.given_water or assemble_water(self.file.environment)
 
     @property
@@ -130,7 +127,7 @@ class Leg:
 
     @cached_property
     def line(self) -> Line:
-        """Pieces above the anchor as arrays; a piece of fitted length has its cut length.
+        """Pieces above the anchor as arrays; a fitted piece has its cut length.
 
         Raises NoEquilibrium if no length fits.
         """
@@ -189,9 +186,10 @@ class Leg:
 
     @cached_property
     def anchor_drag(self) -> float:
-        """Drag of the falling anchor at 1 m/s [N/(m/s)²]; the default is the drag of a cube.
+        """Drag of the falling anchor at 1 m/s [N/(m/s)²].
 
-        The cube has the displaced volume of the anchor, or the volume of steel of its weight.
+        An anchor without `kt` has the drag of a cube with its displaced volume. If this volume is
+        unknown, it follows from the weight and the density of the material, by default steel.
         """
         anchor = self.file.anchor
         if anchor.kt is not None:
@@ -206,7 +204,7 @@ class Leg:
         """Solve the leg alone, in the water of the file or in other water.
 
         Raises NoEquilibrium if no equilibrium passes every check, or if the leg would lift its
-        anchor, have more than chain on the seabed, or penetrate a slope.
+        anchor, put a piece other than chain on the seabed, or penetrate a slope.
         """
         water = water or self.water
         with parts.naming_the_piece(self.file.pieces, towed=self.towed):
@@ -231,9 +229,7 @@ class Leg:
             )
 
     def _refuse_grounded_pieces(self, solution: Solution) -> None:
-        """Raise NoEquilibrium if a piece other than chain of a sub-surface line lies on the
-        seabed.
-        """
+        """Raise NoEquilibrium if a sub-surface line has a piece other than chain on the seabed."""
         if solution.surface:
             return
         pieces = self.file.pieces
@@ -242,7 +238,7 @@ class Leg:
                 raise self.grounded_error(pieces[lying].label)
 
     def grounded_error(self, label: str) -> NoEquilibrium:
-        """Return the exception for a sub-surface line with a piece other than chain on the
+        """Return the exception for a sub-surface line that has a piece other than chain on the
         seabed.
         """
         lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
@@ -258,10 +254,10 @@ class Leg:
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:
-        """Raise NoEquilibrium if a line would penetrate a seabed from a depth grid; the solver
-        assumes a plane seabed.
+        """Raise NoEquilibrium if a line would penetrate the seabed of a depth grid.
 
-        The tolerance is the largest depth of the grounded part below the grid.
+        The solver assumes a plane seabed, so the grounded part may be below the grid. Its largest
+        depth below the grid is the tolerance for the suspended part.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:
@@ -279,7 +275,7 @@ class Leg:
             )
 
     def solved(self, line: Line) -> Solution:
-        """Solve the leg with another line. Raises NoEquilibrium if there is none."""
+        """Solve the leg with another line. Raises NoEquilibrium if there is no equilibrium."""
         if self.towed:
             return solve_tow(line, self.water, self.towing, self.settings)
         return solve_mooring(line, self.water, self.settings)

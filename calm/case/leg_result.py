@@ -34,16 +34,15 @@ from calm.solve.solution import OtherEquilibrium
 class LegResult:
     """Result of a leg in equilibrium. Lengths and depths [m], forces [N], angles [degrees].
 
-    The components of a tow run from the ship down, and its shape begins at the free end.
-
-    Tables are computed when they are first read.
+    The components of a tow are listed from the ship down, and its shape begins at the free end.
+    Tables are computed when they are first used.
 
     Attributes
     ----------
     leg : the solved leg
     solution : solution for its line
     still : solution in still water; None without a unique shape
-    profilers : results for the profilers at several positions; all other results hold for profilers
+    profilers : results for each profiler at several positions; all other results are for profilers
         at their upper stops
     """
 
@@ -104,7 +103,7 @@ class LegResult:
 
     @cached_property
     def top(self) -> Top:
-        """Upper end of the leg."""
+        """Values at the upper end of the leg."""
         return top_of(self.solution, self.still)
 
     @cached_property
@@ -119,7 +118,7 @@ class LegResult:
 
     @cached_property
     def body(self) -> TowedBody | None:
-        """Towed body; None for other legs."""
+        """Values at the towed body; None for other legs."""
         return body_of(self.solution) if self.towed else None
 
     @cached_property
@@ -134,9 +133,9 @@ class LegResult:
 
     @cached_property
     def components(self) -> Components:
-        """Pieces in line order; for a tow, from the ship down.
+        """Pieces in line order, which is from the ship down for a tow.
 
-        The last piece of a leg without an anchor is a stand-in without meaning.
+        The last piece of a leg without an anchor is a stand-in, whose values have no meaning.
         """
         pieces = self.file.pieces
         if self.towed:
@@ -169,7 +168,7 @@ class LegResult:
 
     @property
     def file(self) -> MooringFile:
-        """File that contains this leg alone."""
+        """File with this leg only."""
         return self.leg.file
 
     @property
@@ -189,17 +188,17 @@ class LegResult:
 
     @property
     def legs(self) -> tuple[LegResult, ...]:
-        """Tuple with this leg only, for use in place of a `Result`."""
+        """This leg as a tuple, so that a leg can be used instead of a `Result`."""
         return (self,)
 
     @property
     def several(self) -> bool:
-        """False, since this is a single leg."""
+        """Always false, so that a leg can be used instead of a `Result`."""
         return False
 
     @property
     def other_used_buoyancy(self) -> float:
-        """Used fraction of buoyancy in another equilibrium at the surface; NaN if none was
+        """Used fraction of the surface float's buoyancy in another equilibrium; NaN if none was
         found.
         """
         afloat = self.other is not None and self.other.used_buoyancy < 1.0
@@ -209,7 +208,8 @@ class LegResult:
     def other_equilibrium(self) -> dict[str, float] | None:
         """Depth of the free end in another equilibrium; None if none was found.
 
-        For a mooring also length on the seabed, share of buoyancy in use, and anchor load.
+        For a mooring, also the length on the seabed, the used fraction of the buoyancy, and the
+        anchor load.
         """
         if self.other is None:
             return None
@@ -217,13 +217,13 @@ class LegResult:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings; those of the file come first."""
+        """All warnings, beginning with those of the file."""
         return warnings_of(self)
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the line with more drag on its cables, solved on first use; None for a leg of
-        a net.
+        """Results of the line if strumming increases the drag of its cables, solved on first use;
+        None for a leg of a net.
         """
         if self.leg.of_several:
             return None

@@ -1,4 +1,4 @@
-"""Arrays of values on a solved line: the columns of pieces, clamps and nodes.
+"""Arrays of values on a solved line, which become the columns of pieces, clamps and nodes.
 
 Pieces are in the order of the file, without the anchor.
 """
@@ -23,9 +23,9 @@ class LineFigures:
 
     Attributes
     ----------
-    solution, still : the line in the current, and in still water for the knockdown
+    solution, still : solutions in the current, and in still water for the knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
-    upper, lower : (n,) node numbers of the first-listed and the other end
+    upper, lower : (n,) nodes at the ends of each piece, in the order of the file
     top, bottom : (n, 3) positions of these ends: east, north, up [m]
     """
 
@@ -41,7 +41,6 @@ class LineFigures:
 
     @property
     def count(self) -> int:
-        """Number of pieces."""
         return len(self.upper)
 
     @property
@@ -75,7 +74,6 @@ class LineFigures:
 
     @property
     def greatest_tension(self) -> Floats:
-        """(n,) maximum tension in each piece [N]."""
         tension = self.solution.tension
         within = np.maximum.reduceat(tension[:-1], self._first)
         greatest: Floats = np.maximum(within, tension[self._last])[self._ahead]
@@ -83,8 +81,8 @@ class LineFigures:
 
     @property
     def least_tension(self) -> Floats:
-        """(n,) minimum tension of each piece off the seabed [N]; NaN for a piece entirely on the
-        seabed.
+        """(n,) minimum tension in the suspended part of each piece [N]; NaN for a piece entirely on
+        the seabed.
         """
         tension = self.solution.tension
         hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
@@ -94,11 +92,11 @@ class LineFigures:
 
     @cached_property
     def tilt(self) -> Floats:
-        """(n,) angle of the straight line between the ends of each piece, from the vertical
+        """(n,) angle between the straight line through the ends of each piece and the vertical
         [degrees].
 
-        A piece without length takes the angle of the tension; all pieces of a head, which is one
-        rod, take the angle of the rod.
+        A piece without length has the angle of the tension. The pieces at the head of the line form
+        one rod and have its angle.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -138,7 +136,7 @@ class ClampFigures:
     Attributes
     ----------
     clamps : (m,) clamps of the file
-    index : (m,) number of the piece under each clamp
+    index : (m,) index of the piece under each clamp
     position : (m, 3) east, north, up [m]
     """
 
@@ -163,8 +161,8 @@ class ClampFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(m,) tilt [degrees]: angle of the mean tension above and below the clamp or, on a rigid
-        piece, of the piece.
+        """(m,) tilt [degrees]. On a rigid piece this is the tilt of the piece; elsewhere it is the
+        angle of the mean of the tensions above and below the clamp.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
@@ -197,7 +195,6 @@ class NodeFigures:
 
     @property
     def tension(self) -> Floats:
-        """(k,) tensions [N]."""
         return self.solution.tension
 
     @property

@@ -61,5 +61,4 @@ def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
 
 
 def _standing(table: type[T], part: Piece | Clamp, end: LineEnd | OnAnchor) -> T:
-    """Build a table with one row, for an anchor or a clamp on an anchor."""
     return table.made([part], lambda column: np.array([column.at_anchor and column.at_anchor(end)]))

@@ -15,7 +15,7 @@ from typing import Any, ParamSpec, TypeVar
 from calm.errors import NoEquilibrium
 
 MOST = 256
-"""Number of outcomes kept, the latest ones."""
+"""Number of outcomes that are kept; older ones are discarded."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -24,8 +24,8 @@ T = TypeVar("T")
 class Memory:
     """Cache of solver outcomes by inputs, so that identical problems are solved only once.
 
-    A new label does not require a new solution, and a new current does not require a new solution
-    in still water. Threads may share the cache.
+    Labels are not inputs, and solutions in still water do not depend on the current. Threads may
+    share the cache.
     """
 
     def __init__(self) -> None:
@@ -36,7 +36,7 @@ class Memory:
         return Memory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return the outcome of a solver for its arguments, from the cache if possible; a cached
+        """Return the outcome of a solver for its arguments, from the cache if possible. A cached
         `NoEquilibrium` is raised again.
         """
         key = _digits((solver.__module__, solver.__qualname__, given, named))
@@ -61,25 +61,23 @@ class Memory:
 
 
 class NoMemory(Memory):
-    """Replacement for the cache that stores nothing: every line is solved."""
+    """Replacement for the cache that stores nothing, so that every line is solved."""
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
         return NoMemory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return the result of the solver for its arguments."""
         return solver(*given, **named)
 
 
 class _Describing(pickle.Pickler):
     """Pickler that serialises the inputs of a solver to a cache key.
 
-    A dataclass is written by its fields, without cached properties; a function, such as the curve
-    of a hull, by its name and closure.
+    A dataclass is represented by its fields, without cached properties. A function, such as the
+    displacement curve of a hull, is represented by its name and closure.
     """
 
     def reducer_override(self, thing: Any) -> Any:
-        """See `pickle.Pickler`."""
         if is_dataclass(thing) and not isinstance(thing, type):
             values = [getattr(thing, name) for name in _names(type(thing))]
             return tuple, ((type(thing).__qualname__, values),)
@@ -95,7 +93,6 @@ def _names(record: type) -> tuple[str, ...]:
 
 
 def _digits(given: object) -> bytes:
-    """Return the serialised inputs of a solver."""
     written = io.BytesIO()
     _Describing(written).dump(given)
     return written.getvalue()

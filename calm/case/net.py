@@ -1,4 +1,4 @@
-"""Solution of the legs of a net together."""
+"""Simultaneous solution of the legs of a net."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def solve_together(
 def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | None:
     """Diagnose a net that sinks, or whose fixed ends are farther apart than its legs are long.
 
-    Pieces that may lie on the seabed count without their weight. The shortest path through the net
+    The weight of pieces that may lie on the seabed is ignored. The shortest path through the net
     between two ends is computed with the Floyd-Warshall method.
     """
     lift = 0.0

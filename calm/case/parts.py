@@ -26,7 +26,7 @@ TOP = "top"
 
 
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
-    """Find the single part with a given label.
+    """Find the only part with a given label.
 
     Raises LookupError, with the existing labels, if no part or more than one part matches.
     """
@@ -64,8 +64,9 @@ def _listed(labels: Sequence[str]) -> str:
 
 @contextmanager
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
-    """Add the label of a piece to solver errors (context manager). The solver numbers the pieces of
-    a tow from the lower end.
+    """Add the label of the affected piece to errors of the solver (context manager).
+
+    `towed` is set for a tow, whose pieces the solver numbers from the lower end.
     """
     try:
         yield
@@ -84,7 +85,7 @@ default environment.
 
 @dataclass(frozen=True)
 class Origin:
-    """Source from which a mooring was read; the attributes are the arguments of `load`."""
+    """Source of a mooring; the attributes are the arguments of `load`."""
 
     path: str | Path
     environment: str | Path | None
@@ -92,7 +93,7 @@ class Origin:
     text: str | None
 
     def read(self) -> MooringFile:
-        """Read the file and all files that it refers to, see `read_mooring`."""
+        """Read the file and all files to which it refers (see `read_mooring`)."""
         return read_mooring(
             self.path, environment=self.environment, catalogs=self.catalogs, text=self.text
         )
@@ -109,10 +110,11 @@ class Origin:
         Parameters
         ----------
         file : the file as read
-        label : label of the piece or clamp that has the keys; None for keys of the file
-        environment : None for the default environment; keys change the default environment
-        keys : names and values as in the file; None removes a key; if the file has a
-            mapping under a name, its keys are changed one by one
+        label : label of the piece or clamp whose keys are changed; None to change keys of the file
+        environment : name or path of another environment, or changed keys of the default
+            environment; None leaves the environment unchanged
+        keys : names and values as in the file. None removes a key; the keys of a mapping are
+            changed one by one
 
         Raises
         ------
@@ -135,7 +137,9 @@ class Origin:
 
 
 def _written(value: Any) -> Any:
-    """Convert a value to its text in a file; numbers within lists and mappings become text, too."""
+    """Convert a value, with all numbers inside lists and mappings, to the text form of a mooring
+    file.
+    """
     if isinstance(value, Mapping):
         return {key: _written(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
@@ -162,10 +166,10 @@ def _place_of(file: MooringFile, label: str) -> Location:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """Return the depth of every node of a line below the seabed of its file (k+1,) [m]; NaN outside
-    the depth grid.
+    """Return the distance of every node of a line below the seabed of its file, (k+1,) [m]; NaN
+    outside the depth grid.
 
-    `depth` is the water depth at the origin, or for a leg at its anchor [m].
+    `depth` is the water depth at the origin or, for a leg, at its anchor [m].
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None

@@ -1,4 +1,4 @@
-"""Solutions for profilers at their stops and between them."""
+"""Solutions for profilers at positions from the upper to the lower stop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PLACES = 11
 class ProfilerPlace:
     """Depth [m], tension [N] and tilt [degrees] of the wire at a position of a profiler.
 
-    `at` is the unstretched distance from the top of its wire [m].
+    `at` is the unstretched distance from the top of the wire [m].
     """
 
     at: float
@@ -32,12 +32,12 @@ class ProfilerPlace:
 
 @dataclass(frozen=True)
 class ProfilerTravel:
-    """A profiler at its upper and lower stop, and at the position with the largest tilt of the
-    wire.
+    """Results for a profiler at its upper and lower stop, and at the position with the largest wire
+    tilt.
 
-    `distance` is the unstretched distance between its stops [m], `time` the duration of a profile
-    [s], and `profiles` the number of profiles per battery set; None if its speed or its endurance
-    is unknown.
+    `distance` is the unstretched distance between the stops [m], `time` the duration of a profile
+    [s], and `profiles` the number of profiles per battery set. `time` and `profiles` are None if
+    the speed or the endurance is unknown.
     """
 
     label: str
@@ -97,22 +97,22 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 
 
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
-    """Return a file with fixed profilers, one of which may be placed at another position.
+    """Return a file with fixed profilers, one of which may be at another position.
 
     Parameters
     ----------
-    place : place of that profiler in the line; None if none is moved
-    at : unstretched distance from the top of its wire [m]
+    place : place in the file of the profiler that is moved; None if none is moved
+    at : new unstretched distance of this profiler from the top of its wire [m]
     """
 
-    def stays(clamp: Clamp) -> Clamp:
+    def unmoved(clamp: Clamp) -> Clamp:
         return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
 
     def moves(clamp: Clamp) -> bool:
         return clamp.travel is not None or clamp.place == place
 
     pieces = (
-        piece.with_clamps(stays) if any(map(moves, piece.clamps)) else piece
+        piece.with_clamps(unmoved) if any(map(moves, piece.clamps)) else piece
         for piece in file.pieces
     )
     return replace(file, pieces=tuple(pieces))

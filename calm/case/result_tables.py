@@ -1,9 +1,9 @@
 """Registry of result columns, and the tables of these columns.
 
-A table stores one array per column and makes records and data frames on demand. To add a column,
-add a field with its entry to the class of its rows; put a computation longer than one line in
-`calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` list columns that only outputs
-have.
+A table stores one array per column and creates records and data frames on demand. To add a column,
+add a field with its entry to the class of the rows. A computation longer than one line belongs in
+`calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` list columns that appear in
+outputs only, not in tables.
 """
 
 from __future__ import annotations
@@ -45,7 +45,9 @@ _OF_THE_FILE = "part"
 
 
 class Columnar:
-    """Table with its columns as attributes: `table.depth` is the depth of all rows."""
+    """Table with its columns as attributes; for example, `table.depth` has the depths of all
+    rows.
+    """
 
     def __init__(self, **columns: Any) -> None:
         if sorted(columns) != sorted(self.names()):
@@ -55,7 +57,7 @@ class Columnar:
     if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Return a column by name."""
+            """Return a column by its name."""
 
     @classmethod
     def names(cls) -> list[str]:
@@ -71,9 +73,9 @@ class Columnar:
 
 
 class ColumnTable(Columnar, Generic[Row]):
-    """A table of rows that is stored by column.
+    """Table stored by column.
 
-    A column is an array of numbers, or a list. The column names are the fields of `record`.
+    A column is an array of numbers or a list. The column names are the fields of `record`.
     """
 
     record: ClassVar[type[Any]]
@@ -81,7 +83,6 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Return the names of the columns, in table order."""
         return [each.name for each in fields(cls.record)]
 
     @classmethod
@@ -97,7 +98,7 @@ class ColumnTable(Columnar, Generic[Row]):
         Parameters
         ----------
         parts : the piece or clamp of each row
-        value : computes a column that neither `of_part` nor `derived` gives
+        value : function that computes the columns without `of_part` and `derived`
         """
         known: dict[str, Any] = {}
         for one in cls.columns():
@@ -109,7 +110,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def joined(cls, tables: Sequence[Self]) -> Self:
-        """Concatenate tables."""
+        """Return the rows of several tables as one table."""
         columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
         whole = {
             name: [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
@@ -147,11 +148,10 @@ class ColumnTable(Columnar, Generic[Row]):
         return tuple(map(self.record, *plain))
 
     def head(self, count: int) -> Self:
-        """Return the first rows."""
         return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
 
     def with_row(self, row: Row) -> Self:
-        """Return the table with one more row."""
+        """Return a copy of the table with one more row."""
         last = {name: [getattr(row, name)] for name in self.names()}
         return self.joined([self, type(self)(**last)])
 
@@ -170,12 +170,12 @@ class ColumnTable(Columnar, Generic[Row]):
         return pandas.DataFrame({name: getattr(self, name) for name in names})
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset over `label`, with units and meanings."""
+        """Return a dataset along the dimension `label`, including units and meanings."""
         return _dataset(self.to_pandas(), self.columns(), "label")
 
 
 def _dataset(values: Mapping[str, Any], columns: Sequence[ResultColumn], along: str) -> Dataset:
-    """Columns of equal length as a dataset of one dimension."""
+    """Convert columns of equal length to a dataset with one dimension."""
     from xarray import Dataset
 
     return Dataset(
@@ -192,8 +192,8 @@ def _known(value: Any) -> Any:
 
 
 class LineEnd(NamedTuple):
-    """Input for the row of an anchor: the row above, the piece of the anchor, and the water depth
-    [m].
+    """Input for the row of an anchor: the row above it, the piece of the anchor, and the water
+    depth [m].
     """
 
     above: ComponentRow
@@ -202,7 +202,6 @@ class LineEnd(NamedTuple):
 
     @property
     def height(self) -> float:
-        """Height of the anchor [m]."""
         return self.piece.length or 0.0
 
 
@@ -390,7 +389,6 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
-        """Place of the piece in the file."""
         return self.part.place
 
     @property
@@ -464,7 +462,6 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
-        """Place of the clamp in the file."""
         return self.part.place
 
     @property
@@ -514,11 +511,11 @@ column whose value is None.
 class Components(ColumnTable[ComponentRow]):
     """Table of the n pieces of the line, in file order. NaN stands for unknown values.
 
-    The pieces of a mooring are listed from the free end down, with the anchor last, those of a tow
-    from the ship. The columns are the fields of `ComponentRow`, (n,) each: `part`, `use`, `label`,
-    `kind` and `role` are lists; lengths, depths and offsets are in m, tensions in N, and `tilt` in
-    degrees; x and y are east and north of the anchor or the tow point, and depths are positive
-    down. `knockdown` is NaN in a tow.
+    The pieces of a mooring are listed from the free end down, with the anchor last; the pieces of a
+    tow are listed from the ship down. The columns are the fields of `ComponentRow`, each with n
+    values; `part`, `use`, `label`, `kind` and `role` are lists. Lengths, depths and offsets are in
+    m, tensions in N, and `tilt` in degrees. x and y are distances to the east and north of the
+    anchor or the tow point, and depths are positive down. `knockdown` is NaN in a tow.
     """
 
     record = ComponentRow
@@ -527,9 +524,9 @@ class Components(ColumnTable[ComponentRow]):
 class Clamps(ColumnTable[ClampRow]):
     """Table of the m clamped instruments, in file order.
 
-    The columns are the fields of `ClampRow`, (m,) each. `tension` is the larger of the tensions
-    above and below the clamp [N]. `tilt` is the angle of the sum of these tensions, or on a rigid
-    piece the tilt of the piece [degrees].
+    The columns are the fields of `ClampRow`, each with m values. `tension` is the larger of the
+    tensions above and below the clamp [N]. `tilt` is the angle of the sum of these tensions or, on
+    a rigid piece, the tilt of the piece [degrees].
     """
 
     record = ClampRow
@@ -547,8 +544,8 @@ def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, A
 
 
 def table_columns(output: Output) -> list[ResultColumn]:
-    """Return the columns of a printed table from left to right, or of the builder in order of
-    entry.
+    """Return the columns of a printed table from left to right, or the columns of the builder in
+    order of entry.
     """
     shown = shown_in((*OF_ROWS, *Components.columns()), output)
     return shown if output == Output.BUILDER else sorted(shown, key=lambda one: one.place)
@@ -556,8 +553,7 @@ def table_columns(output: Output) -> list[ResultColumn]:
 
 @dataclass(frozen=True, repr=False)
 class Shape:
-    """Shape of the line, node by node from the free end. The point of a clamp occurs twice (above,
-    below).
+    """Shape of the line, node by node from the free end. A clamp has two nodes, above and below it.
 
     Attributes
     ----------
@@ -611,7 +607,7 @@ class Shape:
         return pandas.DataFrame(vars(self))
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset over `node`, with units and meanings."""
+        """Return a dataset along the dimension `node`, including units and meanings."""
         return _dataset(vars(self), self.columns(), "node")
 
 
@@ -622,7 +618,9 @@ _AN_END = Output.JSON | Output.NET_TABLE
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Error estimates of the solver; None for results without an anchor, such as a tow."""
+    """Error estimates of the solver; values for the anchor are None if there is no anchor, as in a
+    tow.
+    """
 
     depth: float = column("estimate of the largest error of any depth or offset", Output.JSON)
     tension: float = column("estimate of the largest error of any tension", Output.JSON)
@@ -641,7 +639,7 @@ class Accuracy:
 
 @dataclass(frozen=True)
 class Top:
-    """The free end of a line; None stands for unavailable values."""
+    """Values at the free end of a line; unavailable values are None."""
 
     depth: float = column("depth of the free end", Output.JSON)
     x: float = column(f"{_EAST}, at the free end", Output.JSON)
@@ -689,7 +687,7 @@ class TowPoint:
 
 @dataclass(frozen=True)
 class TowedBody:
-    """The upper end of the lowest piece of a tow, or the free end of a bare cable."""
+    """Values at the upper end of the lowest piece of a tow, or at the free end of a bare cable."""
 
     depth: float = column("depth of the towed body", Output.JSON)
     layback: float = column("horizontal distance behind the tow point", Output.JSON)
@@ -699,8 +697,9 @@ class TowedBody:
 
 @dataclass(frozen=True)
 class EndLoad:
-    """Load of a leg on its anchor or other support. The last four attributes exist for anchors
-    only.
+    """Load of a leg on its anchor or on another support.
+
+    Only anchors have the last four attributes.
     """
 
     leg: str = column("name of the leg", Output.JSON)
@@ -842,7 +841,7 @@ TOWED_ENDS = (
 
 
 class WithClamps(Protocol):
-    """Protocol of a result with pieces and clamps."""
+    """Result that has pieces and clamps."""
 
     @property
     def components(self) -> Components:
@@ -854,15 +853,15 @@ class WithClamps(Protocol):
 
 
 def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
-    """Map the place of each piece or clamp in the file to its row."""
+    """Map the place of each piece and clamp in the file to its row in the result."""
     return {row.place: row for row in (*result.components, *result.clamps)}
 
 
 def item_numbers(*results: WithClamps) -> dict[str, str]:
-    """Assign an item number to each piece and clamp by label, for use in all documents.
+    """Return the item number of each piece and clamp, by label; all documents use these numbers.
 
-    Pieces are numbered from 1 in the order of the results, such as the legs of a net; a clamp has
-    the number of its piece and a letter.
+    Pieces are numbered from 1 in the order of the results, such as the legs of a net. The number of
+    a clamp is the number of its piece and a letter.
     """
     found: dict[str, str] = {}
     rows = (row for result in results for row in rows_down(result))
@@ -876,7 +875,7 @@ def item_numbers(*results: WithClamps) -> dict[str, str]:
 def run_of(numbers: Sequence[str]) -> str:
     """Format the numbers of items that share a row, such as `19–26` or `5a–5c, 6`.
 
-    Clamps on the first piece are not named.
+    Clamp numbers are omitted if the first number is that of a piece.
     """
     pieces = sorted(int(one) for one in numbers if one.isdigit())
     clamps = [] if numbers[0].isdigit() else [one for one in numbers if not one.isdigit()]

@@ -31,14 +31,14 @@ to the limit.
 
 @dataclass(frozen=True)
 class Trial:
-    """The mooring with one tried value of the parameter.
+    """The mooring with one value of the varied parameter.
 
     Attributes
     ----------
-    value : the changed value, in the unit of the adjustment
-    measured : the target's quantity, in SI units and degrees; None without an equilibrium
+    value : value of the parameter, in the unit of the adjustment
+    measured : value of the target's quantity, in SI units and degrees; None without an equilibrium
     result : the solved mooring, or None
-    failure : why there is no equilibrium
+    failure : reason why there is no equilibrium
     place : place of the part whose depth and excursion are reported; by default the top of the line
     """
 
@@ -50,8 +50,8 @@ class Trial:
 
     @property
     def figures(self) -> Figures | None:
-        """Summary values of the line. Position values refer to its top, or in a net to the part of
-        the target.
+        """Summary values of the line. Positions refer to the top of the line or, in a net, to the
+        part in the target.
         """
         return None if self.result is None else figures_of(self.result, self.place)
 
@@ -62,13 +62,13 @@ class Sizing:
 
     Attributes
     ----------
-    target, change : the target, and the value that may be changed
-    range : smallest and largest value of the change
+    target, change : the target, and the parameter that is varied
+    range : smallest and largest value of the parameter
     status : ``met``, ``met-already`` (nothing to change) or ``not-met``
     before, after : the original mooring, and the mooring with the smallest change that meets the
         target, solved with the settings of its file; `after` is None if the target is not met
     message, advice : reason why the target is not met, and advice
-    steady : whether the quantity is monotonic over the values tried
+    steady : whether the target's quantity is monotonic over the values tried
     solves : number of equilibria computed
     """
 
@@ -85,7 +85,7 @@ class Sizing:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Remarks on the answer."""
+        """Remarks about the outcome, for the user."""
         notes = [self.change.note] if self.change.note and self.status == MET else []
         if not self.steady:
             notes.append(
@@ -135,14 +135,15 @@ def size(
 ) -> Sizing:
     """Find the smallest change of a parameter that makes a mooring meet a target.
 
-    Every value tried is solved as in `Design.solve`, with fitted pieces fitted anew.
+    Every value tried is solved as in `Design.solve`, and the lengths of fitted pieces are computed
+    again.
 
     Parameters
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
     change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
-    between : range of the change, each end with its unit; by default from 0 to a hundred times a
-        buoyancy, to twice the water depth for a length, and to 1000 for a count
+    between : smallest and largest value, with units. By default a buoyancy may be 0 to 100 times
+        its present value, a length at most twice the water depth, and a count at most 1000
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Strumming of cables: frequency and drag in a solution, and results with amplified drag."""
+"""Strumming of cables: frequency and drag in a solution, and results with strumming drag."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from calm.solve.audit import amplification, flow_across
 class Strumming:
     """Strumming of the cables: frequency [Hz], and range of the normal drag coefficient Cn.
 
-    `frequency` is the common frequency of a towed cable; for a mooring it is the highest shedding
-    frequency of its cables.
+    All segments of a towed cable strum at the same `frequency`. For a mooring, `frequency` is the
+    highest shedding frequency of its cables.
     """
 
     frequency: float
@@ -54,8 +54,8 @@ mooring lines.
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """Results for the line with the Cn of all cables multiplied by `factor`; None if there is no
-    equilibrium.
+    """Results for the line with the Cn of all cables multiplied by `factor`. Without an
+    equilibrium, they are None.
 
     Attributes
     ----------
@@ -74,10 +74,10 @@ class StrummingBand:
 
 
 def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
-    """Solve a line with amplified cable drag; `still_depth` is the depth of its top in still water
-    [m].
+    """Solve a line with increased drag on its cables; `still_depth` is the depth of its top in
+    still water [m].
 
-    None if no cable can strum, or if the file has a law of strumming.
+    Return None if no cable can strum, or if the file sets a strumming law.
     """
     line, cables = leg.line, leg.line.diameter > 0.0
     if leg.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():

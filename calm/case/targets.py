@@ -35,7 +35,7 @@ _EXAMPLE = "knockdown(top) <= 20 m"
 
 
 def pointed(option: str, text: str, column: int, message: str) -> UsageError:
-    """Return the error for an option, with a caret below the faulty position."""
+    """Return the error for a command option, with a caret below the invalid position."""
     return UsageError(f"{option}: {message}\n  {text}\n  {' ' * column}^")
 
 
@@ -47,8 +47,8 @@ class Target:
     ----------
     text : the original text
     quantity : one of `QUANTITIES`
-    label, place : label and place of the part; None for the top of the line, and for the anchor's
-        required weight, for which `label` is the leg in a net
+    label, place : label and place of the part; None for the top of the line and for the required
+        anchor weight. For the required anchor weight in a net, `label` is the name of the leg
     relation : ``<=``, ``>=`` or ``=``
     limit : limit, in SI units or degrees
     """
@@ -62,7 +62,7 @@ class Target:
 
     @property
     def unit(self) -> str:
-        """SI unit, or degrees."""
+        """SI unit of the limit, or degrees."""
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
     def value(self, result: Result) -> float | None:
@@ -86,8 +86,8 @@ def parse_target(text: str, file: MooringFile) -> Target:
     ----------
     text : a quantity, the part of the line in brackets (by default ``top``), ``<=``, ``>=``
         or ``=``, and a limit with its unit
-    file : mooring in which labels are looked up; in a net the required weight is that of a leg's
-        anchor, named in brackets if there are several: ``required_weight(stem) <= 8 kN``
+    file : mooring in which labels are looked up. In a net with several anchors, the required weight
+        has the name of a leg in brackets: ``required_weight(stem) <= 8 kN``
 
     Raises
     ------
@@ -139,9 +139,9 @@ def parse_target(text: str, file: MooringFile) -> Target:
 def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
     """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
-    For a piece, they refer to its upper end, and the tension is the maximum in the piece. The
-    knockdown is None if the line has no unique shape in still water. The default place is the top
-    of the line.
+    For a piece, depth, excursion and knockdown refer to its upper end, and the tension is the
+    maximum in the piece. The knockdown is None if the line has no unique shape in still water. The
+    default part is the top of the line.
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
@@ -163,7 +163,7 @@ class Figures:
     Attributes
     ----------
     depth, knockdown, excursion : values at the line's top or at another part
-    used_buoyancy : share in use of the buoyancy at the surface, 1 below it
+    used_buoyancy : used fraction of the surface float's buoyancy; 1 if the float is submerged
     tension, vertical, horizontal, required_weight : anchor load; None without an anchor
     """
 
@@ -178,10 +178,11 @@ class Figures:
 
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """Return the summary values of a result. Position values refer to the part at a given place, by
-    default the top.
+    """Return the summary values of a result. Positions refer to the part at `place`, by default the
+    top.
 
-    With several anchors, the anchor is the one with the largest required weight.
+    If there are several anchors, the values of the anchor with the largest required weight are
+    returned.
     """
     spot, leg = spot_of(result, place), leg_at(result, place)
     anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)

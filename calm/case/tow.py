@@ -13,19 +13,18 @@ SOLVES = 3.0
 
 
 def at_speed(tow: Design, speed: float) -> Design:
-    """Return a copy of a tow at another ship speed [m/s]; a cable of fitted length keeps this
-    length.
-    """
+    """Return a copy of a tow at another ship speed [m/s]; a fitted cable keeps its length."""
     assert tow.file.tow is not None
     keys = tow.file.tow.model_copy(update={"speed": speed})
     return Design(replace(tow.file, tow=keys), lines=(tow.line,))
 
 
 def sweep(tow: Design, speeds: Iterable[float]) -> list[Result | NoEquilibrium]:
-    """Solve a tow at several ship speeds [m/s], > 0. Each item is a result, or the reason why there
-    is none.
+    """Solve a tow at several ship speeds > 0 [m/s]. Each item is a result, or the reason why there
+    is no equilibrium.
 
-    Speeds are solved one at a time; the tow's own speed only determines the length of a fitted
-    cable. Raises NoEquilibrium if no length of this cable reaches its depth at the tow's own speed.
+    Speeds are solved one at a time. The speed in the file only determines the length of a fitted
+    cable; NoEquilibrium is raised if no length of this cable reaches the required depth at that
+    speed.
     """
     return [or_why_not(at_speed(tow, speed).solve) for speed in speeds]

@@ -1,7 +1,7 @@
 """Uncertainty of a mooring's results, from solutions for many random draws of its inputs.
 
-Every sample is solved on the cuts of the original mooring, or anew if this finds no equilibrium of
-the same kind, and must pass every check of a solution.
+Every sample is solved with the segments of the original mooring, or from scratch if this finds no
+equilibrium of the same kind. It must pass every check of a solution.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ LEVELS = (5.0, 50.0, 95.0)
 
 @dataclass(frozen=True)
 class Contribution:
-    """Fraction of a quantity's variance that one input explains, alone and in combination with
+    """Fractions of a quantity's variance that one input explains on its own, and together with
     other inputs.
     """
 
@@ -46,24 +46,24 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Uncertain:
-    """Percentiles of a mooring's results for uncertain inputs, in the order of `LEVELS`.
+    """Percentiles of a mooring's results for uncertain inputs; the percentiles are `LEVELS`.
 
     Attributes
     ----------
     result : result of the original mooring
-    samples, seed : size and seed of the sequence
+    samples, seed : size and seed of the random sequence
     failures : number of samples without equilibrium, by status; all other values are for the
         remaining samples
-    depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, the anchor last; knockdown
-        is NaN if the line has no unique shape in still water [m], [m], [degrees], [N]
-    offset : (3, p) offset of the top of each piece from the anchor, in the direction of the free
-        end [m]
+    depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, with the anchor last [m],
+        [m], [degrees], [N]; knockdown is NaN if the line has no unique shape in still water
+    offset : (3, p) horizontal distance of the top of each piece from the anchor, in the direction
+        of the free end [m]
     clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, in the
         same units
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions to the top's knockdown, or at the surface to its excursion; empty
-        if it does not vary
-    unexplained : share of this variance that the fit of the indices does not explain
+    contributions : contributions of the inputs to the variance of the top's knockdown, or of its
+        excursion if it is at the surface; empty if there is no variance
+    unexplained : fraction of this variance that the fit does not explain
     """
 
     result: Result
@@ -83,12 +83,11 @@ class Uncertain:
 
     @property
     def failed(self) -> int:
-        """Number of samples without equilibrium."""
         return sum(self.failures.values())
 
     @property
     def clamped(self) -> list[tuple[int, str]]:
-        """Component index and label for each clamp."""
+        """Index of the component, and label, for each clamp."""
         given = self.result.clamps
         return list(zip(given.index, given.label, strict=True))[: self.clamps.shape[2]]
 
@@ -141,11 +140,11 @@ def uncertain(
 
     Parameters
     ----------
-    result : result of a mooring; the draws follow `uncertainty` in its file
+    result : result of a mooring; `uncertainty` in its file defines the distributions of the inputs
     samples : a power of two from `FEWEST` to `MOST`
     seed : seed of the scrambling; the same seed gives the same results
-    mapped : function that applies the solver to blocks of samples
-    normals : function that returns `normals_of(samples, seed)`, if another process computes it
+    mapped : function that applies the solver to blocks of samples, like `map`
+    normals : function that returns `normals_of(samples, seed)`, in case another process computes it
 
     Raises
     ------
@@ -196,8 +195,8 @@ def uncertain(
 def _figures(
     leg: Leg, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Compute values (5, p + m) of the pieces and clamps and values of the anchor, for each
-    draw.
+    """For each draw, compute the values of the pieces and clamps (5, p + m), and the anchor tension
+    and required weight.
     """
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(leg, draws):
@@ -225,7 +224,6 @@ def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
 
 
 def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution, ...]:
-    """List the contributions in decreasing order."""
     if indices is None:
         return ()
     found = [
@@ -250,7 +248,7 @@ class Indices:
     ----------
     first : (k,) first-order index of each input
     total : (k,) total index of each input
-    unexplained : share that no term of the fit explains
+    unexplained : fraction that no term of the fit explains
     """
 
     first: Floats
@@ -261,11 +259,12 @@ class Indices:
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     """Estimate the Sobol' indices of a quantity from samples, by a fit of Hermite polynomials.
 
-    A quantity y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), with ψ_a
-    products of normalised Hermite polynomials. These are orthonormal, so c_a² is the contribution
-    of a term to the variance. The sum over all terms of one input alone gives its first-order
-    index, and the sum over all terms that contain the input its total index. The coefficients are
-    found by least squares (Sudret, Reliability Engineering and System Safety 93, 2008, 964-979).
+    A quantity y of independent standard normal inputs z is expanded as y = Σ c_a ψ_a(z), where the
+    ψ_a are products of normalised Hermite polynomials. These are orthonormal, so c_a² is the
+    contribution of a term to the variance. The sum over all terms of one input alone gives its
+    first-order index, and the sum over all terms that contain the input its total index. The
+    coefficients are found by least squares (Sudret, Reliability Engineering and System Safety 93,
+    2008, 964-979).
 
     Parameters
     ----------

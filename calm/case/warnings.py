@@ -1,4 +1,4 @@
-"""Warnings about doubtful results, one small function per warning."""
+"""Warnings about doubtful results; each warning has its own function."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ def is_synthetic(component: Component) -> bool:
 
 
 def counted_working_load(component: Component) -> float | None:
-    """Return the working load used to check a component [N]; None without one.
+    """Return the working load used to check a component [N]; None if there is none.
 
-    Tables of synthetic ropes list a working load for lifting, a twelfth to a seventh of the
-    breaking load. A rope with a breaking load is checked against the breaking load only.
+    Tables of synthetic ropes list a working load for lifting, which is a twelfth to a seventh of
+    the breaking load. Therefore only the breaking load of such a rope is checked, if it is known.
     """
     if is_synthetic(component) and component.breaking_load is not None:
         return None
@@ -144,8 +144,8 @@ def unknown_stretch(component: Component, tension: float) -> list[float] | None:
     """Return the strains of a synthetic rope for the published stiffnesses, in decreasing order
     [-].
 
-    None if the component is not a synthetic rope or has its own stiffness; empty if no stiffness is
-    published.
+    Return None if the component is not a synthetic rope or has its own stiffness, and an empty list
+    if no stiffness is published.
     """
     if not isinstance(component, Cable) or not is_synthetic(component):
         return None
@@ -156,9 +156,7 @@ def unknown_stretch(component: Component, tension: float) -> list[float] | None:
 
 
 def _published(strains: list[float]) -> str:
-    """Describe the stretch that follows from published stiffnesses, given the strains in decreasing
-    order.
-    """
+    """Describe the stretch for the published stiffnesses, given the strains in decreasing order."""
     if not strains:
         return "no stiffness of such ropes has been published."
     if len(strains) == 1:
@@ -194,7 +192,7 @@ def _beyond_the_table(result: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
-    """Warn about fast flow past a towed line; the design check does not cover tows."""
+    """Warn about fast flow past a tow, because the design check does not cover tows."""
     fast = fast_pieces(result)
     if fast:
         row, limit = fast[0]
@@ -207,10 +205,10 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
-    """Return the spheres and cylinders whose Reynolds number exceeds the range of their drag
+    """Return the spheres and cylinders whose Reynolds number exceeds the valid range of their drag
     coefficient.
 
-    Each is returned with its limit; the largest ratio is first.
+    Each is returned with the limit of the range; the piece with the largest ratio is first.
     """
     curves = [*result.leg.line.drag_curve, None]
     rows = [
@@ -311,9 +309,7 @@ def _other_equilibrium(_: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
-    """Warn that a float of unknown draft is treated as just immersed, or has the drag coefficient
-    `k_surface`.
-    """
+    """Warn if the draft of a surface float is unknown, and state the assumption."""
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
         afloat = [result.components.label[piece] for piece in solution.afloat]

@@ -1,3 +1,3 @@
-"""Rules of the design check, for a catalogue and for a solved line: small functions, each with its
+"""Rules of the design check for catalogues and solved lines; each rule is a small function with its
 source.
 """

@@ -41,9 +41,9 @@ _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
 GRAPPLED = 100.0
-"""Water depth up to which a single release is accepted [m]; a default of CALM.
-
-In shallow water, a line whose release fails can be dived or grappled for."""
+"""Water depth up to which a single release is accepted [m]; a default of CALM. In shallow water, a
+diver or a grapnel can recover a line whose release fails.
+"""
 
 LEAST_BELOW_RELEASE = 1.0
 """Minimum height of a release above its anchor [m]; a default of CALM."""
@@ -51,9 +51,7 @@ LEAST_BELOW_RELEASE = 1.0
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Check that the line has an in-line release, and that opening this release frees the
-    mooring.
-    """
+    """Check that the line has an in-line release, and that opening it frees the mooring."""
     leg = handling.leg
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
@@ -129,7 +127,7 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
     """Check for a swivel between each wire that is not torque-balanced and the next tilting float.
 
     Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
-    that rotation, and the wire kinks. A swivel at either end lets the wire turn; so do chain and
+    this rotation, so the wire kinks. A swivel at either end lets the wire turn, and so do chain and
     synthetic rope, which transmit no torque.
     """
     pieces = handling.leg.file.pieces
@@ -163,8 +161,8 @@ def _bears_torque(component: Component) -> bool:
 
 
 def _held_by(pieces_there: Sequence[Piece]) -> tuple[Piece, bool] | None:
-    """Find the float at one end of a wire, and whether a swivel lies between them; None without a
-    float.
+    """Find the next float beyond one end of a wire, and whether a swivel lies between them; None
+    without a float.
     """
     has_swivel = False
     for piece in pieces_there:
@@ -178,16 +176,12 @@ def _held_by(pieces_there: Sequence[Piece]) -> tuple[Piece, bool] | None:
 
 
 _TOUCH = 0.05
-"""Accepted overlap of neighbouring clamps [m]; clamped instruments may sit beside each other on the
-line.
-"""
+"""Accepted overlap of neighbouring clamps [m]; clamped instruments may be mounted side by side."""
 
 
 @rule("clamp-place", once=True)
 def clamp_place(handling: Handling) -> Iterator[Verdict]:
-    """Report clamps on a cable or chain that overlap, or extend beyond its end into the
-    next piece.
-    """
+    """Report clamps on a cable or chain that overlap or extend beyond its end."""
     leg = handling.leg
     lengths = leg.line.length.tolist()
     remedy = "Move it to a free position, or check its `at` and its length."
@@ -219,7 +213,7 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 
 @rule("metals", once=True)
 def metals(handling: Handling) -> Iterator[Verdict]:
-    """Report contacts between metals far apart in the galvanic series, if both materials are known.
+    """Report contacts between dissimilar metals, if both materials are known.
 
     Pieces and clamps that are `insulated` have no contact. Instrument clamps have plastic jaws, so
     a clamp is in contact with its line only if its component has `insulated: false`.
@@ -242,7 +236,7 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Yield the contacts of dissimilar metals: the less noble part, the more noble part, their
+    """Yield the contacts of dissimilar metals: the less noble part, the more noble part, and their
     potential difference [V].
 
     A part that is `insulated` has no contact.
@@ -271,8 +265,8 @@ _HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Check the axial force on each clamp [N], from its submerged weight and the drag of the
-    current.
+    """Check the grip of each clamp against its axial force [N], which comes from its submerged
+    weight and the drag of the current.
     """
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
@@ -287,10 +281,11 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
-    """Check the larger axial force on each clamp [N] during anchor descent and ascent.
+    """Check the grip of each clamp against its larger axial force [N] during anchor descent and
+    ascent.
 
-    The descent speed is the maximum of the launch, the ascent speed the terminal rise speed. Drag
-    coefficients are those for flow along the axis of the clamped item.
+    The descent speed is the maximum during the anchor drop, and the ascent speed is the terminal
+    rise speed. The drag of the clamped item is its drag in flow along the line.
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -320,8 +315,8 @@ McLane Moored Profiler, user manual.
 def profiler(result: LegResult) -> Iterator[Verdict]:
     """Check the tension, wire, path and drive force of each profiler at its present position.
 
-    The situations with the profiler at its stops are checked in the same way. Along the wire, the
-    flow past the profiler is its own speed plus at most the current times the sine of the tilt.
+    Situations with the profiler at other positions are checked in the same way. Along the wire, the
+    flow past the profiler is at most its own speed plus the current times the sine of the tilt.
     Wheel friction and the effect of compressibility on its weight are unknown and neglected.
     """
     for row in result.clamps:
@@ -373,7 +368,9 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
 
 
 def _path_obstacles(part: Clamp, wire: Piece) -> Iterator[Verdict]:
-    """Yield obstacles to a profiler: clamps on its path, or a wire of unsuitable diameter."""
+    """Yield reasons why a profiler cannot travel: clamps on its path, or a wire of unsuitable
+    diameter.
+    """
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:

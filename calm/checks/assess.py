@@ -1,12 +1,12 @@
 """Apply the design rules to moorings.
 
-Each mooring is checked in each of its environments, then for launch, recovery and breaks.
+Each mooring is checked in each of its environments, and then for launch, recovery and breaks.
 
-If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability of
-exceeding it. The limits of a mooring in equilibrium are counted in every sample, in the situation
-of the finding. A launch or an ascent takes as long to solve as many equilibria, so launch, recovery
-and breaks are counted in the first `HANDLED` samples only. A sample without equilibrium counts as
-exceeding every limit.
+If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability
+that the limit is exceeded. To estimate it, random samples of the mooring are solved in the
+situation of the finding, and those that exceed the limit are counted. A launch or an ascent takes
+as long to solve as many equilibria, so launch, recovery and breaks are solved for the first
+`HANDLED` samples only. A sample without equilibrium counts as exceeding every limit.
 """
 
 from collections import Counter
@@ -72,12 +72,14 @@ def checked_environment(
 ) -> MooringInEnvironment:
     """Apply the rules to a leg in all its situations.
 
-    `findings` lists all findings as given, and those of other situations that have a worse state.
-    `tighter` lists findings of other situations with a larger utilisation. A failure that occurs
-    only with strumming cables is reduced to a warning, because the cables may not strum.
+    In the result, `findings` has all findings of the unchanged mooring, and the findings of other
+    situations that have a worse state. `tighter` has the findings of other situations with a larger
+    utilisation. A failure that occurs only with strumming cables becomes a warning, because the
+    cables may not strum.
 
     Parameters
     ----------
+    situations : solved situations, beginning with the unchanged mooring
     name : name of the mooring in its findings
     day : date on which acceptances must be valid; today by default
     """
@@ -105,8 +107,8 @@ def checked_environment(
 
 
 def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
-    """Yield, for each rule and part, the governing finding of `others` if its utilisation exceeds
-    that of the listed finding.
+    """For each rule and part, yield the governing finding of `others` if its utilisation is larger
+    than in `listed`.
     """
     known: dict[tuple[str, Place | None], float] = {}
     for one in listed:
@@ -121,7 +123,8 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Assess a mooring in all its environments, and its handling in one environment.
+    """Assess a mooring from its findings in all environments, and check launch, recovery and
+    breaks.
 
     Launch, recovery and breaks are checked in the first environment that has an equilibrium.
 
@@ -167,8 +170,8 @@ def assessment_of(
 
 
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
-    """Return the moorings in their environments, with the codes of load cases added to their
-    findings, and with the governing weight in all remedies for an anchor that is too light.
+    """Add the codes of load cases to all findings. Set the anchor weight in all remedies to the
+    largest required weight.
     """
     numbers = _numbers(in_environments)
     every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
@@ -200,7 +203,7 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Add the load case of the environment to findings on currents and drag coefficients."""
+    """Add the load case of the environment to findings about currents and drag coefficients."""
     numbers = _numbers(in_environments)
     return [
         replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
@@ -211,8 +214,8 @@ def cased(
 
 
 def _numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
-    """Number the environments in order; each counts under its own name and under its name in
-    `in_environments`.
+    """Number the environments in order. Keys are the names of the environments, and the names used
+    in `in_environments`.
     """
     numbers: dict[str, int] = {}
     for stand in in_environments:
@@ -226,7 +229,9 @@ def _numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Yield the findings of the rules that evaluate all environments of a mooring together."""
+    """Yield the findings of the rules on currents and environments, which compare all environments
+    of a mooring.
+    """
     for each in OF_ENVIRONMENTS:
         for leg, verdict in each.judge(legs):
             yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
@@ -239,14 +244,16 @@ OF_ENVIRONMENTS = (currents, environment)
 def findings_of_drag(
     results: Sequence[LegResult], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Yield the findings on drag coefficients, over all environments of a mooring."""
+    """Yield the finding about drag coefficients, which takes all environments of a mooring into
+    account.
+    """
     for result, verdict in drag_coefficient.judge(results):
         environment = result.file.environment.name or OWN
         yield acceptance.of(drag_coefficient.find(verdict, name, environment))
 
 
 def moving(legs: Iterable[Leg]) -> bool:
-    """Return whether current or wind acts on any of the legs."""
+    """Return whether there is current or wind in the environment of any leg."""
     return any(
         np.hypot(each.water.u, each.water.v).max() >= situations.LEAST_CURRENT
         or each.file.environment.wind is not None
@@ -257,9 +264,10 @@ def moving(legs: Iterable[Leg]) -> bool:
 def findings_of(
     situation: Situation, mooring: str, environment: str, *, day: date | None = None
 ) -> Iterator[Finding]:
-    """Yield the findings of the per-situation rules for one situation.
+    """Yield the findings of all rules that are evaluated in each situation.
 
-    Findings on a stand-in anchor and on the held top of a leg are omitted.
+    Findings about a stand-in anchor are omitted, and so are rules that do not apply to a leg whose
+    top is held.
 
     Parameters
     ----------
@@ -277,7 +285,9 @@ def findings_of(
 
 @lru_cache(maxsize=16)
 def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
-    """Evaluate each rule in a situation; cached because environments may share situations."""
+    """Evaluate each rule in a situation. The verdicts are cached because environments may share
+    situations.
+    """
     assert situation.result is not None
     file, result = situation.result.file, estimated_result(situation.result)
     end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
@@ -311,7 +321,7 @@ def _of(finding: Finding) -> tuple[str, Place | None]:
 
 
 def handled(leg: Leg, result: LegResult) -> Handling:
-    """Solve launch, recovery and breaks of a mooring in equilibrium; a failure is recorded with its
+    """Solve launch, recovery and breaks of a mooring in equilibrium; if one fails, record the
     reason.
     """
     launch = or_why_not(launch_of, leg)
@@ -348,10 +358,10 @@ _ORDER = list(TEXTS)
 
 
 def _judging(*, once: bool) -> tuple[Rule, ...]:
-    """Collect the rules of the modules in the order of the manual; rules for a fixed situation come
-    last.
+    """Collect the rules of the modules in the order of the manual. Rules for a particular situation
+    come last.
 
-    The rule `currents` is excluded because it considers all environments together.
+    The rules `equilibrium` and `currents` are excluded because they are evaluated separately.
     """
     found = chain.from_iterable(vars(module).values() for module in _MODULES)
     rules = [each for each in found if isinstance(each, Rule) and each.once == once]
@@ -414,8 +424,8 @@ def with_probabilities(
 def _stand(
     stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
 ) -> MooringInEnvironment:
-    """Add probabilities to the findings of one environment, for every situation with a listed
-    finding.
+    """Add probabilities to the findings in one environment, for every situation that has
+    findings.
     """
     found = [stand.findings, stand.tighter, stand.accepted]
     wanted = {finding.situation for each in found for finding in each}
@@ -429,8 +439,8 @@ def _stand(
 def _probable(
     findings: tuple[Finding, ...], broken: Counter[Key], samples: int, situation: str | None = None
 ) -> tuple[Finding, ...]:
-    """Add the probability of exceeding the limit to all findings that have a limit, in a given
-    situation or in all.
+    """Add the probability that the limit is exceeded to all findings with a limit, in one situation
+    or in all.
     """
     return tuple(
         replace(one, probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
@@ -447,7 +457,9 @@ _ALL: Key = ("", None)
 def _broken(
     leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
 ) -> Counter[Key]:
-    """Count samples that exceed each limit, in equilibrium or (if not `standing`) in handling."""
+    """Count the samples that exceed each limit, in equilibrium or, if not `standing`, during
+    launch, recovery and breaks.
+    """
     block = BLOCK if standing else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
     broken: Counter[Key] = Counter()
@@ -472,7 +484,7 @@ def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
 
 
 def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
-    """Return the rule and the place of every exceeded limit."""
+    """Return the rule and the part for every exceeded limit."""
     return {
         (rule.name, verdict.place)
         for rule in rules

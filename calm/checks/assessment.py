@@ -1,4 +1,4 @@
-"""Assessment of a mooring: in each of its environments, during deployment, and during recovery."""
+"""Assessment of a mooring: in each of its environments, during launch and during recovery."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ draft.
 
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """A mooring solved in an environment, as given or with one changed input.
+    """A mooring that was solved in an environment, either unchanged or with one changed input.
 
     Either `result` or `failure` is None. Several environments may share a situation.
     """
@@ -67,9 +67,11 @@ class MooringInEnvironment:
     ----------
     environment : name of the environment
     leg : leg of the design; a net has one `MooringInEnvironment` per leg and environment
-    situations : solved situations, starting with the one as given
-    findings : all findings as given, and those of other situations with a worse state
-    tighter : per rule and part, the finding of another situation with a larger utilisation
+    situations : solved situations, beginning with the unchanged mooring
+    findings : all findings of the unchanged mooring, and findings of other situations with a worse
+        state
+    tighter : for each rule and part, the finding of another situation with a larger utilisation, if
+        any
     accepted : accepted findings of every situation, including unlisted ones
     lacking : findings of every situation that lack a value; not in `findings`
     """
@@ -84,7 +86,7 @@ class MooringInEnvironment:
 
     @property
     def result(self) -> LegResult | None:
-        """Result for the environment as given; None without equilibrium."""
+        """Result for the unchanged mooring; None without equilibrium."""
         return self.situations[0].result
 
 
@@ -96,11 +98,11 @@ class Assessment:
     ----------
     name : name of the mooring, unique among the moorings checked together
     in_environments : one entry per environment, at least one
-    launch, recovery : in the first environment; None if they could not be solved
-    backup : a break at each connection above the release, from the top
-    inventory : pieces and clamps as handled on deck
+    launch, recovery : solutions in the first environment; None if they could not be solved
+    backup : results for a break at each connection above the release, from the top
+    inventory : pieces and clamps as they are handled on deck
     findings : findings on launch, recovery and breaks
-    losses : loss of each buoyant element above the release, from the top
+    losses : results for the loss of each buoyant element above the release, from the top
     limits : limits applied to the mooring
     notices : notices on acceptances that have expired or are unused
     draws : number of samples and seed of the probabilities; None without probabilities
@@ -119,7 +121,6 @@ class Assessment:
     draws: tuple[int, int] | None = None
 
     def __repr__(self) -> str:
-        """Number of findings in each state, as text."""
         counts = Counter(finding.state for finding in self.all_findings())
         numbers = ", ".join(f"{count} {state}" for state, count in counts.items())
         return f"{self.name}: {self.state} ({numbers})"
@@ -130,16 +131,16 @@ class Assessment:
         return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Yield all findings: those of the environments first, then launch, recovery and breaks."""
+        """Yield the findings in all environments, and then the findings on launch, recovery and
+        breaks.
+        """
         for stand in self.in_environments:
             yield from stand.findings
         yield from self.findings
 
     @property
     def state(self) -> State:
-        """Worst state of all findings; pass if there is no worse state than accepted or not
-        judged.
-        """
+        """Worst state of all findings; pass if the worst state is accepted or not judged."""
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
@@ -150,7 +151,7 @@ class Assessment:
 
     @property
     def draft(self) -> bool:
-        """Whether the assessment relies on an acceptance of an example file, which nobody has
+        """Whether the assessment relies on an acceptance in an example file, which nobody has
         signed.
         """
         return any(
@@ -158,14 +159,14 @@ class Assessment:
         )
 
     def every_finding(self) -> Iterator[Finding]:
-        """Yield all findings, followed by findings of other situations with a larger
+        """Yield all findings, and then the findings of other situations with a larger
         utilisation.
         """
         yield from self.all_findings()
         yield from self.tighter_findings()
 
     def accepted_findings(self) -> list[Finding]:
-        """Return the governing accepted finding of each rule and component."""
+        """Return the governing accepted finding for each rule and component."""
         every = (*(one for stand in self.in_environments for one in stand.accepted), *self.findings)
         accepted = (one for one in every if one.accept is not None)
         found = grouped_by(accepted, lambda one: (one.rule, one.component))
@@ -181,9 +182,11 @@ class Assessment:
 
 @dataclass(frozen=True)
 class Handling:
-    """Input of the rules that are evaluated once per mooring: launch, recovery and breaks, or the
-    reasons why these could not be solved, and the result in the first environment. `result` is None
-    without equilibrium.
+    """Input of the rules that are evaluated once per mooring.
+
+    `launch` and `recovery` are solutions or the reasons why there are none; `backup` and `losses`
+    are the results for breaks and lost floats. `result` is the result in the first environment, or
+    None without equilibrium.
     """
 
     leg: Leg
@@ -196,7 +199,7 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Acceptances in a mooring file on a given day; they apply to failures and unknowns only.
+    """Acceptances in a mooring file on a given day, for findings that fail or are unknown.
 
     `parts` maps labels to the pieces and clamps of the line.
     """
@@ -215,9 +218,9 @@ class Acceptance:
 
     def of(self, finding: Finding) -> Finding:
         """Mark a finding as estimated if it relies on an estimate, and as accepted if the file
-        accepts this finding.
+        accepts it.
 
-        An acceptance of the rule `missing` covers every rule that lacks a value of that component.
+        An acceptance of the rule `missing` covers every rule that lacks a value of the component.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -237,13 +240,13 @@ class Acceptance:
         environment: str,
         situation: str = AS_GIVEN,
     ) -> Iterator[Finding]:
-        """Yield the findings of a rule for a mooring in an environment, after acceptances are
-        applied.
-        """
+        """Convert the verdicts of a rule to findings, and apply the acceptances."""
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
-        """Mark a pass that relies on a lower bound as estimated, and such a failure as unknown."""
+        """Change a pass that relies on a lower bound to estimated, and a failure that relies on it
+        to unknown.
+        """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         own = {} if part is None or not figures else part.component.estimates
         used = [one for name, one in own.items() if name in figures]
@@ -281,7 +284,7 @@ class Acceptance:
 def _accepted(finding: Finding, accept: Accept) -> Finding:
     """Mark a finding as accepted, unless the tension exceeds the accepted load.
 
-    If the finding has no limit of its own, the accepted load becomes its limit.
+    The accepted load becomes the limit of a finding without limit.
     """
     accepted = replace(finding, state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
     load, tension = accept.load, finding.value
@@ -299,8 +302,8 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
 def estimated(leg: Leg) -> Leg:
     """Return a copy of a leg in which the lower bounds of estimates replace missing values.
 
-    The bounds are those for a line moved by waves if the environment has waves, or if the float of
-    the line is at the surface.
+    If the environment has waves or the float of the line is at the surface, these are the bounds
+    for a line that is moved by waves.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):
@@ -317,7 +320,7 @@ def estimated(leg: Leg) -> Leg:
 
 
 def estimated_result(result: LegResult) -> LegResult:
-    """Return a copy of a result whose leg has the lower bounds of estimates, see `estimated`."""
+    """Return a copy of a result whose leg is the one returned by `estimated`."""
     judged = estimated(result.leg)
     return result if judged is result.leg else replace(result, leg=judged)
 

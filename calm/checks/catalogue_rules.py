@@ -1,6 +1,6 @@
 """Rules on component values: impossible values and missing values, in a catalogue or in a design.
 
-Only specified values are checked. A missing value is no fault, except a missing source.
+A missing value is not a fault, except a missing source.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -95,7 +95,7 @@ _NO_SOURCE = "has no `source` for its values"
 
 @dataclass(frozen=True)
 class CatalogueFinding:
-    """Impossible value in the definition of a component, which is identified by its id."""
+    """Fault in the definition of a component; `id` identifies the component."""
 
     id: str
     message: str
@@ -104,9 +104,9 @@ class CatalogueFinding:
 def check_catalogue(
     definitions: Mapping[str, Defined], known: Collection[str]
 ) -> list[CatalogueFinding]:
-    """List all findings on the definitions of a catalogue, by component id.
+    """List all findings about the definitions of a catalogue, ordered by component id.
 
-    `known` contains all ids to which the parts of an assembly, or a `prefer`, may refer.
+    `known` contains all ids to which `prefer` or the parts of an assembly may refer.
     """
     findings = []
     for identifier, definition in definitions.items():
@@ -134,8 +134,10 @@ def check_catalogue(
 
 
 def _sources(component: Component | Outline) -> Iterator[str]:
-    """Yield faults of the sources: no source, a source for an absent value, or a value that is
-    present although `searched` lists it as unpublished.
+    """Yield faults of the sources of a component.
+
+    These are a missing source, a source for an absent value, and a value that `searched` lists as
+    unpublished.
     """
     known = KINDS[component.kind].model_fields
     given = {name for name in known if getattr(component, name, None) is not None}
@@ -210,7 +212,6 @@ def impossible(component: Component) -> Iterator[str]:
 
 
 def _of_a_load(component: Component) -> Iterator[str]:
-    """Yield the loads of a component that are impossible for its kind, size and mass."""
     most, size = inf, ""
     if not isinstance(component, Flexible) and not materials.fibre_of(component.material):
         mass, length = component.mass, component.length
@@ -220,16 +221,16 @@ def _of_a_load(component: Component) -> Iterator[str]:
 
 
 def _displaced(component: Component, mass: float) -> float:
-    """Return the weight of the displaced water, as implied by net force and mass [N or N/m]."""
+    """Return the weight of the displaced water from net force and mass [N or N/m]."""
     return component.net_buoyancy + mass * STANDARD_GRAVITY
 
 
 def _of_a_rope(rope: Cable) -> Iterator[str]:
-    """Yield values with which a rope would be heavier, stiffer, stronger or more buoyant than its
-    section allows.
+    """Yield values that make a rope too heavy, too stiff, too strong or too buoyant for its
+    cross-section.
 
-    The weight of the rope is compared with that of a solid bar with the specified `density`, else
-    with the density of its `material`, else of steel.
+    The weight of the rope is compared with that of a solid bar. Its density is the specified
+    `density`, or else that of the `material`, or else that of steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
@@ -278,8 +279,8 @@ SMALL_BODY = 1e-3
 
 
 def _drags_out_of_range(component: Component) -> Iterator[str]:
-    """Yield drag coefficients outside the range for the kind of component, and drag too small for
-    the volume of a body.
+    """Yield drag coefficients outside the range for the kind of component, and a drag that is too
+    small for the volume of a body.
     """
     mass = mass_in_air(component)
     if isinstance(component, Shaped) and mass is not None:
@@ -350,7 +351,6 @@ def figures(handling: Handling) -> Iterator[Verdict]:
 
 
 def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
-    """Report a material that CALM does not know."""
     material = component.material
     if material and not materials_in(material):
         near = nearest(material, [each.name for each in materials.MATERIALS])
@@ -378,7 +378,7 @@ class MissingFigures:
 
 
 def missing_figures(definitions: Mapping[str, Defined]) -> list[MissingFigures]:
-    """List the components of a catalogue with missing values, and these values.
+    """List the components of a catalogue that have missing values, with these values.
 
     Assemblies are skipped because they have no values of their own.
     """

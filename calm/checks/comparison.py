@@ -27,11 +27,11 @@ class Compared:
 
     Attributes
     ----------
-    name : dotted name, such as ``top.depth``
+    name : dotted name of the quantity, such as ``top.depth``
     title : title for display
     quantity : name in `calm.quantities`; "" for a text
     before, after : values in SI units or degrees, or texts; None if unknown
-    states : for a margin, the states of its rule in both designs
+    states : if the value is a margin, the states of its rule in both designs
     of_a_part : whether the value belongs to a piece or a clamp
     """
 
@@ -62,7 +62,7 @@ class Comparison:
     notes: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object; unknown values are None."""
+        """Return the JSON object; None stands for unknown values."""
         found = self.differences
         return {
             "names": list(self.names),
@@ -87,7 +87,8 @@ _Figures = dict[str, tuple[str, str, Number | str]]
 
 
 def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:
-    """Solve, assess and compare two moorings, nets or tows, even if one has no equilibrium.
+    """Solve, assess and compare two moorings, nets or tows. A design without equilibrium is
+    compared as far as possible.
 
     Parameters
     ----------
@@ -118,7 +119,6 @@ def _solved(design: Design) -> _Solved:
 
 
 def _figures_of(design: _Solved) -> _Figures:
-    """Collect the values of a whole design, in the order of printing."""
     result, assessment = design
     stands = not isinstance(result, NoEquilibrium)
     found: _Figures = {"status": ("status", "", "stands" if stands else "does not stand")}
@@ -186,7 +186,6 @@ def _figures_of_legs(result: Result) -> _Figures:
 
 
 def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """Compare depth and tilt of instruments, and cut lengths of cables and chains."""
     first, second = (
         {} if isinstance(each, NoEquilibrium) else rows_by_place(each) for each, _ in designs
     )
@@ -207,7 +206,9 @@ def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Com
 
 
 def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """Compare the governing utilisation of each rule, or its margin if it has no utilisation."""
+    """Compare the governing utilisation of each rule, or the margin of a rule without
+    utilisation.
+    """
     judged = [assessment for _, assessment in designs if assessment is not None]
     if len(judged) < 2:
         return
@@ -229,7 +230,6 @@ def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
 
 
 def _finite(value: Number | str) -> Number | str:
-    """Convert an infinite value to None, for JSON."""
     return None if isinstance(value, float) and not isfinite(value) else value
 
 

@@ -1,7 +1,7 @@
 """Criteria: upper or lower limits on a quantity of a part of the line.
 
-The design check evaluates a criterion for one result; batch statistics count its violations over
-all profiles.
+The design check evaluates a criterion for one result. Batch statistics count the profiles that
+violate it.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -32,7 +32,7 @@ class JudgedPart:
     ----------
     label, place : unique within the line
     component : definition of the part
-    index : index from the top of the piece, or of the piece that carries the clamp
+    index : index of the piece, or of the piece that carries the clamp, counted from the top
     clamp : index among all clamps of the line, as in results; None for a piece
     """
 
@@ -51,8 +51,8 @@ def pieces_of(leg: Leg) -> list[JudgedPart]:
 
 
 def parts_of(leg: Leg) -> list[JudgedPart]:
-    """Return the pieces above the anchor, then all clamps including those on the anchor, each from
-    the top down.
+    """Return the pieces above the anchor from the top down, then all clamps from the top down,
+    including clamps on the anchor.
     """
     pieces = leg.file.pieces
     on = [piece.index for piece in pieces for _ in piece.clamps]
@@ -75,11 +75,12 @@ class Criterion:
     words : function that returns message and remedy for a value (NaN if unknown)
     least : whether the limit is a lower limit
     beyond : state if the limit is exceeded: fail or warn
-    silent : whether NaN means that the criterion does not apply, rather than unknown
+    silent : whether NaN means that the criterion does not apply, instead of an unknown value
     source : source of the limit; "" for the source of the rule
     lacks : missing key of the component if there is no limit
-    stated : function that returns value and limit in the customary form, with the same margin
-    stated_least : whether the stated limit is a lower limit
+    stated : function that converts value and limit to the customary quantity, which has the same
+        margin
+    stated_least : whether the limit of the customary quantity is a lower limit
     """
 
     part: JudgedPart
@@ -124,7 +125,7 @@ def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdi
 def criteria(
     name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Leg], Iterator[Criterion]]], Rule]:
-    """Create the rule of a given name from a function that yields the criteria of a mooring."""
+    """Create the rule called `name` from a function that yields the criteria for a leg."""
 
     def of(criteria_of: Callable[[Leg], Iterator[Criterion]]) -> Rule:
         def judge(result: LegResult) -> Iterator[Verdict]:
@@ -152,8 +153,8 @@ def _depth(result: LegResult, part: JudgedPart) -> float:
 
 
 def _offset(result: LegResult) -> float:
-    """Return the horizontal distance of the top from the anchor, which in a net need not be at the
-    origin.
+    """Return the horizontal distance of the top from the anchor, whose position in a net may differ
+    from the origin.
     """
     anchor = result.components[-1]
     return hypot(result.top.x - anchor.x_top, result.top.y - anchor.y_top)
@@ -186,10 +187,10 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Return every limit that the design check applies to a mooring.
 
     Limits that the design does not set have their defaults; limits without default apply only if
-    set. The friction coefficient of an anchor, if specified, overrides `anchor_friction`. A load
-    that the line allows beyond the component's own definition counts as a departure from a limit,
-    and so does every other setting that only makes results look better. A mooring intended for the
-    surface has a limit on the depth of its top only if the design sets one.
+    set. The friction coefficient of an anchor, if specified, overrides `anchor_friction`. The list
+    includes load ratings that the line raises above those of the component, and all other settings
+    that make results look better. A mooring designed to reach the surface has a limit on the depth
+    of its top only if the design sets one.
     """
     given = file.checks.minimum_top_depth is not None
     used = (
@@ -224,7 +225,7 @@ def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
 
 
 def cited(file: MooringFile, *names: str) -> str:
-    """Describe the named limits that differ from their defaults; "" if there are none."""
+    """Return the text about the named limits that differ from their defaults, or an empty text."""
     return "; ".join(
         f"The design's own `{key.name}`, {limit_value_text(key, key.value)} instead of "
         f"{limit_value_text(key, key.default)}"
@@ -234,8 +235,8 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def limit_value_text(key: LimitKey, value: float | None) -> str:
-    """Format the value of a limit with its unit (times in days, fractions in percent), or a
-    dash.
+    """Format the value of a limit with its unit: times in days, fractions in percent, and a dash
+    for no value.
     """
     if value is None:
         return "-"

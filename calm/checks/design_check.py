@@ -1,6 +1,7 @@
-"""The design check: each leg in each environment, then handling, breaks and composition.
+"""The design check: each leg in each environment, then launch, recovery, breaks and composition.
 
-Waves, launch and recovery are solved and checked for a single line only, breaks also for nets.
+Waves, launch and recovery are solved and checked for a single line only; breaks are checked for
+nets, too.
 """
 
 from collections.abc import Sequence
@@ -69,7 +70,8 @@ def environments_checked(
 ) -> list[MooringInEnvironment]:
     """Solve a design in its environment and in all situations, and apply the rules to each leg.
 
-    A design without equilibrium has one stand, with the reason.
+    The list has one entry per leg. For a design without equilibrium, it has a single entry with the
+    reason.
 
     Parameters
     ----------
@@ -94,7 +96,7 @@ def environments_checked(
 
 
 def failed_environment(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
-    """Record a design for which there is no equilibrium, or for which the check failed."""
+    """Return the entry for a design that has no equilibrium, or whose check failed."""
     environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
     return assess.checked_environment((situation,), design.legs[0], name, environment)
 
@@ -102,7 +104,7 @@ def failed_environment(design: Design, name: str, failure: NoEquilibrium) -> Moo
 def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Check the composition, the breaks and the handling of a design.
+    """Check composition, breaks, launch and recovery of a design, and build the assessment.
 
     Parameters
     ----------
@@ -164,9 +166,7 @@ def assessment_of(
 
 
 def _whole(legs: Sequence[Leg], surface: bool) -> Leg:
-    """Join the pieces of all legs to a single leg, with a stand-in for an anchor as the
-    last piece.
-    """
+    """Join the pieces of all legs to a single leg, whose last piece is a stand-in for an anchor."""
     pieces = [piece for leg in legs for piece in leg.pieces]
     pieces.append(stand_in_anchor(0, len(pieces)))
     listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))

@@ -1,5 +1,5 @@
-"""Rule on drag coefficients outside their Reynolds range, and on the effect of a smooth shape's
-drag curve.
+"""Rule that checks drag coefficients against their Reynolds range, with the effect of the drag
+curve of a smooth shape.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ NOTICED = 1.05
 which the rule warns.
 """
 
-_Told = tuple[LegResult, Verdict]
+_LegVerdict = tuple[LegResult, Verdict]
 
 
 @rule("drag-coefficient")
-def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
-    """Check that the constant drag coefficients of spheres and cylinders cover their Reynolds
-    numbers.
+def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
+    """Check that the Reynolds numbers of spheres and cylinders are in the range of their constant
+    drag coefficients.
 
-    Yields at most one verdict per mooring, with the result of the environment that exceeds the
-    range most. The verdict is a warning if the drag curve of a smooth shape increases the
-    knockdown, and not judged otherwise.
+    Yield at most one verdict per mooring, for the environment that exceeds the range most. The
+    verdict is a warning if the drag curve of a smooth shape would increase the knockdown, and not
+    judged otherwise.
     """
     fast = [(result, fast_pieces(result)) for result in results]
     found = [(rows[0], result, rows) for result, rows in fast if rows]
@@ -51,8 +51,10 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
-    """Describe the effect of smooth-shape drag curves of the fast pieces on the knockdown, or on
-    the offset of a line at the surface. The flag is true if the result is less favourable.
+    """Describe how the drag curve of a smooth shape for the fast pieces changes the knockdown, or
+    the offset of a surface mooring.
+
+    The flag is true if the change is unfavourable.
     """
     file = result.file
     if file.solver.drag == "reynolds" or result.leg.of_several:

@@ -1,7 +1,7 @@
 """The rule `environment`: doubtful values in the environments of a mooring.
 
-The rule reports the `Environment.doubts` of each environment. A comparison of the environments
-reveals a storm that is weaker than the ordinary current, and missing wind for a float with a wind
+The rule reports the `Environment.doubts` of each environment. By comparing the environments, it
+also finds a storm that is weaker than the ordinary current, and missing wind if a float has a wind
 area.
 """
 
@@ -54,10 +54,11 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Warn if levels of the stronger current are much weaker than those of the ordinary current.
+    """Warn if the stronger of two currents is much weaker than the ordinary current at some levels.
 
-    A current counts as stronger by the name of its environment, or by its maximum. If only the
-    maximum is larger, the upper and lower ends of the profile may be weaker.
+    A current counts as the stronger one because of the name of its environment, or because its
+    maximum is larger. In the second case, it may be weaker at the upper and lower ends of the
+    profile.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)
@@ -91,7 +92,6 @@ def _speeds(current: CurrentTable, levels: Floats) -> Floats:
 
 
 def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
-    """Warn if a surface float has a wind area but no environment has wind."""
     top = legs[0].file.pieces[0]
     area = getattr(top.component, "wind_area", None)
     calm = all(leg.file.environment.wind is None for leg in legs)

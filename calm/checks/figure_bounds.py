@@ -1,6 +1,6 @@
-"""Bounds of component values by class: density, strength, drag, sign of the buoyancy.
+"""Plausible ranges of component values by class: density, strength, drag, sign of the buoyancy.
 
-The rules of a catalogue and of a design share this table: `DRAG_BOUNDS`, the constants here, and
+The rules for a catalogue and for a design share this table: `DRAG_BOUNDS`, the constants here, and
 the densities and strengths of `calm.physics.materials`. `docs/reference/catalogue.md` prints it.
 """
 
@@ -64,7 +64,7 @@ _BUOYANT = re.compile(
 
 @dataclass(frozen=True)
 class Bounds:
-    """Minimum and maximum plausible value of a parameter, and the source of these bounds."""
+    """Smallest and largest plausible value of a parameter, and the source of these bounds."""
 
     least: float
     most: float
@@ -123,9 +123,10 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
 
 
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
-    """Return the minimum and maximum breaking load of a cable or chain [N], and their basis.
+    """Return the minimum and maximum breaking load of a cable or chain [N], and the names of the
+    values from which they follow.
 
-    None for other kinds.
+    Return None for other kinds.
     """
     if isinstance(component, Chain):
         bars = 2.0 * rope_section(component)
@@ -158,8 +159,8 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
 
     Parameters
     ----------
-    most, size : maximum load of a component other than cable or chain [N] (inf if unknown), and
-        its basis
+    most, size : maximum load of a component other than cable or chain [N] (inf if unknown), and the
+        names of the values from which it follows
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:
@@ -208,7 +209,7 @@ Meteorological buoys in the catalogue have 2.
 
 
 def doubtful_figures(component: Component | Outline) -> Iterator[str]:
-    """Yield values that are possible but usually wrong: a floating instrument, or an unusual wind
+    """Yield values that are possible but usually wrong: a buoyant instrument, or an unusual wind
     area.
     """
     if not isinstance(component, Rigid) or isinstance(component, Anchor):
@@ -246,8 +247,8 @@ def contradicted_material(component: Component | Outline) -> Iterator[str]:
 
 
 def _alike(one: Material, other: Material) -> bool:
-    """Return whether the densities of two materials differ by at most 10 %, so that either name is
-    acceptable.
+    """Return whether the densities of two materials differ by less than 10 %, so that both names
+    are acceptable.
     """
     if one.density is None or other.density is None:
         return one.family == other.family or one.density is other.density
@@ -255,18 +256,18 @@ def _alike(one: Material, other: Material) -> bool:
 
 
 def words_of(component: Component | Outline) -> str:
-    """Join the name, material and note of a component."""
+    """Join the name, material and note of a component to one text."""
     return " ".join(filter(None, (component.name, component.material, component.note)))
 
 
 def rope_section(component: Flexible) -> float:
-    """Compute the area of a bar of the nominal diameter [m²]."""
+    """Return the area of a circle with the nominal diameter [m²]."""
     return pi / 4 * component.diameter**2
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
     """Return the metals of a rope except lead, or its fibres if it has no metal; empty if a density
-    is unknown.
+    is unknown or the rope has a lead core.
     """
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]

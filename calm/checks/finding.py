@@ -38,10 +38,10 @@ def environment_text(name: str) -> str:
 class State(StrEnum):
     """State of a rule, from the least to the most severe.
 
-    A rule is not judged if it has no limit or no plan for comparison. Unknown means that the rule
-    lacks a value; it is more severe than a warning because it may be a failure. Accepted is a
-    failure or an unknown that the design accepts with a reason. Estimated means a pass by the lower
-    bound of an `estimate` instead of a published value.
+    A rule without a limit or a planned value for comparison is not judged. Unknown means that the
+    rule lacks a value; it is more severe than a warning because it may be a failure. Accepted is a
+    failure or an unknown that the design accepts with a reason. Estimated is a pass that relies on
+    the lower bound of an `estimate` instead of a published value.
     """
 
     PASS = "pass"
@@ -102,12 +102,12 @@ Sense = Literal["<=", ">="]
 
 @dataclass(frozen=True)
 class Lack:
-    """Missing value of a component that a rule requires.
+    """Component value that a rule needs and the file lacks.
 
     Attributes
     ----------
     label : label of a piece or clamp that uses the component
-    quantity : key of the component
+    quantity : key of the missing value
     """
 
     label: str
@@ -116,15 +116,16 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """Missing value of a component, with all rules and pieces that need it.
+    """Missing value of a component, with all affected rules and pieces.
 
     Attributes
     ----------
-    component_id, kind : as in `use`; kind of the component
-    quantity : key of the component
-    needed_by : names of the rules that require the value
+    component_id, kind : id, as in `use`, and kind of the component
+    quantity : key of the missing value
+    needed_by : names of the rules that need the value
     pieces, places : labels and places of the affected pieces and clamps
-    class_estimate : estimate of the value, too low to satisfy the rules; None if there is none
+    class_estimate : estimate of the value, which is too low to satisfy the rules; None if there is
+        none
     """
 
     component_id: str
@@ -154,14 +155,14 @@ class Verdict:
     Attributes
     ----------
     component, place : label and place of a piece or clamp; None for the mooring as a whole
-    value, limit : SI units or degrees; None if unknown
+    value, limit : in SI units or degrees; None if unknown
     sense : required relation of value and limit; None without a limit
     state : state of the rule
     message : text of the verdict, with value and limit
     remedy : suggested change; None if no change is needed
     source : source of the limit; "" for the source of the rule
     lacks : missing value of a component that the rule requires
-    missing : in verdicts of the rule `missing` only, the value with its rules and pieces
+    missing : missing value with its rules and pieces; only in verdicts of the rule `missing`
     case : code of the load case, if it differs from that of the environment and situation
     """
 
@@ -180,16 +181,16 @@ class Verdict:
 
     @property
     def margin(self) -> float | None:
-        """Margin of the value to its limit, in its unit; negative if the limit is exceeded."""
+        """Distance of the value from its limit, in its unit; negative if the limit is exceeded."""
         if self.value is None or self.limit is None or self.sense is None:
             return None
         return self.limit - self.value if self.sense == "<=" else self.value - self.limit
 
     @property
     def utilisation(self) -> float | None:
-        """Demand over capacity: value over limit of a maximum, limit over value of a minimum.
+        """Demand over capacity: value over limit for a maximum, limit over value for a minimum.
 
-        It is infinite without any capacity, and None without a limit or with one of 0.
+        It is infinite if there is no capacity, and None if the limit is missing or 0.
         """
         if self.margin is None or not self.limit or self.value is None:
             return None
@@ -207,13 +208,13 @@ class Verdict:
 
 
 def no_capacity(verdict: Verdict) -> bool:
-    """Return whether the maximum of a verdict is below zero: other loads use up the capacity."""
+    """Return whether a maximum is below zero because other loads use up the capacity."""
     return verdict.sense == "<=" and verdict.limit is not None and verdict.limit < 0.0
 
 
 def percent_used(utilisation: float) -> float:
-    """Return a utilisation in whole percent, rounded up, so that any value above the limit exceeds
-    100 %; may be infinite.
+    """Return a utilisation in percent, rounded up to an integer so that any value above the limit
+    exceeds 100 %. It may be infinite.
     """
     percent = 100.0 * utilisation
     return float(ceil(percent - 1e-9)) if isfinite(percent) else percent
@@ -230,10 +231,9 @@ def at_most(
     *,
     least: bool = False,
 ) -> Verdict:
-    """Create the verdict on a value with an upper limit; `beyond` is its state if the limit is
-    exceeded.
+    """Create the verdict on a value with an upper limit or, with `least`, a lower limit.
 
-    With `least`, the limit is a lower limit.
+    `beyond` is the state if the limit is exceeded.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
@@ -258,8 +258,8 @@ def unknown(
 
     Parameters
     ----------
-    lacks : missing key of the component, if that is the reason
-    of : piece or clamp whose key is missing, if it differs from `part`
+    lacks : key of the missing component value, if this is the reason
+    of : piece or clamp whose value is missing, if it differs from `part`
     """
     lacking = of or part
     lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
@@ -291,13 +291,14 @@ class Rule:
     title : title for display
     quantity : name in `calm.quantities` that determines the unit of values and limits
     source : source of the rule and of its default limit
-    judge : function from evidence (a `LegResult` per environment and situation) to verdicts
+    judge : function that yields verdicts from the evidence, which is a `LegResult` unless `once`
     of_anchor : whether the rule checks the anchor, and is skipped if there is none
-    once : whether the rule is evaluated once per mooring, with a `Handling` as evidence
+    once : whether the rule is evaluated once per mooring, with a `Handling` as evidence, instead of
+        in each environment and situation
     situation : situation of a rule that is evaluated once
     case : load case of a rule that is evaluated once: L launch, R rise, B break, 0 still water
-    counted : like `judge`, but yields the verdicts that are counted in samples, if different
-    criteria : function from a `Leg` to criteria that can be counted in many profiles
+    counted : replaces `judge` when the exceeded limits of random samples are counted
+    criteria : function that returns the criteria of a `Leg`, for evaluation in many profiles
     """
 
     name: str
@@ -315,7 +316,7 @@ class Rule:
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
     ) -> Finding:
-        """Return a verdict as a finding of this rule."""
+        """Convert a verdict of this rule to a finding."""
         return Finding(
             **(
                 vars(verdict)
@@ -336,7 +337,9 @@ def rule(
     situation: str = AS_GIVEN,
     case: str | None = None,
 ) -> Callable[[Callable[[Any], Iterator[Any]]], Rule]:
-    """Create the rule of a given name in `calm.files.rule_texts` from its evaluation function."""
+    """Create the rule called `name`, whose texts are in `calm.files.rule_texts`, from its
+    evaluation function.
+    """
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Any]]) -> Rule:
@@ -353,9 +356,9 @@ class Finding(Verdict):
     """Verdict of a rule on a mooring in an environment and a situation.
 
     `source` is the source of the rule and its limit. `situation` names the change to the design, or
-    is `AS_GIVEN`. `accept` is the entry that accepts the finding, `unaccepted` its state without
-    that entry; both are None otherwise. `probability` is the probability of exceeding the limit, if
-    it was computed. `estimates` are the estimates that the finding relies on.
+    is `AS_GIVEN`. For an accepted finding, `accept` is the entry in the file and `unaccepted` the
+    state without this entry. `probability` is the probability that the limit is exceeded, if it was
+    computed. `estimates` are the estimates on which the finding relies.
     """
 
     mooring: str
@@ -398,14 +401,14 @@ class Finding(Verdict):
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Places of all pieces and clamps concerned; empty for a finding on the whole line."""
+        """Places of all affected pieces and clamps. A finding about the whole line has none."""
         if self.missing is not None:
             return self.missing.places
         return () if self.place is None else (self.place,)
 
 
 def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:
-    """Group items by a key, in the order in which the keys first occur."""
+    """Group items by a key; groups are in order of their first items."""
     groups: dict[_Key, list[_Item]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)
@@ -413,13 +416,15 @@ def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Ke
 
 
 def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
-    """Group findings by rule, in the order in which the rules first occur."""
+    """Group findings by rule; rules are in order of their first findings."""
     return grouped_by(findings, attrgetter("rule"))
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the first of the most severe findings; findings not judged count only if there are no
-    others.
+    """Return the most severe finding. Among equally severe findings, it has the largest
+    utilisation.
+
+    A finding that is not judged is returned only if there are no others.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
@@ -427,10 +432,10 @@ def worst_of(findings: Iterable[Finding]) -> Finding:
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
-    """Return the finding with the largest utilisation or, without utilisations, the most severe
-    finding.
+    """Return the finding with the largest utilisation. Among equal utilisations, it is the most
+    severe.
 
-    If utilisations are equal, the most severe of these findings is returned.
+    If no finding has a utilisation, return the most severe finding.
     """
     found = [*findings]
     used = [(use, one) for one in found if (use := one.utilisation) is not None]
@@ -440,11 +445,11 @@ def governing(findings: Iterable[Finding]) -> Finding:
 
 
 def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Select the findings to report for a rule: the governing one, and the worst one if its state
-    is more severe.
+    """Select the findings to report for a rule: the governing finding, and the worst finding if its
+    state is more severe.
 
-    Each has its own value, limit and component. Unless it passes, the governing finding also
-    represents other estimates and accepted findings.
+    The worst finding is omitted if it is only estimated or accepted, unless the governing finding
+    passes.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)
@@ -456,7 +461,7 @@ def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
-    """Return the governing finding of each rule, in the order in which the rules first occur."""
+    """Return the governing finding of each rule; rules are in order of their first findings."""
     return [governing(each) for each in by_rule(findings).values()]
 
 

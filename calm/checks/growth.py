@@ -1,10 +1,10 @@
-"""Biofouling: its effect on drag and weight of the line.
+"""Effect of biofouling on the drag and weight of the line.
 
-Growth is a layer of uniform thickness on everything above a given depth in still water. The
+Biofouling is a layer of uniform thickness on everything above a given depth in still water. The
 diameter of a cable increases by twice the thickness. The drag of a rigid piece increases with its
-projected areas; bodies without dimensions are treated as spheres whose projected area is the
-`drag_area`, or the area that gives its drag with a coefficient of 1. The growth displaces water,
-and its weight in water follows from its density; without a density it is weightless.
+projected areas. A body without dimensions is treated as a sphere. Its projected area is the
+`drag_area`, or else the area for a drag coefficient of 1. The layer displaces water, and its weight
+in water follows from its density; without a specified density it is weightless.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,7 +23,9 @@ from calm.physics import drag
 from calm.physics.seawater import REFERENCE_DENSITY
 
 CHAIN_BREADTH = 1.8
-"""Diameter of the cylinder that displaces as much as a chain, over its bar diameter (OrcaFlex)."""
+"""Diameter of a cylinder with the displacement of a chain, divided by the bar diameter of the chain
+(OrcaFlex).
+"""
 
 
 def grown(
@@ -31,11 +33,11 @@ def grown(
 ) -> tuple[files.Piece, ...]:
     """Return the pieces with biofouling on all parts above a given depth in still water.
 
-    A cable or chain that extends deeper is split there; both parts keep its label.
+    A cable or chain that extends below this depth is split there; both parts keep its label.
 
     Parameters
     ----------
-    given : the line without growth
+    given : result for the line without biofouling
     """
     gravity = given.leg.water.gravity
     return tuple(
@@ -104,7 +106,7 @@ def grown_component(
 def _larger(
     component: RigidComponent | FlexibleComponent, t: float
 ) -> tuple[dict[str, Any], float]:
-    """Return the drag values that biofouling increases, and the volume of the growth [m³, or m³ per
+    """Return the drag values that biofouling increases, and the volume of the layer [m³, or m³ per
     metre of line].
     """
     if isinstance(component, files.Cable):
@@ -136,8 +138,8 @@ def _larger(
 
 
 def _scales(component: files.Component, kn: float, t: float) -> tuple[float, float, float]:
-    """Return the ratios of the areas normal to the axis and along it with and without growth, and
-    the growth volume [m³].
+    """Return the factors by which the areas normal to the axis and along it increase, and the
+    volume of the layer [m³].
     """
     if isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length

@@ -32,7 +32,7 @@ FAST_RISE_SPEED = 3.0
 
 
 def is_hauled_in(handling: Handling) -> bool:
-    """Return whether a line is recovered by hauling, since it has a surface float and no
+    """Return whether a line is recovered by hauling, because it has a surface float and no
     release.
     """
     return handling.leg.file.release is None and reaches_the_surface(handling.leg)
@@ -43,10 +43,10 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     """Check the net buoyancy that remains to recover the release after a break or the loss of a
     float.
 
-    Breaks above the back-up floats are considered, and the loss of any one buoyant element. The net
-    buoyancy should be a tenth of the weight it lifts, and raise it at `minimum_rise_speed`. A
-    compact line below a single float has no back-up buoyancy. A surface mooring without floats
-    below its buoy has none either, and is recovered by hauling.
+    The line may break at any connection above the back-up floats, or lose any single buoyant
+    element. The net buoyancy should be at least a tenth of the lifted weight, and sufficient for a
+    rise at `minimum_rise_speed`. A compact line below a single float has no back-up buoyancy. A
+    surface mooring without floats below its buoy has none either, and is recovered by hauling.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
@@ -98,7 +98,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-strength", once=True, case="L")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
-    """Check the tension in every piece as the line falls behind its anchor.
+    """Check the tension in every piece while the anchor drops and pulls the line down.
 
     The limit is the smaller of working load × `launch_working_factor` and breaking load /
     `launch_safety_factor`.
@@ -167,8 +167,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
 
 @rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
-    """Check the terminal rise speed of the line without its anchor, unless the line is
-    hauled in.
+    """Check the terminal rise speed of the line without its anchor, unless the line is hauled
+    in.
     """
     if is_hauled_in(handling):
         message = "A line without a release is hauled in with its anchor, so it has no ascent."
@@ -238,8 +238,8 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
 
 
 def _unsolved(handling: Handling, motion: str, failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Report a motion that could not be solved; a line without equilibrium is left to the rule
-    `equilibrium`.
+    """Report a launch or rise that could not be solved. The rule `equilibrium` reports a line
+    without equilibrium.
     """
     if handling.result is not None:
         message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"

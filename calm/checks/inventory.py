@@ -1,4 +1,4 @@
-"""Inventory of the deck: every piece and every clamped instrument, with its mass and weight."""
+"""Inventory of the pieces and clamped instruments on deck, with mass and weight."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
 
 @dataclass(frozen=True)
 class InventoryItem:
-    """A piece of the line or an instrument clamped on one.
+    """A piece of the line, or an instrument clamped on a piece.
 
     Attributes
     ----------
@@ -21,11 +21,11 @@ class InventoryItem:
     name : name of the component; None if it has none
     clamped_on, at : label of the piece that carries a clamp, and distance from its upper end [m];
         None for a piece
-    cut_length : length along the line [m]; None for a cable without a length that fits
+    cut_length : length along the line [m]; None for a fitted cable if no length fits
     dry_mass : mass in air [kg]; None if unknown
-    wet_weight : weight in water of 1025 kg/m³, with the gravity of the file [N], + down; None if
-        the length is unknown
-    items : number of equal items it consists of, such as the releases of a pair
+    wet_weight : weight in water of 1025 kg/m³, with the gravity of the file, positive down [N];
+        None if the length is unknown
+    items : number of equal components that form this item, such as the releases of a pair
     lift_mass : mass of a piece with its clamps [kg]; None for a clamp, or if a mass is unknown
     """
 
@@ -50,9 +50,10 @@ class Total:
 
     Attributes
     ----------
-    dry_mass, missing_masses : mass in air [kg], and number of items of unknown mass; unless this
-        is 0, the total is a lower bound
-    wet_weight, missing_weights : weight in water [N], + down, and number of items without one
+    dry_mass, missing_masses : mass in air [kg], and number of items of unknown mass; if there are
+        any, the total is a lower bound
+    wet_weight, missing_weights : weight in water, positive down [N], and number of items of unknown
+        weight
     """
 
     dry_mass: float
@@ -110,7 +111,7 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
 
 
 def _in_all(component: Component, figure: float | None, length: float | None) -> float | None:
-    """Convert a value per metre of cable or chain to the piece; values of other items are
+    """Convert a value per metre of cable or chain to the whole piece. Values of other items are
     unchanged.
     """
     if figure is None or not isinstance(component, Flexible):
@@ -119,14 +120,14 @@ def _in_all(component: Component, figure: float | None, length: float | None) ->
 
 
 def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:
-    """Return the mass in air of an anchor with a given weight in water, if made of steel and of
-    concrete [kg].
+    """Return the masses in air of a steel and of a concrete anchor with a given weight in water
+    [kg].
 
     Parameters
     ----------
     required_weight : required weight in water [N]
     density : density of the water [kg/m³]
-    gravity : [m/s²]
+    gravity : acceleration of gravity [m/s²]
     """
     steel, concrete = (
         required_weight / (gravity * (1.0 - density / material))

@@ -1,4 +1,4 @@
-"""Rule `joints`: connecting hardware between pieces of different metals."""
+"""Rule `joints`: joints between metal pieces that lack connecting hardware."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ MOST_NAMED = 5
 def joints(handling: Handling) -> Iterator[Verdict]:
     """Yield one warning for all joints without a shackle, link or swivel.
 
-    Three kinds of joints are exempt: ropes, which are spliced or made fast; successive equal
-    pieces; and wires with a specified `termination`. The rule `hardware` warns if a line lists no
-    hardware at all.
+    Three kinds of joints need no hardware: joints of ropes, which are spliced or tied; joints of
+    consecutive equal pieces; and joints of wires with a specified `termination`. The rule
+    `hardware` warns if a line lists no hardware at all.
     """
     pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
@@ -39,7 +39,7 @@ def joints(handling: Handling) -> Iterator[Verdict]:
 
 
 def bare_joints(pieces: Sequence[Piece]) -> list[tuple[Piece, Piece]]:
-    """Return neighbouring pieces that lack hardware between them, down the line."""
+    """Return the pairs of adjacent pieces that lack hardware between them, down the line."""
     return [pair for pair in pairwise(pieces) if _needs_hardware(*pair)]
 
 
@@ -53,7 +53,7 @@ def _needs_hardware(one: Piece, other: Piece) -> bool:
 
 
 def _is_hard(piece: Piece) -> bool:
-    """Return whether a piece can be joined by hardware only: chain, wire or a rigid piece."""
+    """Return whether a piece can only be joined by hardware: a chain, a wire or a rigid piece."""
     if not isinstance(piece.component, Cable):
         return True
     metal = any(one.family == "metal" for one in materials_in(piece.component.material))

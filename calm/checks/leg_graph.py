@@ -1,6 +1,6 @@
-"""Breaks of a design and losses of its floats: what comes up with the release afterwards.
+"""Breaks of a design and losses of its floats, and the parts that surface afterwards.
 
-A design is a graph of its pieces. Every leg is a chain of pieces between nodes, fixed ends and the
+A design is a graph of its pieces. Every leg is a chain of pieces between nodes, fixed ends or the
 seabed, and a break removes one connection. Back-up buoyancy recovers the release after a break
 above it.
 """
@@ -26,10 +26,9 @@ from calm.solve.solution import standing_lift
 
 SHORT_LEAD = 50.0
 """Maximum length of line between the lowest floats and the release that is exempt from break checks
-[m]; a default of CALM.
-
-Those floats are the back-up of everything above them. If all floats are so close to the release, as
-on a bottom lander or a short line below one float, they alone recover the mooring.
+[m]; a default of CALM. These floats are the back-up buoyancy for everything above them. If all
+floats are so close to the release, as on a bottom lander or a short line below one float, they
+alone recover the mooring.
 """
 
 _SEABED, _HELD = object(), object()
@@ -41,12 +40,12 @@ class Break:
 
     Attributes
     ----------
-    break_after, label : the piece above the break
-    margin : net buoyancy of the section that still holds a release [N]
-    weight_lifted : weight in water of its non-buoyant pieces [N]
+    break_after, label : index and label of the piece above the break
+    margin : net buoyancy of the section that contains a release after the break [N]
+    weight_lifted : weight in water of the non-buoyant pieces in this section [N]
     required : required margin [N]
     judged : whether a better design could avoid the loss of the release
-    loose : net buoyancy of the section that breaks away at once and drifts, + up [N]
+    loose : net buoyancy of the section that breaks away at once and drifts, positive up [N]
     """
 
     break_after: int
@@ -60,15 +59,16 @@ class Break:
 
 @dataclass(frozen=True)
 class Loss:
-    """Loss of one buoyant element, such as a flooded ball, while the line stays intact.
+    """Loss of one buoyant element, such as a flooded glass ball, while the line stays intact.
 
     Attributes
     ----------
-    index, label : index of the piece (that carries the clamp), label of the lost element
+    index, label : index of the piece (or of the piece that carries the clamp), label of the lost
+        element
     margin : net buoyancy of the release and the remaining pieces above it [N]
     weight_lifted : weight in water of the non-buoyant pieces [N]
     required : required margin [N]
-    place : place of the lost element, in the line as read
+    place : place of the lost element in the file
     """
 
     index: int
@@ -80,9 +80,9 @@ class Loss:
 
 
 class LegGraph:
-    """Connections of a design between pieces, by their index in the file, nodes, and fixed ends.
+    """Graph of the connections between the pieces of a design, its nodes and its fixed ends.
 
-    In each leg only the lowest release opens.
+    Pieces are identified by their index in the file. In each leg, only the lowest release opens.
 
     Parameters
     ----------
@@ -116,15 +116,18 @@ class LegGraph:
 
     @classmethod
     def in_equilibrium(cls, results: Sequence[LegResult]) -> "LegGraph":
-        """Return the graph of a solved design, with net forces at the depths of its pieces."""
+        """Return the graph of a solved design, with the net forces of its pieces at their depths in
+        equilibrium.
+        """
         lifts = [lifts_of(each.leg.line, each.leg.water, each) for each in results]
         return cls([each.leg for each in results], lifts)
 
     @classmethod
     def upright(cls, leg: Leg) -> "LegGraph":
-        """Return the graph of a single line with net forces at the depths of the upright line.
+        """Return the graph of a single line, with the net forces of its pieces at their depths in
+        the upright line.
 
-        It is empty if no length fits.
+        The graph is empty if no length fits.
         """
         with suppress(NoEquilibrium):
             return cls([leg], [standing_lift(leg.line, leg.water)])
@@ -132,12 +135,11 @@ class LegGraph:
 
     @property
     def anchored(self) -> bool:
-        """Whether the design has an anchor."""
         return any(_SEABED in chain for chain in self.chains)
 
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
-        """Return the connected parts of the design after breaks below given places (`cut`) of its
-        chains.
+        """Return the connected parts of the design after breaks; `cut` lists the leg and position
+        of each break.
         """
         parts: list[set[Hashable]] = []
         for number, chain in enumerate(self.chains):
@@ -150,7 +152,7 @@ class LegGraph:
         return parts
 
     def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """Return the pieces of each part without a fixed end, in file order."""
+        """Return the pieces of each part that is not attached to a fixed end, in file order."""
         return [
             sorted(one for one in part if isinstance(one, int))
             for part in self.parts(cut)
@@ -164,8 +166,8 @@ class LegGraph:
 
     @property
     def coming_up(self) -> set[int]:
-        """Return the pieces that surface after all releases open; without a release, all pieces
-        except anchors.
+        """Pieces that surface after all releases open. In a design without a release, these are all
+        pieces except anchors.
         """
         parts = self._rising(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}
@@ -173,14 +175,16 @@ class LegGraph:
     def breaks(self, whole: Leg) -> tuple[Break, ...]:
         """Return the breaks below every piece that surfaces, in file order.
 
-        The margin of a break refers to the section that still holds a release after all releases
-        have opened; `loose` is the net buoyancy of the section that drifts off before that. For a
-        break inside a cable, the margin lies between those of the breaks at its two ends.
+        The margin of a break refers to the section that contains a release after all releases have
+        opened. `loose` is the net buoyancy of the section that drifts off before the releases open.
+        For a break inside a cable, the margin lies between the margins of the breaks at both ends
+        of the cable.
 
-        Successive floats with only connectors and chain between them form a cluster. A break inside
-        the last cluster above a release, or in a lead of at most `SHORT_LEAD` from it to the
-        release, strands the release in any design and is not judged. If that is the whole design,
-        chain separates clusters, too; if it is still a single cluster, its losses alone are judged.
+        Consecutive floats with only connectors and chain between them form a cluster. Some breaks
+        strand the release in any design and are not judged: breaks inside the last cluster above a
+        release, and breaks between this cluster and the release, if they are at most `SHORT_LEAD`
+        apart. If this applies to all breaks, clusters are divided at chains, too. If there is still
+        only one cluster, no break is judged, and only the losses of floats are checked.
 
         Parameters
         ----------
@@ -220,10 +224,11 @@ class LegGraph:
     def _beyond_help(
         self, chain: Sequence[Hashable], at: int, part: list[int], between: tuple[str, ...]
     ) -> bool:
-        """Return whether a break strands the release in any design: it divides the cluster of all
-        remaining floats, or a short lead from that cluster to the release.
+        """Return whether a break strands the release in any design.
 
-        `between` lists kinds and roles of pieces allowed between the floats of a cluster.
+        This is so if the break divides the cluster of all remaining floats, or a short line between
+        this cluster and the release. `between` lists the kinds and roles of pieces that are allowed
+        between the floats of a cluster.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
@@ -252,7 +257,7 @@ class LegGraph:
 
         A lost element provides no buoyancy. If its mass and the density of its material are known,
         it is assumed flooded and its weight in water is added; otherwise it is assumed gone. Cables
-        are never lost. The other pieces keep their net forces.
+        are never lost. The net forces of the other pieces do not change.
 
         Parameters
         ----------
@@ -281,7 +286,7 @@ class LegGraph:
                 )
 
     def release_verdicts(self) -> Iterator[Verdict]:
-        """Report the floats that stay attached to an anchor after all releases open."""
+        """Report floats that remain attached to an anchor after all releases open."""
         held = [
             self.pieces[one]
             for part in self.parts(self.opened)
@@ -307,8 +312,10 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
 
 
 def _required_margin(leg: Leg, weight: float, drag: float) -> float:
-    """Return the net buoyancy required after a break [N], for a remaining weight in water [N] and
-    drag [N/(m/s)²]: a fraction of the weight, and at least enough to rise at `minimum_rise_speed`.
+    """Return the net buoyancy required after a break [N], from the remaining weight in water [N]
+    and drag [N/(m/s)²].
+
+    It is a fraction of the weight, and at least the drag at `minimum_rise_speed`.
     """
     checks = leg.file.checks
     return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)

@@ -1,4 +1,6 @@
-"""Rule `missing`: missing values of components, each reported once for all rules and pieces."""
+"""Rule `missing`: missing values of components, each reported once for all affected rules and
+pieces.
+"""
 
 from __future__ import annotations
 
@@ -22,17 +24,16 @@ _INSTEAD = {
 
 
 def alternatives(quantity: str) -> tuple[str, ...]:
-    """Return the keys of a component of which any one would replace a missing value."""
+    """Return the keys of a component, any one of which can supply a missing value."""
     return quantity, *_INSTEAD.get(quantity, ())
 
 
 @rule(MISSING)
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
-    """Yield one verdict per component id and missing value, which stands for all findings that lack
+    """Yield one verdict per component id and missing value, which represents all findings without
     this value.
 
-    The message is that of the piece with the largest value: the deepest, or the most heavily
-    loaded.
+    Its message is that of the finding with the largest value, such as the largest depth or load.
     """
     for found in lacking.values():
         figure = found[0].missing
@@ -60,8 +61,8 @@ def is_lacking(finding: Finding) -> bool:
 def gathered(
     lacking: Iterable[Finding], parts: Mapping[str, Piece | Clamp]
 ) -> dict[tuple[str, str], list[Finding]]:
-    """Group the findings that lack a value by component id and value, and attach the
-    `MissingFigure` of each group.
+    """Group the findings that lack a value by component id and missing value, and attach the
+    `MissingFigure` of its group to each finding.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ def with_missing(
     mooring: str,
     environment: str,
 ) -> list[Finding]:
-    """Replace the findings of a mooring that lack a value by findings of the rule `missing`.
+    """Replace the findings of a mooring that lack a value with findings of the rule `missing`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Rule on instrument depths: in still water, compared with the planned depths."""
+"""Rule that compares the depths of instruments in still water with their planned depths."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ depth.
 class PlannedPart:
     """A piece or a clamp with a planned depth [m].
 
-    `least` and `most` bound its depth in still water. They differ only if the line is slack there
-    and has no unique shape: the range is from the depth in the current to the depth on a straight
-    line.
+    `least` and `most` are bounds of its depth in still water. They differ only if the line is slack
+    in still water and has no unique shape. In that case, they are the depth in the current and the
+    depth on a straight vertical line.
     """
 
     row: ComponentRow | ClampRow
@@ -38,8 +38,8 @@ class PlannedPart:
 
     @property
     def off(self) -> float:
-        """Depth error [m], positive if too deep. If the planned depth is a range, the smallest
-        error.
+        """Depth error [m], positive if too deep; 0 if the planned depth is between `least` and
+        `most`.
         """
         return min(max(self.planned, self.least), self.most) - self.planned
 
@@ -47,8 +47,8 @@ class PlannedPart:
 def _judge(handling: Handling) -> Iterator[Verdict]:
     """Compare the depth of each part in still water with its planned depth.
 
-    Parts that are off by the same amount share one finding, because a single wrong value explains
-    them.
+    If all parts are off by the same amount, they share one finding, because a single wrong value
+    explains them all.
     """
     if handling.result is None:
         return
@@ -64,8 +64,11 @@ def _judge(handling: Handling) -> Iterator[Verdict]:
 
 
 def _counted(handling: Handling) -> Iterator[Verdict]:
-    """Yield the verdict on each part, and the common verdict if all parts are off by the same
-    amount. Findings of a sample may differ from those of the design.
+    """Yield the verdict on each part, and also the common verdict if all parts are off by the same
+    amount.
+
+    Both are needed because the parts of a sample may differ in this respect from those of the
+    design.
     """
     if handling.result is not None:
         yield from _judged(handling.result)[1]
@@ -76,7 +79,6 @@ planned_depth = replace(rule("planned-depth", once=True, case="0")(_judge), coun
 
 
 def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
-    """Return the parts with a planned depth, and the verdict on each part."""
     parts = planned_parts(result)
     return parts, [
         _verdict(result.file, part, _remedy(result, parts, number))
@@ -85,7 +87,7 @@ def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
 
 
 def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]) -> bool:
-    """Return whether several parts are off by the same amount, and at least one exceeds its
+    """Return whether all parts are off by the same amount, and at least one exceeds its
     tolerance.
     """
     amounts = [part.off for part in parts]
@@ -116,7 +118,7 @@ def planned_parts(result: LegResult) -> list[PlannedPart]:
 
 
 def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
-    """Return the verdict on one part: a warning if the error exceeds the allowance, a failure if it
+    """Return the verdict on one part: a warning if the error exceeds the tolerance, a failure if it
     exceeds the limit.
     """
     checks, off = file.checks, part.off
@@ -133,7 +135,7 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
 
 
 def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
-    """Combine the verdicts on all parts to one verdict, with the values of the most severe."""
+    """Return the common verdict on all parts, with the value and limit of the most severe one."""
     amounts = sorted((part.off for part in parts), key=abs)
     message = f"All {len(parts)} parts with a planned depth are "
     message += f"{_amount(amounts[0], amounts[-1])} in still water."
@@ -146,15 +148,16 @@ def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) 
 
 
 def _amount(least: float, most: float) -> str:
-    """Format an amount, or a range of amounts."""
     direction = "too deep" if most > 0.0 else "too shallow"
     shown = dict.fromkeys(say("depth", abs(each)) for each in (least, most))
     return f"{' to '.join(shown)} {direction}"
 
 
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
-    """Name the lengths to check: those between the parts that are off by the same amount and the
-    next part on the side of the fixed end.
+    """Name the lengths to check for a part.
+
+    The error lies between the last part with the same depth error and the next part with a
+    different one, in the direction of the fixed end.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning
@@ -173,8 +176,10 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
 
 
 def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:
-    """Return whether the lengths above a part determine its depth: below a float at the surface, or
-    above a piece whose length is fitted to the top depth.
+    """Return whether the depth of a part is determined by the lengths above it.
+
+    This is so below a float at the surface, and above a piece whose length is fitted to the top
+    depth.
     """
     if result.type == "surface":
         return True

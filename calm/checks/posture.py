@@ -34,11 +34,11 @@ AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
 
 
 def reaches_the_surface(leg: Leg) -> bool:
-    """Return whether the line is intended to have its float at the surface in still water.
+    """Return whether the line is designed to have its float at the surface in still water.
 
-    A float with a key that only surface floats have counts as intended for the surface, even if it
-    is too small to surface. A line longer than the water depth has no unique shape in still water
-    and counts as reaching the surface.
+    A float with a key that only surface floats have is always intended for the surface, even if it
+    is too small to reach it. A line longer than the water depth has no unique shape in still water,
+    and is treated as a line that reaches the surface.
     """
     if leg.for_surface is not None:
         return leg.for_surface
@@ -51,7 +51,9 @@ def reaches_the_surface(leg: Leg) -> bool:
 
 
 def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
-    """Return the rules for whole lines that do not apply to a leg with given ends."""
+    """Return the names of the rules that do not apply to a leg because of the supports of its
+    ends.
+    """
     top, bottom = legs_of(file)[0].ends
     of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
     return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
@@ -62,9 +64,9 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
     """Check the tilt of instruments and releases against their own limits and the limit of the
     design.
 
-    Typical limits of manufacturers: 27 degrees for an Aanderaa RCM (BODC), 30 for a single-point
-    Doppler current meter, 20 for an ADCP, whose data are doubtful above 15, 45 for a release, 10
-    for a sediment trap.
+    Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 for a single-point
+    Doppler current meter, 45 for a release, and 10 for a sediment trap. The limit for an ADCP is 20
+    degrees, and its data are doubtful above 15.
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -102,11 +104,12 @@ def _doubtful_words(
 
 @criteria("depth-rating")
 def depth_rating(leg: Leg) -> Iterator[Criterion]:
-    """Check the depth in the current plus a margin against the depth ratings of floats and
-    instruments.
+    """Check the depth ratings of floats and instruments against the depth in the current plus a
+    margin.
 
     A float that is knocked down below its rating implodes, and the line sinks. A surface float has
-    no depth rating; the rules `freeboard` and `reserve` cover a surface float that is pulled under.
+    no depth rating; the rules `freeboard` and `reserve` cover a surface float that is pulled under
+    water.
     """
     margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
     for part in parts_of(leg):
@@ -146,7 +149,7 @@ _MEASURED = 0.2
 @rule("stretch")
 def stretch(result: LegResult) -> Iterator[Verdict]:
     """Check the possible stretch of ropes of unknown stiffness, and the load under which ropes are
-    cut to length.
+    measured for cutting.
     """
     limit, lengths = _STRETCH * result.leg.water.depth, result.leg.line.length.tolist()
     rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
@@ -181,9 +184,10 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
 
 @criteria("top-depth")
 def top_depth(leg: Leg) -> Iterator[Criterion]:
-    """Check the minimum depth of the top of a sub-surface line, clear of waves, vessels and nets.
+    """Check the minimum depth of the top of a sub-surface line, which must be clear of waves,
+    vessels and nets.
 
-    If the design sets no `minimum_top_depth`, the default only causes a warning.
+    If the design sets no `minimum_top_depth`, a top above the default depth only causes a warning.
     """
     given, label = leg.file.checks.minimum_top_depth, pieces_of(leg)[0].label
     if given is None and reaches_the_surface(leg):
@@ -272,7 +276,6 @@ def _of_the_top(
     limit: float | None,
     words: Callable[[float, str], tuple[str, str]],
 ) -> Iterator[Criterion]:
-    """Yield the limit for a quantity of the top, if the design sets one."""
     if limit is not None:
         allowed = say(quantity, limit)
         top = pieces_of(leg)[0]
@@ -334,7 +337,9 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
 
 
 def _too_long(leg: Leg) -> str:
-    """Return the remedy for a float without keys of surface floats: its line may be too long."""
+    """Return the additional remedy that the line may be too long, unless the float has a key that
+    only surface floats have.
+    """
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
         return ""
@@ -343,13 +348,12 @@ def _too_long(leg: Leg) -> str:
 
 @rule("watch-circle")
 def watch_circle(result: LegResult) -> Iterator[Verdict]:
-    """Check the watch-circle radius √(L² - h²) of a surface float, for a taut line.
+    """Check the watch-circle radius √(L² - h²) of a surface float.
 
-    L is the line length from the float to the anchor, h the height of the surface above the
-    anchor's top.
-
-    This is the worst case of a slack line, e.g. PacIOOS: 1.73 times the depth at a scope of 2. The
-    limit is `maximum_excursion`, if the design sets it.
+    L is the line length from the float to the anchor, and h the height of the surface above the top
+    of the anchor. The line is assumed to be taut, which is the worst case. PacIOOS, for example,
+    states 1.73 times the depth at a scope of 2. The limit is `maximum_excursion`, if the design
+    sets it.
     """
     limit = result.file.checks.maximum_excursion
     if not reaches_the_surface(result.leg):
@@ -368,7 +372,9 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
 
 @rule("scope")
 def scope(result: LegResult) -> Iterator[Verdict]:
-    """Report the scope of a surface mooring: cut length over water depth. There is no limit."""
+    """Report the scope of a surface mooring, which is cut length over water depth. There is no
+    limit.
+    """
     if not reaches_the_surface(result.leg):
         return
     depth = result.leg.water.depth

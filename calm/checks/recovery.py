@@ -1,11 +1,11 @@
 """Recovery: rise speed of the line without its anchor, surfacing times and surfacing order.
 
-The release and everything above it rise together at terminal speed, until the first buoyant piece
-reaches the surface. It stays there with everything rigidly connected. If the line below is buoyant,
-it continues to rise as a separate line in still water; the line already suspended is included,
-which makes the computed rise too slow. Buoyant pieces surface one after
-another, each after rising by the length of line between it and the previous one, and everything
-else is suspended below them.
+The release and everything above it rise together at terminal speed until the first buoyant piece
+reaches the surface. This piece and everything rigidly connected to it stay there. If the line below
+it is buoyant, it continues to rise as a separate line in still water. The part of this line that is
+already suspended from the surface is included, so the computed rise is too slow. Buoyant pieces
+surface one after another. Each one has risen by the length of line between it and the previous one,
+and everything else is suspended below them.
 
 The model neglects acceleration, the possibility that a piece is carried past one above it in the
 line, and that surfaced floats are only half immersed. If the line tangles during ascent
@@ -31,13 +31,13 @@ from calm.solve import FreeMotion, Settings, part_of, plumb_speed, solve_rise
 
 @dataclass(frozen=True)
 class Recovery:
-    """Rise of a line without its anchor, from its equilibrium.
+    """Rise of a line without its anchor, which starts from equilibrium.
 
     Attributes
     ----------
     released : index of the lowest piece that rises: the lowest release, whose lower hook opens, or
         the piece above the anchor if there is no release
-    rise_speed : terminal speed of the rising line [m/s], + up; 0 if it does not rise
+    rise_speed : terminal speed of the rising line, positive up [m/s]; 0 if it does not rise
     net_buoyancy : net buoyancy of the rising line, in equilibrium [N]
     time_to_surface : time until the first buoyant piece surfaces [s]; None if none does
     tension_top, tension_bottom : (n,) tensions of the pieces above the anchor during the rise [N];
@@ -73,8 +73,8 @@ class Recovery:
         """Return the depth of a point on a piece after all pieces have surfaced [m]; NaN if
         unknown.
 
-        The point is at a share of the length of piece number `piece`, from its upper end. It is
-        suspended by the shorter length of line from a surfaced piece, above or below.
+        The point is on the piece with the index `piece`, at the fraction `share` of its length from
+        its upper end. It is suspended from the nearest surfaced piece, measured along the line.
         """
         up = np.isfinite(self.arrival[: len(self.length)])
         if piece >= len(up):
@@ -88,7 +88,9 @@ class Recovery:
         return float(np.concatenate([above, below, [self.seabed]]).min())
 
     def components(self) -> list[dict[str, Any]]:
-        """Return the pieces above the anchor as dictionaries; NaN becomes None."""
+        """Return the results for the pieces above the anchor as dictionaries; None stands for
+        NaN.
+        """
         columns = (self.tension_top, self.tension_bottom, self.arrival, self.hangs_at)
         names = ("tension_top", "tension_bottom", "arrival", "depth")
         rows = zip(*(column.tolist() for column in columns), strict=True)
@@ -103,12 +105,12 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 
     Parameters
     ----------
-    result : result of the mooring, for the equilibrium and stretched lengths
+    result : result of the mooring, which supplies the depths and stretched lengths in equilibrium
 
     Raises
     ------
     NoEquilibrium
-        As `solve_rise`, in still water too.
+        The rise has no solution, neither in the current nor in still water.
     """
     count, water = len(leg.line.length), leg.water
     release = leg.file.release
@@ -152,8 +154,8 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 
 
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
-    """Return the net forces (n,) of the pieces with their clamps at their depths in equilibrium,
-    positive up [N].
+    """Return the net forces (n,) of the pieces with their clamps, positive up [N], in water of the
+    density at their depths in equilibrium.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
@@ -162,7 +164,7 @@ def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
 
 
 def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[FreeMotion, bool]:
-    """Solve the rise of the whole line; the flag is true if the solution is for still water."""
+    """Solve the rise of the whole line. The flag is true if the solution is for still water."""
     try:
         return solve_rise(line, water, top, settings), False
     except NoEquilibrium:
@@ -172,11 +174,12 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 def _risers(
     line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
-    """Yield the pieces that are buoyant enough to surface on their own, and their times [s].
+    """Yield the pieces that are buoyant enough to surface on their own, and their surfacing times
+    [s].
 
-    `length` [m] is stretched and `lifts` [N] are net forces, both (n,). The upper end of the line
-    is at depth `top` [m] and rises with `speed` [m/s] at first. The line below a surfaced float
-    rises vertically, as in still water.
+    `length` are the stretched lengths [m] and `lifts` the net forces [N] of the pieces, both (n,).
+    The upper end of the line is at the depth `top` [m] and rises with `speed` [m/s] at first. The
+    line below a surfaced float rises vertically, as in still water.
     """
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():

@@ -1,6 +1,6 @@
 """Rule `serials-and-dates`: contradictions between labels, serial numbers, release codes and dates.
 
-No result depends on these entries, but deck sheets and labels contain them.
+No result depends on these values, but they are printed on deck sheets and labels.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ Part = Piece | Clamp
 
 @rule("serials-and-dates", once=True)
 def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
-    """Warn about repeated labels and serial numbers, and dates in the wrong order."""
+    """Warn about repeated labels, serial numbers and release codes, codes without a release, and
+    dates in the wrong order.
+    """
     file = handling.leg.file
     parts = parts_of(file.pieces)
     yield from _repeated_labels(parts)
@@ -34,8 +36,8 @@ def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
 
 
 def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Report labels that several rows of the line use; only connectors and anchors may share a
-    label.
+    """Report labels that occur in several rows of the line, except labels of connectors and
+    anchors.
     """
     rows: dict[str, dict[tuple[int, int], Part]] = defaultdict(dict)
     for part in parts:
@@ -54,7 +56,7 @@ def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Report serial numbers that are used for more than one item of a component."""
+    """Report serial numbers that are used for more than one item of the same component."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
         for serial in part.serials:
@@ -72,7 +74,6 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _releases(file: MooringFile) -> Iterator[Verdict]:
-    """Report release codes without a release in the line, and repeated codes."""
     for message in unknown_releases(file.releases, file.pieces, file.deployed):
         yield _warning(None, message, "Check the serial numbers of the releases.")
     serials = [one.serial for one in file.releases if one.serial is not None]
@@ -86,8 +87,8 @@ def _releases(file: MooringFile) -> Iterator[Verdict]:
 
 
 def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict]:
-    """Report batteries that end before the deployment or the calibration, and calibrations after
-    the deployment.
+    """Report batteries that end before the deployment or before the calibration, and calibrations
+    after the deployment.
     """
     deployed = file.deployed.date[:10] if file.deployed and file.deployed.date else None
     for part in parts:

@@ -1,7 +1,7 @@
-"""Situations of a mooring: its environment as given, or with something changed.
+"""Situations of a mooring: its environment as given, or with one change.
 
-Changes are still water, tide, biofouling, strumming, and the values as deployed. The rules on the
-strength and coverage of the currents are here, too.
+The changes are still water, tide, biofouling, strumming, profiler position, and the values as
+deployed. The rules on the strength of the currents and the depths they cover are here, too.
 """
 
 from collections import deque
@@ -51,9 +51,9 @@ def case_of(environment: int, situation: str) -> str:
     Parameters
     ----------
     environment : number of the environment in file order, from 1
-    situation : name of the situation, with suffixes s strumming, g growth, h high water, l low
-        water, d as deployed, p profiler at its lower stop, q profiler at the maximum wire angle;
-        still water is 0
+    situation : name of the situation. The code is 0 for still water; otherwise it is the number
+        with a suffix: s strumming, g growth, h high water, l low water, d as deployed, p profiler
+        at its lower stop, q profiler at the maximum wire angle
     """
     if situation in (STILL, STILL_LOW):
         return "0" if situation == STILL else "0l"
@@ -71,14 +71,20 @@ entry.
 
 
 def situations_of(design: Design) -> tuple[Situations, ...]:
-    """Solve a design as given, then in every situation that its file requires.
+    """Solve a design as given, and then in every situation that its file requires.
 
-    Situations are still water; high and low water and still low water if the environment has a
-    `depth_range`; profilers at their lower stops and at the point of maximum wire angle; biofouling
-    if `fouling` is set; cables with Cn × 1.5 if no strumming law is in use; and the depth and
-    lengths of `deployed` if they differ from the design. Pieces that are cut to fit keep the length
-    that fits as given. A surface line that is slack in still water, because it is longer than the
-    water depth, has no unique shape there, and that situation is omitted.
+    These situations are
+
+    - still water;
+    - high water, low water and still low water, if the environment has a `depth_range`;
+    - profilers at their lower stops and at the position of maximum wire angle;
+    - biofouling, if `fouling` is set;
+    - cables with Cn × 1.5, if no strumming law is in use;
+    - the depth and lengths of `deployed`, if they differ from the design.
+
+    A fitted piece keeps the length from the design as given. Still water is omitted for a surface
+    line that is longer than the water depth, because the line is then slack and has no unique
+    shape.
     """
     given = solved(AS_GIVEN, design)
     if given[0].result is None:
@@ -143,7 +149,9 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the file with other water: still water, high water, low water, and still low water."""
+    """Yield the file with changed water and the name of the situation: still water, still low
+    water, high water, low water.
+    """
     environment, tide = file.environment, file.environment.depth_range
     if water.moving or environment.wind is not None:
         still = replace(environment, current=_NO_CURRENT, wind=None)
@@ -156,7 +164,7 @@ def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, Moor
 
 
 def strumming_file(file: MooringFile) -> MooringFile | None:
-    """Return the file with Cn × 1.5 on its cables; None if the file has a strumming law or no
+    """Return the file with Cn × 1.5 for its cables; None if the file has a strumming law or no
     cables.
     """
     if file.solver.strumming is not None:
@@ -168,7 +176,7 @@ def strumming_file(file: MooringFile) -> MooringFile | None:
 
 
 def _shapeless(situation: Situation) -> bool:
-    """Return whether a situation is still water in which a slack line has no unique shape."""
+    """Return whether a situation has no unique shape because a slack line is in still water."""
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
@@ -181,16 +189,16 @@ SOUNDING = 1.0, 0.023
 
 
 def as_deployed(design: Design) -> Design:
-    """Return the design with depth, position, serial numbers and cut lengths of `deployed`.
+    """Return the design with the depth, position, serial numbers and cut lengths in `deployed`.
 
-    A piece that is cut to fit keeps its design length, unless `deployed` has another.
+    A fitted piece keeps its design length, unless `deployed` specifies a length.
 
     Raises
     ------
     UsageError
         The file has no key `deployed`.
     NoEquilibrium
-        A piece of fitted length has no length that fits, in the design.
+        The design has a fitted piece, and no length fits.
     """
     file = design.file
     if file.deployed is None:
@@ -199,7 +207,9 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Apply `deployed` to a file that has no piece of fitted length."""
+    """Replace the values of a file with those under `deployed`. The file must not have a fitted
+    piece.
+    """
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}
@@ -218,7 +228,7 @@ def _deployed_file(file: MooringFile) -> MooringFile:
 
 
 def differs(designed: MooringFile, deployed: MooringFile) -> bool:
-    """Return whether the depth or the lengths of the mooring as deployed differ from the design."""
+    """Return whether the mooring as deployed differs from the design in water depth or lengths."""
     return deployed.environment.depth != designed.environment.depth or any(
         there.length != piece.length
         for piece, there in zip(designed.pieces, deployed.pieces, strict=True)
@@ -323,7 +333,8 @@ USUAL_CURRENT = 0.2
 """Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
-"""Ratio of the design current to the strongest current of its record, below which it is too weak.
+"""Ratio of the design current to the strongest current of its record, below which the design
+current is too weak.
 """
 
 WEAK_BESIDE_OTHERS = 0.02
@@ -334,10 +345,10 @@ WEAK_BESIDE_OTHERS = 0.02
 
 @rule("current")
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
-    """Check the strongest current of all environments, and the depths that the current profiles do
-    not cover.
+    """Check the strongest current of all environments, and report depths that the current profiles
+    do not cover.
 
-    Yields each verdict with the leg in its environment.
+    Yield each verdict with the leg in the affected environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
     for leg, speed in zip(legs, speeds, strict=True):
@@ -374,8 +385,8 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
 
 
 def _records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
-    """Return the strongest current of each record from which an environment takes one time
-    [m/s].
+    """For each environment whose current is one time of a record, yield the leg and the strongest
+    current of the record [m/s].
     """
     sources = {leg.file.environment.current.record: leg for leg in legs}
     for source, leg in sources.items():
@@ -384,7 +395,7 @@ def _records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
 
 
 def _left_out(leg: Leg) -> str:
-    """Describe the depths that a current profile does not cover; "" if it covers all.
+    """Describe the depths that a current profile does not cover; empty if it covers all.
 
     A single speed at the surface counts as a current that is uniform with depth.
     """

@@ -1,4 +1,4 @@
-"""Strength rules: load capacity of every piece, minimum tension of the line, and anchor holding."""
+"""Strength rules: loads on every piece, minimum tension of the line, and holding of the anchor."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -19,7 +19,7 @@ from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
-"""Ratio of a piece's strength to that of the cables on both sides below which the piece is a weak
+"""Ratio of a piece's strength to that of the cables on both sides, below which the piece is a weak
 link.
 """
 
@@ -28,11 +28,11 @@ WEIGHT_OF_A_HINGE = 0.5
 
 
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
-    """Return the allowable load of a component in use [N]; None if neither its working load nor its
-    breaking load is known.
+    """Return the allowable load of a component in service [N]; None if its working load and
+    breaking load are unknown.
 
-    The smaller of its working load and its breaking load divided by the safety factor, as far as
-    known and applicable. The factor is that for a surface mooring, synthetic rope or steel.
+    It is the smaller of the working load and the breaking load divided by the safety factor. The
+    factor is that for a surface mooring, for synthetic rope or for steel.
     """
     return lesser_load(component, 1.0, safety_factor(component, factors, surface))
 
@@ -51,8 +51,8 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load to request for a component without loads: breaking load for ropes
-    and wires, working load for other components.
+    """Return the key of the load that a component without loads should have: `breaking_load` for
+    cables and chains, `working_load` for other components.
     """
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
@@ -60,9 +60,9 @@ def wanted_load(component: Component) -> str:
 def passes_load_on(file: MooringFile, index: int) -> bool:
     """Return whether the line tension passes through a piece.
 
-    The top piece, the anchor and a piece at the free end of a leg are loaded at one end only; the
-    adjoining shackle carries their load. A hinge of another program's design, without length or
-    weight, is not hardware.
+    The top piece, the anchor and a piece at the free end of a leg are loaded at one end only, and
+    the shackle next to them carries their load. A hinge without length and weight, which other
+    programs use in their designs, is not hardware.
     """
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
@@ -78,7 +78,7 @@ def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -
 
 
 def safety_factor_name(component: Component, surface: bool) -> str:
-    """Return the name of the `safety_factor` that applies to a component."""
+    """Return which `safety_factor` of the file applies to a component."""
     if surface:
         return "surface"
     return "synthetic" if is_synthetic(component) else "steel"
@@ -86,14 +86,15 @@ def safety_factor_name(component: Component, surface: bool) -> str:
 
 @criteria("strength")
 def strength(leg: Leg) -> Iterator[Criterion]:
-    """Compare the maximum tension in each piece with its working load, and with breaking load /
-    factor.
+    """Compare the maximum tension in each piece with its working load, and with its breaking load
+    divided by the safety factor.
 
-    The top piece and the anchor are checked only if they have a load: no tension passes through
-    them.
+    The top piece and the anchor are checked only if they have a load, because no tension passes
+    through them.
 
-    UFC 4-159-03 table 3-7 requires 3 on new breaking strength of chain and wire. Oceanographic
-    practice uses 3 to 5, with synthetics and surface moorings at the upper end.
+    UFC 4-159-03 table 3-7 requires a factor of 3 on the breaking strength of new chain and wire.
+    Oceanographic practice is 3 to 5, with the larger values for synthetic ropes and surface
+    moorings.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -129,10 +130,11 @@ def _strength_words(
 
 
 def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: str = "") -> str:
-    """Describe the load on a piece [N], such as ``Tension in wire 1 is 5.31 kN``.
+    """Describe the load on a piece, such as ``Tension in wire 1 is 5.31 kN``.
 
     Parameters
     ----------
+    tension : load [N]
     when : operation, such as " during the descent"
     bound : " at most" if the load is an upper bound
     """
@@ -148,10 +150,10 @@ def no_load_known(load: str) -> tuple[str, str]:
 
 @criteria("release-load")
 def release_load(leg: Leg) -> Iterator[Criterion]:
-    """Check the load on every release, while deployed and on opening, against its rated loads.
+    """Check the load on every release, in service and at opening, against its rated loads.
 
-    On opening it carries the tension below it, limited by its `opening_load`. Without an
-    `opening_load`, the allowable load while deployed applies, and the message mentions that.
+    At opening, a release carries the tension below it, which must not exceed its `opening_load`. If
+    this is unknown, the allowable load in service applies, and the message says so.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -192,10 +194,10 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
     """Report weak links: pieces with less than half the strength of the cables on both sides, and a
     tension above half of their own strength.
 
-    A line of uneven strength carries unnecessary weight and parts at its weak link. If there is
-    none, the piece closest to one is reported. Chain is excluded because it is oversized against
-    wear. Loads known only as lower bounds of an estimate are excluded because they are no measure
-    of relative strength.
+    A line of uneven strength carries unnecessary weight, and it parts at its weak link. If there is
+    no weak link, the piece closest to being one is reported. Chain is excluded because it is
+    oversized against wear. Loads that are only lower bounds of an estimate are excluded because
+    they are no measure of relative strength.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
     loads = [
@@ -233,8 +235,8 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """Yield, for each piece between two cables: strength ratio, piece, load of the piece, load of
-    the weaker cable [N].
+    """For each piece between two cables, yield the strength ratio, the piece, its allowable load,
+    and the allowable load of the weaker cable [N].
     """
     cables = [
         load if isinstance(piece.component, Cable) else None
@@ -255,9 +257,9 @@ def slack(leg: Leg) -> Iterator[Criterion]:
 
     A slack line wears, kinks and takes snap loads. Mooring groups require about 500 to 1000 N above
     the release at slack water. No published rule exists, so the defaults are 500 N for wire and 300
-    N for rope. Pieces with ``slack: allowed`` and line on the seabed are exempt. A line that is
-    short down to its release (`SHORT_LEAD`) depends on its floats alone, and only a limit set by
-    the design applies.
+    N for rope. Pieces with ``slack: allowed`` and line on the seabed are exempt. In a line that is
+    shorter than `SHORT_LEAD` above its release, the tension depends on the floats alone, so only a
+    limit set by the design applies.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
@@ -290,8 +292,10 @@ _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 
 @criteria("anchor-weight", of_anchor=True)
 def anchor_weight(leg: Leg) -> Iterator[Criterion]:
-    """Check that the anchor's weight in water is at least factor (V + H / friction): Dewey's rule
-    for deadweights, factor 1.5.
+    """Check that the anchor's weight in water is at least factor × (V + H / friction).
+
+    V and H are the vertical and horizontal anchor load. This is Dewey's rule for deadweights, with
+    a factor of 1.5.
     """
     weight = _weight(leg)
 
@@ -316,7 +320,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("anchor-uplift", of_anchor=True)
 def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
-    """Check that the upward pull V is at most the anchor's weight in water / factor."""
+    """Check that the upward anchor load V is at most the anchor's weight in water / factor."""
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     limit = None if weight is None else weight / factor
 
@@ -336,7 +340,9 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("anchor-sliding", of_anchor=True)
 def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
-    """Check that the horizontal pull H is at most friction (weight in water / factor - V)."""
+    """Check that the horizontal anchor load H is at most friction × (weight in water / factor -
+    V).
+    """
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     friction, seabed = leg.file.anchor_friction, leg.file.environment.seabed
     down = "" if seabed is None else f" on a slope of {seabed.slope:.4g}°"
@@ -367,18 +373,19 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
-"""Rules that a sufficient weight of the anchor satisfies. The weight that the first requires
-satisfies all, in the same situation.
+"""Rules that a sufficiently heavy anchor satisfies. The weight required by the first rule satisfies
+all of them in the same situation.
 """
 
 
 def with_one_weight(
     findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
 ) -> Iterator[Finding]:
-    """Give all findings on an anchor that is too light the remedy of the finding with the largest
+    """Give all findings about an anchor that is too light the same remedy, which states the largest
     required weight.
 
-    `governing` are these findings by the place of the anchor, see `heaviest`.
+    `governing` has the finding with the largest required weight, by place of the anchor (see
+    `heaviest`).
     """
     for one in findings:
         lead = governing.get(one.place)
@@ -387,8 +394,8 @@ def with_one_weight(
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
-    """Return, by the place of the anchor, the finding with the largest required weight among those
-    of anchors that are too light.
+    """Return the finding with the largest required weight for each anchor that is too light, by
+    place of the anchor.
     """
     found: dict[Place | None, Finding] = {}
     for one in findings:
@@ -400,7 +407,7 @@ def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
 
 
 def _weight(leg: Leg) -> float | None:
-    """Return the weight of the anchor in water [N]; None for a mass of unknown material."""
+    """Return the weight of the anchor in water [N]; None if its material is unknown."""
     return leg.anchor_weight if leg.file.anchor.material_known else None
 
 
@@ -410,7 +417,7 @@ def _heavier(leg: Leg, weight: float) -> str:
 
 
 def _in_air(leg: Leg, weight: float) -> str:
-    """Return the masses in air of steel and of concrete that have a given weight in water [N]."""
+    """Describe the masses in air of steel and of concrete with a given weight in water [N]."""
     water = leg.water
     density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)

@@ -28,8 +28,9 @@ _SET_WAVES = "Set `waves:` in the environment: a design sea state, and a scatter
 
 @dataclass(frozen=True)
 class MooringInWaves:
-    """Mooring in the waves of its environment: analysis, reason why it failed, or None without
-    waves.
+    """A mooring in the waves of its environment.
+
+    `waves` is the analysis, the reason why it failed, or None if the environment has no waves.
     """
 
     leg: Leg
@@ -49,11 +50,11 @@ class MooringInWaves:
 
 @rule("wave-strength")
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Check the maximum tension of each piece in waves against its loads.
+    """Check the loads of each piece against its maximum tension in waves.
 
-    The limits are its working load, and its breaking load over the factor that API RP 2SK requires
-    for dynamic analysis. For a mooring that reaches the surface, the result without waves is
-    unknown.
+    The limits are its working load, and its breaking load divided by the factor that API RP 2SK
+    requires for a dynamic analysis. For a surface mooring whose environment has no waves, the
+    result is unknown.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
@@ -86,8 +87,8 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 @rule("wave-slack")
 def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Check that the minimum tension of each piece in waves exceeds zero, where snap loads
-    begin.
+    """Check that the minimum tension of each piece in waves is positive, because a slack line takes
+    snap loads.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
@@ -107,8 +108,8 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 @rule("fatigue")
 def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Check the fatigue life of every piece with a published curve against the service time × the
-    factor.
+    """Check that the fatigue life of every piece with a published fatigue curve is at least the
+    service time × the factor.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
@@ -139,7 +140,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 
 def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
-    """Describe the range of tensions according to measurements at sea."""
+    """Describe the tensions that follow from measurements at sea."""
     if row.measured_low is None or row.measured_high is None:
         return ""
     tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
@@ -148,8 +149,8 @@ def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
-    """Turn a failure into unknown if a rope of unspecified stiffness makes the computed tensions
-    too high.
+    """Change a failure to unknown if the computed tensions may be too high because the stiffness of
+    a rope is unspecified.
     """
     if verdict.state is not State.FAIL or not waves.warnings:
         return verdict

@@ -1,4 +1,4 @@
-"""Command line: parse arguments, call the program, and show results."""
+"""Command line: parse arguments, run commands, and show results."""
 
 from calm.cli.main import main
 

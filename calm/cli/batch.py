@@ -39,24 +39,25 @@ def batch(
     catalog: options.CatalogFiles = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
+    """Solve a mooring, or a net of legs, in every profile of a record or a
+    hindcast.
 
-    Each profile replaces the current of the file. The result has every
-    component and every clamped instrument at every time; a profile without
-    equilibrium is NaN, with its status. Statistics are printed, and written as
-    RESULT.summary.json and .html.
+    Each profile replaces the current in the file. The result has values for every
+    component and every clamped instrument at every time. For a profile without
+    equilibrium they are NaN, and the status gives the reason. Statistics are
+    printed, and written to RESULT.summary.json and RESULT.summary.html.
 
-    The result is written completely or not at all; an interrupted run starts again from the
-    beginning.
+    The result is written completely or not at all. After an interruption, run the
+    command again from the beginning.
 
     Parameters
     ----------
     currents
-        The record: NetCDF, zarr or CSV.
+        Record of currents: NetCDF, zarr or CSV.
     output
-        The result, .nc.
+        Result file, .nc.
     time
-        Only profiles from A to B, both included, such as 2024-03/2024-05.
+        Only profiles from A to B inclusive, such as 2024-03/2024-05.
     every
         Only every Nth profile.
     at
@@ -118,7 +119,6 @@ def batch(
 
 
 def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> str:
-    """Describe the number of profiles with an implausible current, and the first such profile."""
     from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed
@@ -130,7 +130,7 @@ def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> 
 
 
 def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
-    """Report the file written and the profiles without a result, and return the exit code."""
+    """Report the output file and the profiles without a result, and return the exit code."""
     from calm.batch.statuses import Ending, endings
 
     narrate(f"{output} written")
@@ -145,7 +145,7 @@ def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
 
 
 def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
-    """Describe NaN profiles by outcome, with their statuses."""
+    """Yield, for each category of unsolved profiles, their number and their statuses."""
     from calm.batch.statuses import Ending, ending_of, endings
 
     for ending, count in endings(counts).items():
@@ -160,7 +160,7 @@ def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
 
 def check_output(output: Path, *inputs: Path) -> None:
     """Reject an output path that cannot be written, or that would overwrite an input."""
-    # unlike `Path.resolve`, it takes links that lead round in a circle
+    # unlike `Path.resolve`, `realpath` accepts links that form a circle
     place = os.path.realpath(output)
     if output.is_symlink() and not output.exists():
         raise UsageError(f"cannot write {output}: it is a symbolic link to a missing file")

@@ -26,17 +26,16 @@ def build(
     """Edit a mooring or tow interactively, with live results.
 
     The line is shown as a table next to its drawing and the design check.
-    Comments, order and units in the file are preserved; only the values you
-    edit change. Unsaved work is kept next to the file, and offered again after
-    a closed terminal, a crash or a power failure. Press ? for all keys.
+    Comments, order and units in the file are preserved; only the values that you
+    edit change. Unsaved work is stored next to the file, and can be recovered
+    after a closed terminal, a crash or a power failure. Press ? for all keys.
 
     Parameters
     ----------
     file
-        A mooring file, existing or new. Without FILE, you name the file when you save.
+        A mooring file, existing or new. Without FILE, you choose a name when you save.
     environment
-        The environment to start in: a name from the file, or an environment
-        file.
+        Environment at the start: a name from the file, or an environment file.
 
     Examples
     --------
@@ -54,5 +53,7 @@ def build(
 
 
 def _is_redirected() -> bool:
-    """Whether standard input and output are a terminal, but not the standard error output."""
+    """Return whether both standard input and output are terminals, so that only standard error is
+    redirected.
+    """
     return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout))

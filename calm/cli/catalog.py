@@ -38,7 +38,7 @@ Kind = Literal["sphere", "cylinder", "body", "profiler", "cable", "chain", "anch
 def list_components(
     words: list[str] | None = None, /, *, kind: Kind | None = None, json: bool = False
 ) -> ExitCode:
-    """List all components by family, or those that match every word.
+    """List all components by family, or the components that match every word.
 
     Among the matches, favourites and components recently used in the line builder
     come first, followed by components used in the shipped lines. Misspelt words
@@ -48,13 +48,13 @@ def list_components(
     Parameters
     ----------
     words
-        Words, or parts of words, of the id, name, manufacturer, trade name, material or source.
+        Words, or parts of words, in the id, name, manufacturer, trade name, material or source.
         Sizes in millimetres or inches (`8mm wire`, `17in glass`) and limits (`breaking>50kN`,
-        `net<-100`, `depth>=6000`) are understood.
+        `net<-100`, `depth>=6000`) are allowed, too.
     kind
         Only components of one kind.
     json
-        As JSON: objects with every field, in SI units and degrees.
+        Print JSON: objects with every field, in SI units and degrees.
     """
     catalogue = _load()
     if words:
@@ -64,7 +64,6 @@ def list_components(
 
 
 def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defined]:
-    """The components that have every word of a text, or, with a note, most of the words."""
     from calm.assemble.catalogue_search import Index
     from calm.files.editing.user_state import Remembered
 
@@ -94,15 +93,15 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show all values of components with their sources, and derived values.
 
     Derived values are the net force in water, and Kn and Kt, the drag at 1 m/s.
-    Entries for the same item from different sources are shown side by side, the recommended one
-    first.
+    Entries for the same item from different sources are shown side by side, the
+    recommended one first.
 
     Parameters
     ----------
     ids
-        Ids of components, as `calm catalog list` gives them.
+        Ids of components, as printed by `calm catalog list`.
     json
-        As JSON: objects with every field, in SI units and degrees.
+        Print JSON: objects with every field, in SI units and degrees.
     """
     catalogue = _load()
     chosen: dict[str, Defined] = {}
@@ -126,7 +125,8 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
 def add(
     id: str, figures: list[str], /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None
 ) -> ExitCode:
-    """Add a component to your own catalogue, which every command reads, and show its card.
+    """Add a component to your own catalogue, which every command reads, and show
+    its card.
 
     As in `calm catalog check`, impossible values and values without a source are
     rejected, and missing values that the design check needs are listed.
@@ -191,20 +191,20 @@ def add(
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     """Find impossible and missing values in a catalogue.
 
-    Impossible are, for example, a sphere with more buoyancy than its volume
+    Examples of impossible values are a sphere with more buoyancy than its volume
     allows, a rope heavier than a solid bar of its diameter, and a cable stiffer
     than steel. Values without a source are findings, too. The exit code is 1 if
     there is a finding.
 
-    Missing values that a design check or the total mass needs are listed, but
-    are not findings. Values that are known to be unpublished are marked.
+    Missing values that a design check or the total mass needs are listed, but are
+    not findings. Values that are known to be unpublished are marked.
 
     Parameters
     ----------
     file
-        A catalogue file; by default the whole catalogue with your own files.
+        A catalogue file; by default the shipped catalogue and your own files.
     json
-        As JSON: a list of objects with `id`, `finding` (true or false), `message`, `missing` and
+        Print JSON: a list of objects with `id`, `finding` (true or false), `message`, `missing` and
         `searched`.
     """
     from calm.checks.catalogue_rules import check_catalogue, missing_figures

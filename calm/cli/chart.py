@@ -74,7 +74,7 @@ def solve(
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     diameter
-        Diameter of the cable; with the next three options, instead of K.
+        Diameter of the cable; used with the next three options instead of K.
     cd
         Drag coefficient of the cable.
     speed
@@ -135,10 +135,9 @@ def draw(
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     output
-        The file to write, as .svg, .png or .pdf.
+        File to write: .svg, .png or .pdf.
     lower_end
-        The cables drawn: those whose angle at A is below 90° (the default), or
-        above.
+        Which cables to draw: cables whose angle at A is below 90° (the default) or above.
     """
     from calm.drawing.picture import check_format, image
     from calm.drawing.plot import figure_svg
@@ -156,7 +155,7 @@ _CABLE = ("weight", "k", "diameter", "cd", "speed", "density")
 
 
 def _drag_over_weight(cable: dict[str, float]) -> float:
-    """K as given, or of the cable and the current."""
+    """Return K as given, or compute it from the options for the cable and the current."""
     from calm.physics.seawater import REFERENCE_DENSITY
 
     parts = ("diameter", "cd", "speed")

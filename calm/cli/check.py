@@ -1,4 +1,4 @@
-"""``calm check``: judge moorings in all their environments."""
+"""``calm check``: check moorings in all their environments."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def check(
     workers: int | None = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Check designs: solve each mooring in each environment and apply the design rules.
+    """Check designs: solve each mooring in each environment and apply the design
+    rules.
 
     Each mooring is solved as given, in still water, with strumming cables and, if
     its file requires it, at high and low water and with biofouling. CALM also
@@ -149,10 +150,9 @@ def _read(
     against: Path | None,
     ready: Callable[[], None],
 ) -> tuple[list[DesignFile], list[Path], Design | None]:
-    """Read the designs to check, the tows among the files, and the earlier design, or report all
-    mistakes.
+    """Read the designs and the earlier design, and separate the files that are tows.
 
-    `ready` is called while other processes read.
+    `ready` is called while other processes read. Raises InputError with the mistakes of all files.
     """
     from calm.case import load
     from calm.files.mooring_file import refuse_tow
@@ -178,7 +178,7 @@ def _read(
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
-    """Refuse a report that could not be written, before anything is solved."""
+    """Reject a report that cannot be written, before anything is solved."""
     from calm.report.folder import REPORT_FILES, check_folder
     from calm.report.provenance import moment
 
@@ -196,7 +196,7 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 def _check_missing(
     missing: bool, output: Path | None, files: Sequence[Path], other: Sequence[Path | None]
 ) -> None:
-    """Refuse a block of missing figures that could not be written, before anything is solved."""
+    """Reject the output file of --missing if it cannot be written, before anything is solved."""
     if output is not None and not missing:
         raise UsageError("-o needs --missing; to write the findings, use --json or --report")
     if missing and any(other):
@@ -241,7 +241,7 @@ def _answer(
     """Print the findings, and write the report if requested.
 
     The PDF is typeset at the same time, because typst releases the interpreter lock. `names` are
-    the names of separate PDF files per mooring, if requested.
+    the names of separate PDF files for each mooring, if requested.
     """
     from concurrent.futures import ThreadPoolExecutor
 

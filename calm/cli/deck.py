@@ -30,14 +30,14 @@ def deck(
     catalog: options.CatalogFiles = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Draw the diagram and write the deck sheets of moorings and nets.
+    """Write the deck sheets of moorings and nets, with a diagram.
 
     The file deck.pdf has a mooring diagram, deployment and recovery logs, cutting
     list, hardware bill, shipping list, lifts, instrument sheet and, for
     anchor-last deployment, the anchor drop plan. The diagram is also written as
     diagram.pdf and diagram.svg, the lists as CSV files and as sheets of
     deck.xlsx, and the plan as plan.json. A net is drawn as a whole (also as
-    net.svg) and listed leg by leg; its drop is not planned.
+    net.svg) and listed leg by leg, without an anchor drop plan.
 
     Parameters
     ----------
@@ -47,8 +47,9 @@ def deck(
         Page size.
     environment
         Environment in which depths and lengths are computed: a name from the files, or an
-        environment file. Further environments are design currents. By default, the default
-        environment of the file, with its named environments as design currents.
+        environment file. Repeatable; further environments are used as design currents. By default,
+        the sheets are for the default environment of the file, and its named environments are the
+        design currents.
     order
         Deployment order.
     ship_speed
@@ -163,7 +164,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 
 def _missing_characters(deck: Deck) -> tuple[str, ...]:
-    """Describe characters of the file that the font of the sheets lacks, with their places."""
+    """Describe the characters of the file that the font of the sheets lacks, with their places."""
     from calm.drawing.typesetting import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
@@ -175,7 +176,7 @@ def _missing_characters(deck: Deck) -> tuple[str, ...]:
 
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
-    """Yield the texts of the file that appear on the sheets, with their place."""
+    """Yield the texts of the file that appear on the sheets, each with the name of its place."""
     from calm.report.provenance import title_pairs
 
     for name, text in title_pairs(deck.file):
@@ -191,7 +192,7 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 
 
 def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
-    """Folder of the sheets of each mooring.
+    """Return the folder for the sheets of each mooring.
 
     UsageError: two moorings have the same folder, or a folder has the path of an input file.
     """

@@ -27,10 +27,10 @@ def diff(
     """Compare two designs piece by piece, and show the effect of the changes.
 
     Pieces and clamps are matched by label, otherwise by component and position.
-    Parts added, removed, moved or changed are listed; depth, knockdown,
-    tensions, anchor, weights and the margins of calm check are shown side by
-    side. With one file, its design is compared with its `deployed:`. A design
-    without equilibrium is compared too. The exit code is 0 whether or not the
+    Parts added, removed, moved or changed are listed; depth, knockdown, tensions,
+    anchor, weights and the margins of calm check are shown side by side. With one
+    file, its design is compared with its `deployed:`. A design without
+    equilibrium can be compared, too. The exit code is 0 whether or not the
     designs differ.
 
     Parameters

@@ -1,4 +1,4 @@
-"""``calm docs``: the pages of the manual on this machine."""
+"""``calm docs``: find and open the pages of the manual on this machine."""
 
 import re
 from collections.abc import Sequence
@@ -24,16 +24,16 @@ _LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|[`*]|<!--.*?-->")
 def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) -> ExitCode:
     """Print the path of a manual page, open the page, or search the manual.
 
-    CALM prints the path of the page as text; `--open` opens the page in a browser
-    and needs no network. If the words are not the name of a page, the pages that
-    contain them are listed, the most relevant first, each with a line of its
-    text.
+    Without options, the path of the page's text file is printed. `--open` opens
+    the page in a browser and needs no network. If the words are not the name of a
+    page, the pages that contain them are listed with a line of their text, the
+    most relevant page first.
 
     Parameters
     ----------
     words
-        Name of the page, with or without its part of the manual (batch, reference/batch, how-to),
-        or words to search for.
+        Name of the page, with or without its part of the manual (batch, reference/batch), name of a
+        part (how-to), or words to search for.
     open_
         Open the page in a browser.
 
@@ -124,9 +124,9 @@ def _pages(folder: Path, suffix: str) -> dict[str, Path]:
 
 
 def _named(page: str, pages: dict[str, Path]) -> str | None:
-    """The page of a name, None if there is none.
+    """Return the full name of the page with a given name, or None.
 
-    UsageError: there are several.
+    UsageError: several pages have the name.
     """
     wanted = page.strip("/").removesuffix(".md").removesuffix(".html")
     for exact in (wanted, f"{wanted}/index"):
@@ -139,9 +139,9 @@ def _named(page: str, pages: dict[str, Path]) -> str | None:
 
 
 def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
-    """Show a page of the site.
+    """Open a page of the built manual in a browser.
 
-    UsageError: the site is not built, or there is no browser.
+    UsageError: the manual was not built as a site, or there is no browser.
     """
     import webbrowser
 

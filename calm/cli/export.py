@@ -1,4 +1,4 @@
-"""``calm export``: a mooring or a tow written for another program."""
+"""``calm export``: write a mooring or a tow for another program."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ def export(
     """Write a mooring or a tow for another program.
 
     Features that the other program cannot represent are reported and listed at
-    the top of the file. A piece cut to fit is exported with its cut length.
+    the top of the file. A fitted piece is exported with its cut length.
 
     Parameters
     ----------
     to
-        The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
-        with the current in a second file) or csv (a list).
+        Program or format: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
+        with the current in a second file) or csv (a list of the pieces).
     output
-        The file to write: .mat for mdd, .cbl for cbl, .txt or .dat for moordyn, .csv for csv.
+        File to write: .mat for mdd, .cbl for cbl, .txt or .dat for moordyn, .csv for csv.
 
     Examples
     --------

@@ -27,36 +27,37 @@ def grid(
     report: Path | None = None,
     json: OutputPath = None,
 ) -> ExitCode:
-    """Map temperature, salinity and velocity from moving instruments onto fixed levels.
+    """Map temperature, salinity and velocity from moving instruments onto fixed
+    levels.
 
-    The method is a Gaussian process over depth and time, with scales estimated
-    from the record. Each value has a standard deviation, which includes the
-    sensor error, the depth error times the local gradient, and the gap between
-    sensors. Each value has a flag: 8 between the sensors at that time, 3 beyond
-    them or if the data constrain the value poorly, 9 without a value.
+    The method is a Gaussian process over depth and time, whose scales are
+    estimated from the record. Each value has a standard deviation, which includes
+    the sensor error, the depth error times the local gradient, and the gap
+    between sensors. Each value has a flag: 8 if it lies between sensors at that
+    time, 3 if it lies beyond them or the data constrain it poorly, 9 if there is
+    no value.
 
     Parameters
     ----------
     depths
-        A result of calm motion.
+        Result file of calm motion.
     values
-        NetCDF files of instruments, by label, serial number or nominal depth;
-        files of one instrument as LABEL=FILE, if they do not say which; or
-        folders of files.
+        NetCDF files of instruments, or folders of such files. The instruments are identified
+        by label, serial number or nominal depth; for a file without these, write LABEL=FILE.
     output
-        The gridded file, .nc.
+        Gridded output file, .nc.
     levels
         FIRST:STEP:LAST in metres, such as "0:20:1500", or levels separated by commas.
     step
-        Values are means over this time, such as "1 h"; by default at the times
-        of DEPTHS.
+        Write means over intervals of this length, such as "1 h"; by default, values at the times of
+        DEPTHS are written.
     variables
-        temperature, salinity, u, v; by default all that are in the files. With TEMP, PSAL, UCUR or
-        VCUR, the file uses the OceanSITES names, in capitals.
+        temperature, salinity, u, v; by default all of these in the files. With TEMP, PSAL, UCUR or
+        VCUR, the output has the OceanSITES names in capitals.
     method
         depth-time, or depth, which treats each time separately.
     flags
-        Quality flags of the values that count as measured; 8 never does.
+        Quality flags of the values to use as measurements; values with flag 8 are never used.
     report
         Write a page and a PDF, grid.html and grid.pdf, in this folder.
     json

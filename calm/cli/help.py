@@ -1,4 +1,4 @@
-"""Format of `--help`: width, value names and examples."""
+"""Formatting of `--help`: width, names of values, and examples."""
 
 from __future__ import annotations
 
@@ -53,15 +53,17 @@ _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in 
 
 
 def metavar(option: str) -> str | None:
-    """Return the value name shown for an option; None if the option shows its type."""
+    """Return the name of an option's value in `--help`; None if the option shows its type."""
     return _VALUE_OF.get(option)
 
 
 class HelpAtWidth:
-    """Formatter of `--help`: as wide as the terminal, with a name for the value of each option."""
+    """Formatter of `--help`, which is as wide as the terminal and names the value of each
+    option.
+    """
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
-        """Print a panel; texts of options are wrapped to its width."""
+        """Print a panel of options, with their texts wrapped to its width."""
         from cyclopts.help import DefaultFormatter
         from rich.text import Text
 
@@ -79,7 +81,7 @@ class HelpAtWidth:
         DefaultFormatter()(console, options, panel)
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
-        """Print the usage, with the name of each value instead of its type."""
+        """Print the usage line with the name of each value instead of its type."""
         from cyclopts.help import DefaultFormatter
 
         known = re.compile(r"(--[\w-]+) ([A-Z]+)")
@@ -88,6 +90,8 @@ class HelpAtWidth:
 
 
 def examples(command: Callable[..., object]) -> str:
-    """Return the examples at the end of a docstring, for the end of `--help`."""
+    """Return the examples from the end of a command's docstring, to be shown at the end of
+    `--help`.
+    """
     text = cleandoc(command.__doc__ or "").partition("Examples\n--------\n")[2]
     return f"Examples:\n\n{text}"

@@ -31,22 +31,22 @@ def import_(
     allow_include: bool = False,
     json: OutputPath = None,
 ) -> ExitCode:
-    """Make mooring files from designs of other programs.
+    """Convert designs of other programs to mooring files.
 
-    The program is recognised from the content of the file. All values come
-    from the file. Guesses are marked as comments on their lines, and reported
-    together with omissions. A file that CALM cannot represent is rejected
-    with the reason, and nothing is written.
+    The program is recognised from the content of the file. All values come from
+    the file. Guesses are marked with comments on their lines, and reported
+    together with omissions. If CALM cannot represent a design, the reason is
+    reported and nothing is written.
 
     Parameters
     ----------
     files
         Files of other programs.
     output
-        The mooring file to write; for several files, the folder.
+        Mooring file to write; for several files, a folder.
     format
-        The program: mdd, cbl, moordyn, oceanarray, moords or table. By default recognised
-        from the content.
+        Program or format of the file: mdd, cbl, moordyn, oceanarray, moords or table. By default it
+        is recognised from the content.
     strict
         Reject files that need guesses.
     define
@@ -55,20 +55,21 @@ def import_(
     environment
         An environment file, instead of the environment in the file.
     onto
-        A mooring file: the list of instruments FILE (serial number, name, nominal depth, clock
-        offset; CSV, RODB's info.dat, oceanarray, or NetCDF) is assigned to its line, and OUTPUT
-        is a copy whose `deployed:` has the serial numbers.
+        A mooring file. FILE is then a list of instruments with serial number, name, nominal depth
+        and clock offset (CSV, RODB's info.dat, oceanarray, or NetCDF). Its instruments are assigned
+        to the line of the mooring, and OUTPUT is a copy of the mooring file with the serial numbers
+        in `deployed:`.
     columns
-        The columns of a table by their headings: name=Item,length=Len.
+        Headings of the columns of a table: name=Item,length=Len.
     sheet
-        The sheet of a workbook; needed if several have headings.
+        Name of the sheet in a workbook; needed if several sheets have headings.
     elements
-        A library of elements, for values that a list or oceanarray lacks: the mdcodes.mat of
-        Mooring Design & Dynamics, the table of moords, or a workbook.
+        Library of elements, which supplies values that a list or oceanarray lacks: the mdcodes.mat
+        of Mooring Design & Dynamics, the table of moords, or a workbook.
     match_catalogue
-        Use catalogue entries for components that agree in name and values.
+        Use catalogue entries for components with the same name and values.
     allow_include
-        Allow a file to include others from outside its own folder.
+        Allow a file to include files from outside its own folder.
     json
         Write guesses and omissions as JSON (- for standard output).
 
@@ -134,7 +135,6 @@ def import_(
 
 
 def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode:
-    """Assign a list of instruments to the line of a mooring file, and write the copy."""
     from calm.motion.assigned_instruments import assign_instruments
     from calm.report import result_files
 
@@ -169,7 +169,7 @@ def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
 
 
 def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
-    """Path of each mooring file to write.
+    """Return the path of the mooring file for each input file.
 
     UsageError: two files have the same path, or one would overwrite an input file.
     """

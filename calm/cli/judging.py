@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class Drawing(NamedTuple):
-    """Settings for the pages of moorings in the report.
+    """Settings for the pages of the report.
 
     Attributes
     ----------
-    alone : whether the report is of one mooring, with all its pages; otherwise it has a summary and
-        one page for each mooring
-    full : whether each of several moorings also gets all its pages as a separate PDF
+    alone : whether the report is about one mooring and has all its pages; otherwise it has a
+        summary and one page for each mooring
+    full : whether all pages of each of several moorings are also written as a separate PDF
     page_size : page size
     """
 
@@ -37,8 +37,10 @@ class Drawing(NamedTuple):
 
 
 class DrawnSection(NamedTuple):
-    """Section of a mooring in the report: its row of the summary, its HTML and PDF leaves, and all
-    its pages as a separate PDF, if requested.
+    """Section of the report for one mooring.
+
+    It has the row of the summary, the HTML and PDF pages and, if requested, a separate PDF with all
+    pages of the mooring.
     """
 
     section: CheckedSection
@@ -48,7 +50,7 @@ class DrawnSection(NamedTuple):
 
 
 class CheckedMooring(NamedTuple):
-    """The assessment of a mooring, and its section of the report if there is a report."""
+    """Assessment of a mooring, and its section of the report; None without a report."""
 
     assessment: Assessment
     drawn: DrawnSection | None
@@ -57,7 +59,7 @@ class CheckedMooring(NamedTuple):
 def drawn_section(
     assessment: Assessment, number: int, drawing: Drawing, against: Comparison | None = None
 ) -> DrawnSection:
-    """Draw the `number`th section of a report for HTML and PDF.
+    """Draw section `number` of a report for HTML and PDF.
 
     `against` is the comparison of the mooring with its earlier design.
     """
@@ -82,16 +84,16 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Check designs on the day of the report, by default today.
+    """Check designs; acceptances must be valid on the day of the report, by default today.
 
-    With many moorings, each process solves, checks and draws whole moorings; with few, the
-    environments are distributed over the processes.
+    With many moorings, each process solves, checks and draws whole moorings. With few moorings,
+    their environments are distributed over the processes.
 
     Parameters
-        ----------
-        workers : number of processes; None for one on each core
-        drawn : settings for the report; None without a report
-        draws : samples and seed of the probabilities; None without them
+    ----------
+    workers : number of processes; None for one on each core
+    drawn : settings for the report; None without a report
+    draws : number of samples and seed for the probabilities; None without probabilities
     """
     from calm.report.provenance import moment
 
@@ -111,9 +113,9 @@ def judge(
 
 
 def load_ahead(environments: int, drawn: bool) -> None:
-    """Import the modules needed for this number of environments, before processes are forked.
+    """Import the modules that the checks need, before processes are forked.
 
-    The compiled solver is loaded if it is in the cache.
+    If there are enough `environments` to solve, the compiled solver is loaded from the cache, too.
     """
     import calm.checks.assess
     import calm.checks.recovery
@@ -146,9 +148,10 @@ def _concluded(
     draws: tuple[int, int] | None,
     shared: uncertain.Mapped,
 ) -> CheckedMooring:
-    """Assess a mooring solved in its environments, and draw the `number`th section of the report.
+    """Assess a mooring that is solved in its environments, and draw section `number` of the report.
 
-    `draws` are samples and seed of the probabilities, or None; `shared` solves blocks of samples.
+    `draws` are the number of samples and the seed for the probabilities, or None. `shared`
+    distributes blocks of samples over processes.
     """
     from calm.checks import assess, design_check
 
@@ -161,8 +164,8 @@ def _concluded(
 
 
 def _solved_cases(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
-    """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
-    the others.
+    """Solve a design in one environment and apply the rules to each leg; an internal error of CALM
+    becomes a failed case, so that the other cases continue.
     """
     from calm.checks.design_check import environments_checked, failed_environment
 

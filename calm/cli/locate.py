@@ -1,4 +1,4 @@
-"""``calm locate``: the position of an anchor from acoustic ranges."""
+"""``calm locate``: find the position of an anchor from acoustic ranges."""
 
 from __future__ import annotations
 
@@ -33,44 +33,44 @@ def locate(
 ) -> ExitCode:
     """Locate an anchor from ship-to-release acoustic ranges.
 
-    Outliers are reported and rejected if enough ranges remain. The position
-    comes with its 95 % ellipse, the depth with its interval, and a warning if
+    Outliers are reported, and rejected if enough ranges remain. The result is the
+    position with its 95 % ellipse and the depth with its interval; CALM warns if
     the ship's positions constrain them poorly. If two positions fit, both are
-    given, and weighted by the possible fallback of an anchor from the planned
-    position. The exit code is 1 if both remain. Acoustic rays are assumed
-    straight.
+    reported, and weighted by the possible fallback of an anchor from the planned
+    position. The exit code is 1 if both remain possible. Acoustic rays are
+    assumed straight.
 
     Parameters
     ----------
     file
-        CSV file with the columns latitude, longitude (WGS 84, of the transducer; degrees, or
-        degrees and minutes) and range[m], or the two-way time[s]; or a survey file without column
-        headings, as written for the programs of WHOI and NOC.
+        CSV file with the columns latitude, longitude, and range[m] or two-way time[s]. Positions
+        are those of the transducer in WGS 84, in degrees or in degrees and minutes. Survey files
+        without column headings, as written for the programs of WHOI and NOC, are accepted, too.
     sound_speed
-        Speed of sound for times: a speed, or a CSV file with the columns
-        depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges
-        in metres.
+        Speed of sound with which times are converted: a speed, or a CSV file with the
+        columns depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges in
+        metres.
     transducer
         Depth of the ship's transducer.
     depth
         Water depth at the anchor, if known; otherwise it is estimated.
     above_seabed
-        Height above the seabed of the transponder, such as the release.
+        Height of the transponder, such as the release, above the seabed.
     plot
         Draw the ranges as circles about the ship, with the position found:
         .png, .svg or .pdf.
     json
         Write the position as JSON (- for standard output).
     near
-        Planned latitude and longitude of the anchor, used to weight two
-        positions; by default the planned position in the file of --update.
+        Planned latitude and longitude of the anchor, by which two possible positions are
+        weighted; by default the planned position in the file of --update.
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
-        A mooring file: write position and depth into its `deployed:`, and report the distance from
-        its planned position. If two positions remain, if the depth differs from the planned one by
-        more than 30 m or 3 %, or if the position is doubtful for another reason, nothing is
-        written, and the exit code is 1.
+        Mooring file in which position and depth are written to `deployed:`. The distance from its
+        planned position is reported. If two positions remain, if the depth differs from the planned
+        depth by more than 30 m or 3 %, or if the position is doubtful for another reason, nothing
+        is written and the exit code is 1.
     accept
         Write the position even if it is doubtful.
 

@@ -1,4 +1,4 @@
-"""The command ``calm``: its subcommands, and conversion of errors to a message and exit code."""
+"""The command ``calm``: its subcommands, and conversion of errors to messages and exit codes."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ app = App(
     result_action="return_value",
 )
 _SYNONYMS = {"run": ("tow", "solve")}
-"""Other words for commands, which the message about an unknown command answers."""
+"""Other words for commands; if one of them is typed, the message suggests the command."""
 
 _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
@@ -151,13 +151,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Parameters
     ----------
-    arguments : the words after ``calm``; those of the process when absent
+    arguments : the words after ``calm``; by default those of the process
 
     Returns
     -------
     int
-        An `ExitCode`. Whatever happens, no traceback is printed, unless the environment variable
-        CALM_DEBUG is 1.
+        An `ExitCode`. No traceback is ever printed, unless the environment variable CALM_DEBUG is
+        1.
     """
     prepare()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins takes time

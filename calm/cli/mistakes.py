@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def complaint(error: CycloptsError) -> str:
-    """Return the message for a command line that cannot be parsed, and the correct form."""
+    """Return the message for an invalid command line, with the correct form."""
     command = " ".join(("calm", *(error.command_chain or ())))
     if isinstance(error, UnusedCliTokensError):
         extra = " ".join(error.unused_tokens or ())
@@ -47,8 +47,8 @@ def complaint(error: CycloptsError) -> str:
 
 
 def _about_option(error: UnknownOptionError) -> str:
-    """Suggest options that begin with the typed text, such as --environment for
-    --env; "" if there are none.
+    """Suggest options that begin with the typed text, such as --environment for --env; return an
+    empty text if there are none.
     """
     word = error.token.keyword or error.token.value
     if word == "-":
@@ -59,7 +59,9 @@ def _about_option(error: UnknownOptionError) -> str:
 
 
 def _missing(command: str, error: MissingArgumentError, argument: Argument) -> str:
-    """Name the missing arguments, or the option that was typed without its value."""
+    """Return the message that names the missing arguments, or the option that was typed without its
+    value.
+    """
     if error.keyword is not None or argument.tokens:
         return f"`{command}`: {error.keyword or argument.name} needs a value: {_form(argument)}"
     typed = [word.partition("=")[0] for word in error.root_input_tokens or () if word[:1] == "-"]
@@ -87,6 +89,8 @@ def _form(argument: Argument, app: App | None = None) -> str:
 
 
 def _positionals(app: App | None) -> Sequence[str]:
-    """Return the arguments in a hand-written usage line of a command."""
+    """Return the positional arguments in the usage line of a command; empty without a usage
+    line.
+    """
     usage = "" if app is None or not app.usage else app.usage
     return [word for word in usage.partition("[OPTIONS]")[2].split() if word[0] != "["]

@@ -1,4 +1,4 @@
-"""``calm motion``: depths of the instruments of a mooring at every time."""
+"""``calm motion``: estimate the depths of a mooring's instruments at every time."""
 
 from __future__ import annotations
 
@@ -47,52 +47,53 @@ def motion(
     environment: options.EnvironmentName = None,
     catalog: options.CatalogFiles = None,
 ) -> ExitCode:
-    """Estimate the depth of every instrument at every time from pressures and currents.
+    """Estimate the depth of every instrument at every time from pressures and
+    currents.
 
-    The currents move the line; the pressures correct the drag for the whole
-    record, and the current at each time. The result has the depth of every
-    component and clamped instrument with its standard deviation, and the
-    residuals of the sensors. A current meter on the line is matched by its label,
-    and its position is taken from the mooring file. Without currents, they are
-    inferred from the pressures of two or more sensors.
+    CALM computes the shape of the line in the measured currents. From the
+    pressures, it estimates the drag for the whole record, and corrects the
+    current at each time. The result has the depth of every component and clamped
+    instrument with its standard deviation, and the residuals of the sensors. A
+    current meter on the line is matched by its label, and its position is taken
+    from the mooring file. If there are no currents, they are inferred from the
+    pressures of two or more sensors.
 
     Parameters
     ----------
     pressures
-        Pressures of sensors on the line, one file or more: NetCDF or CSV with their
-        labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.
+        Pressures of sensors on the line, in one or more files: NetCDF or CSV with the labels of
+        the sensors, or one sensor per file as LABEL=FILE (also RODB or Sea-Bird .cnv).
     output
-        The result, .nc.
+        Result file, .nc.
     currents
-        Records of the current, one or more: NetCDF, zarr or CSV; one of a single meter
-        may be LABEL=FILE.
+        One or more records of the current: NetCDF, zarr or CSV. Write LABEL=FILE for the
+        record of a single current meter.
     match
-        How sensors are found on the line: by label, or by nominal height or depth.
+        How sensors are matched to the line: by label, or by nominal height or depth.
     fit
-        What to estimate for the whole record besides the drag: buoyancy, length.
+        What to estimate for the whole record in addition to the drag: buoyancy, length.
     hold_out
-        Labels of sensors, separated by commas, to withhold throughout. The result at these sensors
-        is compared with interpolation between the others.
+        Labels of sensors to withhold at all times, separated by commas. The estimated depths of
+        these sensors are compared with interpolation between the remaining sensors.
     without
-        Labels of sensors, separated by commas, to ignore completely.
+        Labels of sensors to ignore completely, separated by commas.
     cross_validate
-        Withhold each sensor in turn, and compare its depths with the estimate.
+        Withhold each sensor in turn, and compare its measured depths with the estimate.
     correct
-        Faults to correct in sensors that are found faulty, separated by commas: clock, gain,
-        offset, drift; or air, for absolute pressures. The history of the output says what was
-        corrected.
+        Faults to correct in faulty sensors, separated by commas: clock, gain, offset, drift; or
+        air, for absolute pressures. The history attribute of the output lists the corrections.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
-        Quality flags of the pressures that count as measured.
+        Quality flags of the pressures to use.
     gap
-        Interpolate in time between values no further apart than this.
+        Maximum time between values for interpolation in time.
     onto
-        A NetCDF file of instruments, or a folder of files: OUTPUT is then a
-        copy of it with depths, their deviations and flags added (`depth` of
-        several instruments, `DEPTH` of one), and the result itself is written
-        beside it, with a name ending in .motion.nc. Found by label, serial
-        number or nominal depth.
+        A NetCDF file of instruments, or a folder of such files. OUTPUT is then a copy to
+        which depths are added with their standard deviations and flags (`depth` for several
+        instruments, `DEPTH` for one). The result itself is written next to it, with a name
+        ending in .motion.nc. Instruments are identified by label, serial number or nominal
+        depth.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
@@ -188,8 +189,8 @@ def write_copies(
     inputs: list[Path],
     source: dict[str, str],
 ) -> None:
-    """Write a copy of each instrument file with depths added, into a folder if
-    the output is a folder.
+    """Write a copy of each instrument file with the depths added; several copies are written to a
+    folder.
     """
     from calm.dataset.discovery import hashed
     from calm.motion.instrument_file import write_depths

@@ -1,4 +1,4 @@
-"""``calm new``: a commented mooring file to start from, or a record of currents."""
+"""``calm new``: write an example of a mooring file with comments, or of a record of currents."""
 
 from pathlib import Path
 from typing import Annotated
@@ -18,16 +18,16 @@ def new(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     force: bool = False,
 ) -> ExitCode:
-    """Write a commented mooring file as an example, or a matching current record.
+    """Write an example mooring file with comments, or a matching current record.
 
     Parameters
     ----------
     kind
         Kind of mooring: on the shelf, in the deep sea, an ADCP, a surface buoy, or a tow.
     record
-        Write a small synthetic record, NetCDF, for `calm batch`; needs --output.
+        Write a small synthetic NetCDF record for `calm batch`; needs --output.
     output
-        The file to write; standard output by default.
+        File to write; standard output by default.
     force
         Overwrite an existing file.
 

@@ -1,4 +1,4 @@
-"""Options of several commands, and quantities given as options."""
+"""Options that several commands have, and parsing of options with units."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Select the units of tables and reports: `given`, else the units common to all files.
+    """Set the units of tables and reports: `given`, or else the units on which all files agree.
 
     UsageError: the text contains an unknown dimension or unit.
     """
@@ -72,10 +72,10 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 
     if given is None:
         systems = [file.units for file in files]
-        alike = all(one == systems[0] for one in systems)
-        if not alike:
+        all_equal = all(one == systems[0] for one in systems)
+        if not all_equal:
             narrate("the files set different units; results are in SI (use --units to choose)")
-        show_in(systems[0] if systems and alike else {})
+        show_in(systems[0] if systems and all_equal else {})
         return
     chosen: dict[str, str] = {}
     for part in given.split(","):
@@ -94,8 +94,8 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     """Convert quantities given as options to SI units and degrees.
 
-    Each parameter has its text (None if absent) and its dimension.
-    UsageError: with every text that is no quantity of its dimension.
+    Each parameter is the text of the option (None if absent) and its dimension. UsageError: lists
+    all texts that are not quantities of their dimension.
     """
     from calm.units import QuantityError, parse_quantity
 
@@ -114,7 +114,7 @@ def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
 
 
 def from_one(**given: int | None) -> None:
-    """Raise UsageError that lists all given counts below 1."""
+    """Raise UsageError if a count is below 1. The message lists all such counts."""
     few = {name: count for name, count in given.items() if count is not None and count < 1}
     if few:
         complaints = (f"{option(name)}: {count} is below 1" for name, count in few.items())
@@ -122,11 +122,11 @@ def from_one(**given: int | None) -> None:
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
-    """Parse an option that is a duration, such as ``2 h``.
+    """Parse a duration given as an option, such as ``2 h``.
 
     Parameters
     ----------
-    between, in_words : smallest and largest duration [s], and the same as text
+    between, in_words : smallest and largest allowed duration [s], and both as text for the message
 
     Raises
     ------
@@ -147,7 +147,7 @@ def span_of(option: str, text: str, between: tuple[float, float], in_words: str)
 
 
 def draws_of(uncertainty: bool, samples: int) -> tuple[int, int] | None:
-    """Samples and seed of `--uncertainty`; None without it.
+    """Return the number of samples and the seed for `--uncertainty`; None without this option.
 
     UsageError: the number of samples is not a power of two, or was given without `--uncertainty`.
     """

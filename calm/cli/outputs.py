@@ -29,11 +29,13 @@ if TYPE_CHECKING:
 
 _NARROWEST = 40  # columns: below this width the terminal wraps the numbers
 _ERROR_HANDLER = "calm-written-out"  # error handler for characters that a stream cannot encode
-_SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
+_SIGNS = "°×–−→≤≥²³█▒◦≈"  # characters in the tables
 
 
 def prepare() -> None:
-    """Escape characters that the terminal cannot show, or replace them by ?."""
+    """Set up the output streams so that characters they cannot show are replaced by ASCII or by
+    ``?``.
+    """
     codecs.register_error(_ERROR_HANDLER, _transliterated)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -51,10 +53,9 @@ def _transliterated(error: UnicodeError) -> tuple[str, int]:
 def show(text: str, *, styled: bool = False) -> None:
     """Write text to standard output immediately.
 
-    Control sequences are removed on a terminal, unless the text is `styled` by CALM; files and
-    pipes get the text unchanged.
-
-    A reader that stops early (``calm run m.yaml | head``) causes no error.
+    On a terminal, control sequences are removed unless the text is `styled` by CALM. Files and
+    pipes get the text unchanged. A reader that stops early (``calm run m.yaml | head``) causes no
+    error.
 
     UsageError: the output cannot be written, e.g. because the disk is full.
     """
@@ -68,8 +69,8 @@ def show(text: str, *, styled: bool = False) -> None:
 
 
 def show_parts(*parts: TerminalPart) -> None:
-    """Write parts to standard output in a form that suits the terminal, separated
-    by blank lines.
+    """Write report parts to standard output, separated by blank lines and formatted for the
+    terminal.
     """
     from rich.console import Console
 
@@ -98,7 +99,7 @@ def narrate(text: str) -> None:
 
 
 def narrate_card(card: ReadCard) -> None:
-    """Write the contents read from a file to standard error."""
+    """Write the interpretation of an input file to standard error."""
     from calm.records.card import card_rows
 
     rows = card_rows(card.to_dict())
@@ -109,9 +110,9 @@ def narrate_card(card: ReadCard) -> None:
 
 
 def save(path: Path, content: bytes, then: str = "") -> None:
-    """Write a file, and report its path on standard error, followed by `then`.
+    """Write a file, and report its path on standard error, followed by the text `then`.
 
-    UsageError: the system rejects the file.
+    UsageError: the file cannot be written.
     """
     from calm.report.folder import write_file
 
@@ -120,7 +121,9 @@ def save(path: Path, content: bytes, then: str = "") -> None:
 
 
 def check_suffix(path: Path, allowed: Sequence[str]) -> None:
-    """Raise UsageError if the suffix of an output file is not one of the given ones, if any."""
+    """Raise UsageError unless the suffix of an output file is in `allowed`. An empty list allows
+    any suffix.
+    """
     if allowed and path.suffix.lower() not in allowed:
         *others, last = allowed
         names = f"{', '.join(others)} or {last}" if others else last
@@ -133,7 +136,7 @@ def _abandon_output() -> None:
 
 
 class ExitCode(IntEnum):
-    """The exit codes of ``calm``, the same for every command."""
+    """Exit codes, which have the same meaning for every command."""
 
     DONE = 0
     """The command succeeded."""
@@ -158,7 +161,7 @@ _GRAVEST_FIRST = (ExitCode.BAD_INPUT, ExitCode.NO_EQUILIBRIUM, ExitCode.FINDING)
 
 
 def gravest(codes: Iterable[ExitCode]) -> ExitCode:
-    """Return the most severe of several exit codes, in the order 2, 3, 1, 0."""
+    """Return the most severe exit code, in the order 2, 3, 1, 0."""
     occurred = set(codes)
     return next((code for code in _GRAVEST_FIRST if code in occurred), ExitCode.DONE)
 
@@ -175,16 +178,18 @@ class Shown(Protocol):
 
     @property
     def file(self) -> Path:
-        """The file."""
+        """Path of the input file."""
 
     def document(self) -> dict[str, Any]:
-        """The JSON object."""
+        """Return the result as a JSON object."""
 
     def parts(self) -> list[TerminalPart]:
-        """Tables and drawings for the terminal."""
+        """Return the tables and drawings for the terminal."""
 
     def rendered(self, suffix: str) -> bytes | None:
-        """A picture, page or dataset by the suffix of its file; None if there is no result."""
+        """Return the content of a file with the given suffix: a picture, page or dataset; None
+        without a result.
+        """
 
 
 APIECE = (".html", ".pdf", ".svg", ".png", ".nc")
@@ -202,8 +207,8 @@ class Outputs:
     ----------
     files : the input files; empty for commands without input files
     json : path of the JSON document, ``-`` for standard output; None if not requested
-    written : further output files, in the formats of their suffixes
-    suffixes : allowed suffixes of these files
+    written : further output files, whose suffixes select the formats
+    suffixes : allowed suffixes of the further output files
     """
 
     files: tuple[Path, ...] = ()
@@ -212,8 +217,8 @@ class Outputs:
     suffixes: tuple[str, ...] = SUFFIXES
 
     def apiece(self, path: Path) -> list[Path]:
-        """Return the paths of an output written once per input file; several have the file names
-        added.
+        """Return the path of an output for each input file. With several input files, the path
+        includes the name of each.
         """
         if len(self.files) == 1:
             return [path]
@@ -222,7 +227,7 @@ class Outputs:
     def __post_init__(self) -> None:
         """Reject invalid outputs before anything is solved.
 
-        Raises UsageError for a path that cannot be written, equals another output or a mooring
+        Raises UsageError for a path that cannot be written, is used twice or is that of a mooring
         file, looks like an option, or has an unknown suffix.
         """
         from calm.report.folder import check_destination
@@ -253,11 +258,11 @@ class Outputs:
                 check_destination(path)
 
     def write_answer(self, document: Callable[[], dict[str, Any]], part: ReportPart | None) -> None:
-        """Write the result of a command without input files: `json`, and the part unless JSON is
-        printed.
+        """Write the result of a command without input files: the JSON document if requested, and
+        the part unless JSON is printed.
 
-        `document` is called only if JSON is requested; the version of CALM and the units are added
-        if missing. Raises UsageError if the system rejects the file.
+        `document` is called only if JSON is requested; the version of CALM is added to the
+        document. Raises UsageError if a file cannot be written.
         """
         from calm.report.result_files import to_json
 
@@ -273,10 +278,11 @@ class Outputs:
             save(self.json, text().encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
-        """Write the files, then the standard output: JSON if requested there, or the tables.
+        """Write the output files, then print the tables, or JSON if it is requested on standard
+        output.
 
-        `shown` has one entry per input file, in order. The CSV table is only made if requested.
-        Raises UsageError if the system rejects a file.
+        `shown` has one entry per input file, in order. `to_csv` is called only if a CSV file is
+        requested. Raises UsageError if a file cannot be written.
         """
         from calm.report.result_files import to_json
 

@@ -23,8 +23,9 @@ def page(
     output
         Folder for the page.
     runtime
-        A folder with a release of Pyodide and with xterm.js and xterm.css, copied into the page so
-        that it needs no other server. By default the page loads them from Pyodide's address.
+        Folder with a release of Pyodide and with xterm.js and xterm.css, which is copied into the
+        page so that it needs no other server. By default the page loads these files from the
+        internet.
 
     Examples
     --------

@@ -1,4 +1,6 @@
-"""Long computations: distribution over the cores of the machine, and progress display."""
+"""Distribution of long computations over the cores of the machine, and display of their
+progress.
+"""
 
 from __future__ import annotations
 
@@ -32,10 +34,10 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 
 
 class ProgressTeller:
-    """Progress display in one line of the terminal, called with a batch's `Progress`.
+    """Progress display in one line of the terminal, which is called with the `Progress` of a batch.
 
-    With a `patience` [s], nothing is shown on a terminal for that time. Without
-    it, time is counted from the first call.
+    The display waits for `patience` [s] before it appears on a terminal. Without `patience`, time
+    is counted from the first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:
@@ -50,12 +52,14 @@ class ProgressTeller:
         narrate(text)
 
     def __call__(self, progress: Progress) -> None:
-        """Report a batch, with a bar on a terminal, and line by line elsewhere."""
+        """Show the progress of a batch, with a bar on a terminal, or in separate lines
+        elsewhere.
+        """
         head = f"{bar(progress)} " if self._terminal else ""
         self.tell(lambda seconds: head + state(progress, seconds))
 
     def tell(self, text: Callable[[float], str]) -> None:
-        """Write the text for the elapsed time, unless the last update is too recent."""
+        """Write the text for the elapsed time [s], unless the last update is too recent."""
         now = monotonic()
         if self._started is None:
             self._started = now
@@ -68,20 +72,19 @@ class ProgressTeller:
         self._drawn = self._terminal
 
     def clear(self) -> None:
-        """Remove the progress line."""
         if self._drawn:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
             self._drawn = False
 
 
 def bar(progress: Progress) -> str:
-    """Draw the progress bar."""
+    """Draw a progress bar as text."""
     filled = BAR * progress.done // progress.total
     return f"[{'#' * filled}{'.' * (BAR - filled)}]"
 
 
 def state(progress: Progress, seconds: float) -> str:
-    """Describe the progress: profiles done, rate, remaining time, and failures."""
+    """Describe the progress: finished profiles, rate, remaining time, and failures."""
     from calm.batch.statuses import Ending
 
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
@@ -101,11 +104,11 @@ def grouped(number: int) -> str:
 
 
 def progress(items: Iterable[_Task], what: str, total: int | None = None) -> Iterator[_Task]:
-    """Yield the items; on a terminal, the progress appears if they take long.
+    """Yield the items; on a terminal, the progress is shown if they take long.
 
     Parameters
     ----------
-    what : the items, in the plural
+    what : noun for the items, in the plural
     total : number of items, if `items` has no length
     """
     total = total or (len(items) if isinstance(items, Sized) else 0)
@@ -126,14 +129,16 @@ def mapped(
     what: str,
     meanwhile: Callable[[], object] | None = None,
 ) -> list[_Done]:
-    """Apply a function to every task in parallel, in order, and show the progress.
+    """Apply a function to every task in parallel, and show the progress. Results are in the order
+    of the tasks.
 
     Parameters
     ----------
     function : a module-level function, which another process can import
     workers : number of processes; None for one per core
-    what : the tasks, in the plural
-    meanwhile : called in this process while others work; not called without other processes
+    what : noun for the tasks, in the plural
+    meanwhile : function called in this process while other processes work; it is not called if
+        there are none
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:

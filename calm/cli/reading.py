@@ -1,4 +1,4 @@
-"""Read lines, and the moorings of a design check in all their environments."""
+"""Reading of files for the commands: single designs, or moorings in all their environments."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def read_all(
     environment: str | None,
     catalogs: Sequence[Path],
 ) -> list[Line]:
-    """Read all files with `calm.case.load` or a similar function; raise one InputError for all
-    mistakes.
+    """Read all files with `calm.case.load` or a similar function. Raise one InputError with the
+    mistakes of all files.
     """
     read: list[Line] = []
     problems: dict[Problem, None] = {}
@@ -57,13 +57,13 @@ def read_designs(
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
 ) -> tuple[list[DesignFile], list[Path]]:
-    """Read every mooring in every environment; also return the files that are tows.
+    """Read every mooring in every environment, and separate the files that are tows.
 
     Parameters
     ----------
     environments : names or files of environments; None for all environments of each file
     workers : number of processes
-    meanwhile : called in this process while others read
+    meanwhile : function called in this process while other processes read
 
     Raises
     ------
@@ -119,7 +119,9 @@ def names_of_files(
 
 
 def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
-    """Add the file to each name that occurs in several files."""
+    """Make names unique: a name that occurs in several files is followed by the path of its
+    file.
+    """
     while True:
         count = Counter(names.values())
         if max(count.values()) == 1:
@@ -130,9 +132,11 @@ def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
 
 
 def _with_equal_cuts(moorings: Sequence[Design]) -> tuple[Design, ...]:
-    """Use equal cut lengths in every environment: pieces are cut to fit in the first environment.
+    """Use the same cut lengths in every environment, namely those that fit in the first
+    environment.
 
-    Results that do not depend on the environment, such as the line in still water, are shared.
+    The designs share a cache, so results that do not depend on the environment, such as the line in
+    still water, are computed once.
     """
     from calm.case import Design
     from calm.case.memory import Memory
@@ -158,7 +162,7 @@ def _load(
 
 
 def _refuse_one_name(moorings: Sequence[Design]) -> None:
-    """Reject environments of equal name, which results could not distinguish."""
+    """Reject environments with the same name, because results could not distinguish them."""
     from calm.checks.finding import HANDLING_LABEL, OWN
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)

@@ -1,4 +1,4 @@
-"""``calm run``: solve moorings and tows, and show them."""
+"""``calm run``: solve moorings and tows, and show the results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def _dash(_: object, tokens: Sequence[Token]) -> str:
-    """Accept the dash of `--json -`. UsageError: anything else."""
+    """Return the value of `--json`, which must be ``-``. UsageError: it is another text."""
     if (value := tokens[0].value) != "-":
         raise UsageError(f"--json {value}: --json - prints the result; -o FILE.json writes a file")
     return value
@@ -55,20 +55,20 @@ def run(
     files
         Mooring files. A file with `tow:` describes a tow, a file with `legs:` a net.
     output
-        Write the result in the format given by the suffix. Repeatable. One file for all moorings:
-        .json; .csv with a row per component, or with --speeds a row per speed. One file per mooring
-        (with several, p.svg becomes p-FILE.svg): .svg or .png, a drawing of the line; .html or
+        Write the result in the format of the suffix. Repeatable. One file for all moorings: .json;
+        .csv with a row per component, or with --speeds a row per speed. One file per mooring (for
+        several moorings, p.svg becomes p-FILE.svg): .svg or .png, a drawing of the line; .html or
         .pdf, a report with table, drawings and inputs; .nc, NetCDF with the variable names of `calm
         batch`.
     json
         Print the result as JSON instead of the table; several files give an array.
     speeds
-        Solve tows at the speeds A:B:STEP, both ends included, and print a row for each;
-        -o draws depth, layback and tension against speed. A speed without
-        equilibrium is a row with its status and makes the exit code 3.
+        Solve tows at the speeds from A to B in steps of STEP, and print a row for each
+        speed; -o draws depth, layback and tension against speed. A speed without
+        equilibrium has a row with its status, and the exit code is then 3.
     explain
         Show the contribution of each drag force to the knockdown, and the effect of
-        more buoyancy, less drag or another current; also in the JSON. Not for tows.
+        more buoyancy, less drag, and more or less current; also in JSON. Not for tows.
     schematic
         Print a schematic (not to scale) above the table, or instead of it if there
         is no equilibrium.

@@ -23,34 +23,34 @@ def size(
     json: options.JsonAnswer = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Find the smallest change of a mooring that meets a target.
+    r"""Find the smallest change of a mooring that meets a target.
 
-    The changed mooring is solved as by calm run. A change of buoyancy leaves
-    size and drag unchanged. If the target cannot be met, the exit code is 3,
-    and the reason and the nearest value are reported.
+    The changed mooring is solved as in calm run. A change of buoyancy does not
+    affect size and drag. If the target cannot be met, the exit code is 3, and the
+    reason and the nearest value are reported.
 
     Parameters
     ----------
     file
         A mooring file, or the file of a net of legs.
     target
-        A quantity of a part of the line, <=, >= or =, and a limit with its unit.
+        Quantity of a part of the line, <=, >= or =, and a limit with its unit.
     change
-        What to change: the label of a part, and its buoyancy, length or count.
-        A label without its number means all pieces of that label.
+        Value to change: the label of a part, a point, and buoyancy, length or count.
+        A label without its number stands for all pieces with that label.
     between
-        The smallest and the largest value, with units; by default a buoyancy may become 0 to 100
-        times its present value, a length up to twice the water depth, a count up to 1000.
+        Smallest and largest value, with units. By default a buoyancy may be 0 to 100 times its
+        present value, a length at most twice the water depth, and a count at most 1000.
 
     Examples
     --------
-      calm size mooring.yaml --target "knockdown(top) <= 20 m" \\
+      calm size mooring.yaml --target "knockdown(top) <= 20 m" \
           --change "top float.buoyancy"
-      calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \\
+      calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \
           --change "back-up glass.count" --between 4 40
-      calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \\
+      calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \
           --change wire.length --environment storm
-      calm size mooring.yaml --target "required_weight <= 8 kN" \\
+      calm size mooring.yaml --target "required_weight <= 8 kN" \
           --change "top float.buoyancy" --json -
 
     Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and

@@ -1,4 +1,4 @@
-"""A file that `calm run` has solved: its table, JSON, pages and pictures."""
+"""Outcome of `calm run` for one file: table, JSON, pages and pictures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FileOutcome:
-    """The outcome of one file: a result, or the reason why there is none."""
+    """Outcome for one file: a result, or the reason why there is none."""
 
     file: Path
     name: str
@@ -36,11 +36,11 @@ class FileOutcome:
 
     @property
     def code(self) -> ExitCode:
-        """The exit code of this file alone."""
+        """Exit code for this file alone."""
         return ExitCode.NO_EQUILIBRIUM if self.failure else ExitCode.DONE
 
     def document(self) -> dict[str, Any]:
-        """The JSON object of the result, or of the failure."""
+        """Return the JSON object of the result or of the failure."""
         if self.failure:
             return {"name": self.name, **self.failure.to_dict()}
         assert self.result is not None
@@ -52,7 +52,9 @@ class FileOutcome:
         return document
 
     def parts(self) -> list[TerminalPart]:
-        """The table of the line, with its schematic, explanation and uncertainty if requested."""
+        """Return the table of the line with, if requested, its schematic, explanation and
+        uncertainty.
+        """
         parts: list[TerminalPart] = [*self.schematic]
         if self.result is not None:
             from calm.report.explanation import line_facts
@@ -71,7 +73,9 @@ class FileOutcome:
         return parts
 
     def rendered(self, suffix: str) -> bytes | None:
-        """Return the drawing or the report of the line, as bytes of the file."""
+        """Return the drawing, report or dataset of the line, as the content of a file with the
+        given suffix.
+        """
         if self.result is None:
             return None
         if suffix in (".html", ".pdf"):
@@ -104,12 +108,12 @@ def solve_files(
     draws: tuple[int, int] | None = None,
     verbose: bool = False,
 ) -> list[FileOutcome]:
-    """Solve the lines read from files.
+    """Solve the designs read from files.
 
     Parameters
     ----------
     explain, schematic : whether to explain each result, and to draw each line for the terminal
-    draws : samples and seed of the uncertainty of the results; None without it
+    draws : number of samples and seed for the uncertainty; None without uncertainty
     verbose : whether to report solver statistics
     """
     drawn_often = None if draws is None else _to_draw_often(*draws)
@@ -144,9 +148,10 @@ def _explained(result: Result) -> Explanation:
 
 
 def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
-    """Return a function that finds the uncertainty of a result from many samples.
+    """Return a function that computes the uncertainty of a result from many samples.
 
-    The sequence of samples is begun now: scipy takes as long to load as the compiled march.
+    Another process starts to generate the random numbers at once, because loading scipy takes as
+    long as loading the compiled march.
     """
     from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain
@@ -158,7 +163,7 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
 
 
 def _schematic(line: Design, result: Result | None) -> tuple[TerminalSchematic, ...]:
-    """Draw a line, or its legs, in the signs that the standard output can carry."""
+    """Draw the legs of a design with characters that the standard output can show."""
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))

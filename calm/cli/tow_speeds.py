@@ -1,4 +1,4 @@
-"""``calm run --speeds``: tows at many speeds of the ship."""
+"""``calm run --speeds``: solve tows at many ship speeds."""
 
 from __future__ import annotations
 
@@ -29,31 +29,29 @@ _ROUNDING = 1e-9  # of a step: rounding error of unit conversion at the end of t
 
 @dataclass(frozen=True)
 class TabulatedTow:
-    """A tow solved at many speeds."""
+    """Results for a tow at many speeds."""
 
     file: Path
     tabulation: Tabulation
 
     @property
     def code(self) -> ExitCode:
-        """The exit code of this file alone."""
+        """Exit code for this file alone."""
         failed = any(row.result is None for row in self.tabulation.rows)
         return ExitCode.NO_EQUILIBRIUM if failed else ExitCode.DONE
 
     def document(self) -> dict[str, Any]:
-        """The JSON object."""
         from calm.report.tabulation import to_document
 
         return to_document(self.tabulation)
 
     def parts(self) -> list[TerminalPart]:
-        """The table, a row for each speed."""
         from calm.report.tabulation import tabulation_part
 
         return [tabulation_part(self.tabulation)]
 
     def rendered(self, suffix: str) -> bytes:
-        """Depth, layback and tension against speed."""
+        """Return the drawing of depth, layback and tension against speed."""
         from calm.drawing.picture import image
         from calm.report.tabulation import sweep_drawing
 
@@ -101,10 +99,11 @@ def _swept(file: Path, tow: Design, speeds: Sequence[float]) -> TabulatedTow:
 
 
 def speed_range(text: str) -> list[float]:
-    """The speeds [m/s] of ``A:B:STEP``, from A to B, both included; the last step may be shorter.
+    """Return the speeds [m/s] of ``A:B:STEP``, from A up to B; B is included even if the last step
+    is shorter.
 
-    UsageError: not three speeds with their units; A not above 0, B below A, a step not above 0;
-    more than `MOST_SPEEDS`.
+    UsageError: the text is not three speeds with their units, A or STEP is not positive, B is below
+    A, or there are more than `MOST_SPEEDS` speeds.
     """
     from calm.units import QuantityError, parse_quantity
 

@@ -19,15 +19,15 @@ def verify(
 ) -> ExitCode:
     """Verify CALM against published and analytical results.
 
-    Each expected value is published, or comes from a closed form or an
-    independent integration, or is a property that any line must have. Values
-    that agree by construction are checked but not counted. The exit code is 1
-    if a value is out of tolerance.
+    Each expected value is published, comes from a closed form or an independent
+    integration, or is a property that every line must have. Values that agree by
+    construction are checked but not counted. The exit code is 1 if a value is out
+    of tolerance.
 
     Parameters
     ----------
     words
-        Only cases whose source or name contains all these words (or parts of words).
+        Check only cases whose source or name contains all these words (or parts of words).
     field
         Instead, estimate the depths of a real mooring at withheld sensors, and compare them
         with the measured depths (see `calm docs motion`).
@@ -60,7 +60,7 @@ def verify(
 
 
 def _chosen(words: Sequence[str]) -> list[Source]:
-    """Select the sources and cases that contain every word.
+    """Select the sources and cases whose names contain every word.
 
     UsageError: no case contains all words.
     """
@@ -81,7 +81,9 @@ values within their 95 % bands.
 
 
 def verify_field(outputs: Outputs) -> ExitCode:
-    """Estimate the depths at withheld sensors of the mooring dune2, and check their errors."""
+    """Estimate the depths at withheld sensors of the mooring dune2, and compare them with the
+    measured depths.
+    """
     import numpy as np
 
     import calm

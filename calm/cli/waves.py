@@ -1,4 +1,4 @@
-"""``calm waves``: tensions and motions of a mooring in waves."""
+"""``calm waves``: estimate tensions and motions of a mooring in waves."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ def waves(
 ) -> ExitCode:
     """Estimate tensions and motions of a mooring in waves, about its equilibrium.
 
-    The model is linear: small waves about the shape in the mean current, with
-    drag linearised for equal dissipation. It is not valid if a piece goes slack;
-    the status is then slack-in-waves and the exit code 3. Without --hs, --scatter
-    or a file as the --spectrum, the seas are those under `waves:` in the
-    environment, which may also have a swell and another peakedness.
+    The model is linear: it computes small motions about the shape in the mean
+    current, with drag linearised for equal dissipation. It is not valid if a
+    piece goes slack; the status is then slack-in-waves and the exit code 3.
+    Without --hs, --scatter or a file for --spectrum, CALM uses the sea states
+    under `waves:` in the environment, which may also specify a swell and a
+    peakedness.
 
     Parameters
     ----------
     hs
         Significant wave height, such as "5 m".
     tp
-        Peak period, such as "8.4 s", 1.41 times a mean zero-crossing period Tz;
-        by default that of a fully developed sea for pierson-moskowitz; not used
-        by ochi-hubble.
+        Peak period, such as "8.4 s", which is about 1.41 times the mean zero-crossing
+        period Tz. For pierson-moskowitz the default is that of a fully developed sea;
+        ochi-hubble does not use it.
     spectrum
-        bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea),
-        or a file of a measured one: CSV of frequency[Hz],density[m^2/Hz], or
-        NetCDF.
+        bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea), or a file
+        with a measured spectrum: CSV with frequency[Hz],density[m^2/Hz], or NetCDF.
     toward
         Direction in which the waves travel, clockwise from north; 90 deg by default.
     scatter
-        A CSV file of seas: significant_wave_height[m],peak_period[s],share.
+        CSV file of sea states: significant_wave_height[m],peak_period[s],share.
     duration
         Duration for the most probable maximum and minimum tension; 3 h by default.
     report
@@ -113,7 +113,8 @@ def _sea_states(
     scatter: Path | None,
     duration: str,
 ) -> tuple[list[SeaState] | None, float | None, float]:
-    """Read the sea states, their direction [degrees] and duration [s]; None if not specified.
+    """Read the sea states, their direction [degrees] and duration [s]. States and direction are
+    None if not specified.
 
     UsageError: lists all mistakes in the options.
     """

@@ -1,1 +1,1 @@
-"""Results as datasets with CF metadata: their variables, and their NetCDF files."""
+"""Results as datasets with CF metadata: their variables and their NetCDF files."""

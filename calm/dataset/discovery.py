@@ -51,7 +51,7 @@ def written() -> str:
 
 
 def hashed(path: Path) -> str:
-    """Return a file name followed by the SHA-256 hash of the file; a folder has no hash."""
+    """Return a file name with the SHA-256 hash of the file; a folder is returned without a hash."""
     if not path.is_file():
         return path.name
     with path.open("rb") as file:
@@ -59,7 +59,7 @@ def hashed(path: Path) -> str:
 
 
 def kept(attributes: Mapping[str, Any]) -> Attributes:
-    """Return the input-file attributes that also apply to results, such as platform, site and
+    """Return the attributes of an input file that also apply to results, such as platform, site and
     creator.
     """
     return {
@@ -106,7 +106,9 @@ def coverage(
 
 
 def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
-    """Return the attributes for the range of depths [m]; none if all are NaN."""
+    """Return the attributes for the range of depths [m]. The result is empty if all depths are
+    NaN.
+    """
     known = depth[np.isfinite(depth)]
     if not known.size:
         return {}
@@ -119,12 +121,14 @@ def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
 
 
 def mooring_in(title: str) -> str:
-    """Return the name of the mooring from the title of a file, NAME: CONTENTS."""
+    """Return the name of the mooring from the title of a file, which has the form ``NAME:
+    CONTENTS``.
+    """
     return title.rpartition(": ")[0] or title
 
 
 def archive_id(name: str, start: np.datetime64, product: str) -> str:
-    """Return an `id` in the form of OceanSITES: site, month of the first time, product."""
+    """Return an `id` in the OceanSITES form: site, month of the first time, product."""
     site = "".join(letter if letter.isalnum() else "-" for letter in name)
     return f"OS_{site}_{np.datetime_as_string(start, 'M').replace('-', '')}_D_{product}"
 
@@ -144,14 +148,14 @@ def with_flags(
     names: Mapping[str, Sequence[str]],
     cell_methods: str = "time: point",
 ) -> tuple[Variable, ...]:
-    """Insert a variable of quality flags after each variable that has flags.
+    """Insert a variable with quality flags after each flagged variable.
 
     Parameters
     ----------
     variables : variables of the result
-    names : for each variable with flags, the names of its other ancillary variables, such as
-        deviations
-    cell_methods : the CF attribute `cell_methods` of the variables with flags
+    names : for each variable to be flagged, the names of its other ancillary variables, such as
+        standard deviations
+    cell_methods : CF attribute `cell_methods` of the flagged variables
     """
     found = []
     for one in variables:
@@ -174,7 +178,7 @@ def with_flags(
 
 
 def in_capitals(layout: ResultLayout) -> ResultLayout:
-    """Return a layout with all names in capitals, as in OceanSITES archives."""
+    """Return a copy of a layout with all names in capitals, as in OceanSITES archives."""
     names = {one.name for one in layout.variables} | set(layout.sizes)
 
     def raised(attributes: Attributes) -> Attributes:

@@ -1,7 +1,7 @@
-"""Results as CF datasets: their dimensions and variables, and their NetCDF 4 files.
+"""Results as CF datasets: their dimensions, variables and NetCDF 4 files.
 
-HDF5 ends the process if a write fails, for example on a full disk. For this reason the header is
-made in memory, and disk space is reserved before each block is written.
+The HDF5 library aborts the process if a write fails, for example on a full disk. For this reason
+the header is created in memory, and disk space is reserved before each block is written.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Convert a block to HDF5 chunks, one shuffled and deflated chunk per variable.
+    """Convert the arrays of a block to HDF5 chunks: one shuffled and deflated chunk per variable.
 
     Parameters
     ----------
@@ -85,13 +85,14 @@ def write_netcdf(
     ----------
     block : number of times in a block
     blocks : the results of `packed`, in order; one is in memory at a time
-    last : returns attributes known only after the last block; the layout already has them,
-        as numbers or as texts of the same length
+    last : function that returns attributes known only after the last block; the layout has
+        placeholders for them, which are numbers or texts of the same length
 
     Raises
     ------
     UsageError
-        The file cannot be written, for example because the disk is full; an older file is kept.
+        The file cannot be written, for example because the disk is full; an older file is not
+        overwritten.
     """
     import h5py
 
@@ -133,7 +134,7 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the chunk shape of a time-dependent variable, which the last chunk has, too.
+    """Return the chunk shape of a time-dependent variable. The last chunk has the same shape.
 
     Parameters
     ----------
@@ -172,8 +173,8 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
 
 
 def _text(value: str | float) -> str | float | np.bytes_:
-    """Store a text as characters, which every tool can read, or as a string if it is long or not
-    ASCII.
+    """Convert a text to characters, which every tool can read; a text that is long or not ASCII
+    remains a string.
     """
     if isinstance(value, float):
         return value
@@ -200,8 +201,9 @@ def of_net(
     clamps: Iterable[int],
     nodes: Iterable[int] = (),
 ) -> list[Variable]:
-    """Adapt the variables of a single line to a net: offsets refer to the origin, and each part
-    gets the index of its leg.
+    """Adapt the variables of a single line to a net.
+
+    Offsets become relative to the origin, and variables with the leg index of each part are added.
 
     Parameters
     ----------
@@ -228,9 +230,7 @@ def of_net(
 
 @dataclass(frozen=True)
 class Variable:
-    """A NetCDF variable; `values` is None for a time-dependent variable, which is written in
-    blocks.
-    """
+    """NetCDF variable. A time-dependent variable is written in blocks, so its `values` are None."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -240,9 +240,7 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes, with the ACDD attribute `coverage_content_type` if the variable is
-        numeric.
-        """
+        """Attributes; a numeric variable also has the ACDD attribute `coverage_content_type`."""
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
@@ -281,12 +279,13 @@ def numbers(
     coordinates: str,
     values: Mapping[str, NDArray[Any]] | None = None,
 ) -> list[Variable]:
-    """Create numeric variables; a coordinate is not listed among its own coordinates.
+    """Create numeric variables with their coordinates. A variable that is itself a coordinate is
+    not listed among its own coordinates.
 
     Parameters
     ----------
     coordinates : names of the coordinates of the variables
-    values : values by name; time-dependent variables have none yet
+    values : values by name; None for time-dependent variables, which have no values yet
     """
     variables = []
     for name, (unit, meaning, more) in quantities.items():
@@ -307,8 +306,8 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
     Parameters
     ----------
     name, dimension : name and dimension of the variable
-    texts : the names
-    meaning : what they name
+    texts : the labels
+    meaning : description of the labels, for the attribute `long_name`
     """
     values = np.array(list(texts), dtype=np.str_)
     return Variable(name, (dimension,), values.dtype.str, {"long_name": meaning}, values)
@@ -317,8 +316,8 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
 def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
     """Create the coordinates that number parts, nodes and sensors from the top down.
 
-    They are dimensionless vertical coordinates in the sense of CF, because depths vary in time and
-    neighbours may have equal depths.
+    They are dimensionless vertical coordinates in the sense of CF. Depths are not suitable as
+    coordinates because they vary in time, and adjacent parts may have equal depths.
     """
     return [
         Variable(
@@ -333,13 +332,14 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Create the CF station variables of a mooring, and the names to append to `coordinates`.
+    """Create the CF station variables of a mooring, and return the names to append to
+    `coordinates`.
 
     Parameters
     ----------
     place : latitude and longitude [degrees north, degrees east]; without them the dataset has
         no discrete sampling geometry in the sense of CF
-    of_what : the object at that position, for the long names
+    of_what : object at this position, for the attribute `long_name`
     """
     label = np.array(name, dtype=np.str_)
     attributes: Attributes = {"long_name": "name of the mooring"}
@@ -366,14 +366,14 @@ def source_date() -> datetime | None:
 
 
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
-    """Return global attributes about the source of a result; unknown attributes are empty.
+    """Return global attributes about the origin of a result; unknown attributes are empty.
 
-    No date is written except `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    The only date is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
     Parameters
     ----------
     path, name, description : path, name and description of the mooring file
-    command : the command of CALM
+    command : CALM command that computed the result
     """
     made = f"calm {__version__} {command}"
     if date := source_date():

@@ -37,7 +37,7 @@ from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 FAINT = 0.1
-"""Speed of the weak current in which a line is drawn that is slack in still water [m/s]."""
+"""Speed of the weak current in which the sheets show a line that is slack in still water [m/s]."""
 
 _Listed = TypeVar("_Listed")
 
@@ -50,7 +50,7 @@ class RecoveredItem:
     ----------
     item : the piece or clamp
     time : time after release [s]; None if the part does not surface
-    hangs_at : final depth of a clamp, or of the upper end of a piece, after everything buoyant has
+    hangs_at : depth of a clamp, or of the upper end of a piece, after all buoyant pieces have
         surfaced [m]; None if unknown
     by_itself : whether the part is buoyant enough to surface alone
     """
@@ -63,16 +63,16 @@ class RecoveredItem:
 
 @dataclass(frozen=True)
 class Lift:
-    """One lift: a piece at the rail with its clamps, and everything already over the side.
+    """One lift: a piece at the rail with its clamps, and the line already over the side.
 
     Attributes
     ----------
     index, label : index and label of the piece
     mass : mass of the lift in air [kg]; None if a mass is unknown, or for a cable, which is paid
         out instead
-    weight : weight of the lift in water [N], + down; None if a length is unknown
-    hanging : weight in water of everything over the side, including the lift [N], + down: the load
-        on a winch if all is suspended from it; negative if it floats
+    weight : weight of the lift in water, positive down [N]; None if a length is unknown
+    hanging : weight in water of everything over the side, including the lift, positive down [N]:
+        the load on a winch if all of this is suspended from it; negative if it floats
     """
 
     index: int
@@ -84,14 +84,14 @@ class Lift:
 
 @dataclass(frozen=True)
 class Lifts:
-    """The stages of a deployment and of a recovery.
+    """Lifts during deployment and recovery.
 
     Attributes
     ----------
     deployment : lifts in the order over the side
     recovery : lifts from the top of the line down to the release
-    unknown : labels of all pieces and clamps of unknown mass in air, any of which may belong to the
-        heaviest lift
+    unknown : labels of all pieces and clamps of unknown mass in air, any of which may be part of
+        the heaviest lift
     """
 
     deployment: tuple[Lift, ...]
@@ -100,7 +100,7 @@ class Lifts:
 
     @property
     def heaviest(self) -> Lift | None:
-        """Heaviest single lift of known mass in air."""
+        """Heaviest lift of known mass in air."""
         known = [lift for lift in self.deployment if lift.mass is not None]
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
@@ -112,13 +112,13 @@ class Deck:
     Attributes
     ----------
     result : result in the environment of the sheets
-    environment : name of that environment
+    environment : name of this environment
     order : deployment order
     parts : every piece and clamp down the line, leg by leg in a net
     deployment, recovery : parts in the order over the side, and in order of surfacing
-    rise : rise of the line without its anchor; None if it has no solution, and for a net
+    rise : rise of the line without its anchor; None without a solution, and for a net
     cuts, hardware, shipped, lifts, instruments : contents of the sheets with these names
-    plan : plan of the anchor drop, or the reason for having none; None for anchor-first
+    plan : plan of the anchor drop, or the reason why there is none; None for an anchor-first
         deployment, and for a net
     notes : missing information, with reasons
     assessment : result of the design check
@@ -143,7 +143,6 @@ class Deck:
 
     @property
     def file(self) -> MooringFile:
-        """File as read, in the environment of the sheets."""
         return self.result.file
 
     @cached_property
@@ -152,14 +151,16 @@ class Deck:
         return item_numbers(self.result)
 
     def leg(self, index: int) -> str:
-        """Return the name of the leg that contains a piece; "" for a single line."""
+        """Return the name of the leg that contains the piece with this index. A single line has no
+        name.
+        """
         number = leg_numbers(self.file)[index]
         return self.result.legs[number].name if self.result.several else ""
 
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]
     ) -> Iterator[tuple[str, list[_Listed]]]:
-        """Yield the name of each leg and its items; a single line is one group."""
+        """Yield the name of each leg with its items; a single line is one group."""
         for name, group in groupby(items, key=lambda one: self.leg(index(one))):
             yield name, [*group]
 
@@ -175,8 +176,9 @@ def deck_of(
 
     Parameters
     ----------
-    moorings : the mooring in each environment, that of the sheets first, with equal cut lengths
-    ship_speed, streamed, course : inputs of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
+    moorings : the mooring in each environment, with equal cut lengths; the environment of the
+        sheets comes first
+    ship_speed, streamed, course : inputs of the anchor drop (see `calm.drop.drop_plan`) [m/s], [m],
         [degrees]
 
     Raises
@@ -215,9 +217,11 @@ def deck_of(
         rising = set(range(released))
     if order is Order.ANCHOR_LAST and not first.several:
         try:
-            stands = result if result.design is first else None
+            same_design = result if result.design is first else None
             times = _deck_times(first.file)
-            plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
+            plan = drop_plan(
+                first, ship_speed, streamed, course, result=same_design, deck_time=times
+            )
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop could not be computed: {failure}")
@@ -242,7 +246,7 @@ def deck_of(
 
 
 def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
-    """Return the handling time of a piece by role [s]; None if unspecified."""
+    """Return the handling time per piece [s] for each role; None if unspecified."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 
@@ -281,14 +285,15 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the parts that surface, in this order, followed by the parts that stay below.
+    """List the parts that rise: first those that surface, in order of surfacing, then those that
+    stay below.
 
-    Without a solved rise there are no times, and the parts are in line order.
+    Without a solution for the rise, there are no times and the parts are in line order.
 
     Parameters
     ----------
     parts : parts down the line
-    pieces : indices of the pieces that surface
+    pieces : indices of the pieces that rise
     """
     rising = [one for one in parts if one.index in pieces]
     if recovery is None:
@@ -319,7 +324,7 @@ def lifts_of(
     Parameters
     ----------
     legs : leg number of each piece
-    rising : indices of the pieces that surface
+    rising : indices of the pieces that rise to the surface
     """
     pieces = [one for one in inventory if one.clamped_on is None]
     weights = _weights(inventory)
@@ -336,7 +341,6 @@ def lifts_of(
 
 
 def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:
-    """Compute the weight in water of each piece with its clamps [N]."""
     weights: dict[int, float | None] = {}
     for one in inventory:
         before, own = weights.get(one.index, 0.0), one.wet_weight

@@ -26,7 +26,7 @@ class DeckItem:
 
     Attributes
     ----------
-    part : the part as read
+    part : piece or clamp in the mooring file
     index : index of the piece, or of the piece that carries the clamp
     on : label of the piece that carries a clamp; None for a piece
     at : distance of a clamp from the upper end of its piece, unstretched [m]
@@ -35,10 +35,11 @@ class DeckItem:
     depth, height : depth and height above the seabed of a clamp, or of the upper end of a piece [m]
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial number as designed, or those of its items
-    deployed_serial, remark : as deployed; the serial number defaults to that of the design
-    apart : whether connecting hardware is drawn in a row of its own, because it governs a check or
-        has an open finding
+    serial : serial number in the design, or the serial numbers of all items of the part
+    deployed_serial, remark : serial number and remark in `deployed`; the serial number defaults to
+        that in the design
+    apart : whether connecting hardware is drawn in a separate row because it governs a check or has
+        an open finding
     """
 
     part: Piece | Clamp
@@ -59,7 +60,6 @@ class DeckItem:
 
     @property
     def label(self) -> str:
-        """Label of the part."""
         return self.part.label
 
     @property
@@ -69,7 +69,6 @@ class DeckItem:
 
     @property
     def serials(self) -> tuple[str, ...]:
-        """Serial numbers as designed."""
         return self.part.serials
 
     @property
@@ -79,7 +78,9 @@ class DeckItem:
 
     @property
     def hardware(self) -> str:
-        """Short name of a connector, such as `13 mm shackle`, with the size of its full name."""
+        """Short name of a connector, such as `13 mm shackle`; the size is the one in the full name,
+        if given there.
+        """
         sized = _SIZED.fullmatch(self.part.use)
         if sized is None:
             return self.name
@@ -93,17 +94,20 @@ class DeckItem:
 
     @property
     def role(self) -> str:
-        """Role of the component."""
         return self.part.component.role
 
     @property
     def holds_instrument(self) -> bool:
-        """Whether the item is an instrument or a release, or holds one."""
+        """Whether the item is an instrument, a release, or a float or frame that holds an
+        instrument.
+        """
         return holds_instrument(self.part)
 
     @property
     def is_joint(self) -> bool:
-        """Whether the item only connects pieces and has no data of its own."""
+        """Whether the item is a connector without data of its own, such as a serial number or a
+        remark.
+        """
         return self.is_connector and not self._has_own_data and not self.holds_instrument
 
     @property
@@ -122,17 +126,20 @@ class DeckItem:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Position of a clamp, or the two stops of a profiler [m]."""
+        """Distance of a clamp from the upper end of its piece, or the distances of both stops of a
+        profiler [m].
+        """
         travel = getattr(self.part, "travel", None)
         ends = (self.at,) if travel is None else (min(end, self.of_length or end) for end in travel)
         return tuple(end for end in ends if end is not None)
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """Key that is equal for consecutive items which may share a row.
+        """Key for grouping: consecutive items with the same key share a row.
 
-        Floats and clamps of one component share a row. Cut pieces, items that hold an instrument,
-        releases, anchors, and all items with a serial number or a remark have separate rows.
+        Floats and clamps of the same component share a row. Cut pieces, items that hold an
+        instrument, releases, anchors, and all items with a serial number or a remark have separate
+        rows.
         """
         alone = not self.is_rigid or self.holds_instrument or self.role == "anchor"
         return (self.label,) if alone or self._has_own_data else (self.name, self.on)
@@ -146,7 +153,7 @@ class DeckRow:
     ----------
     items : consecutive equal pieces, or equal clamps
     floats : equal floats on the cable or chain
-    between, after : hardware between the items, and after the last of them
+    between, after : hardware between the items, and after the last item
     """
 
     items: tuple[DeckItem, ...]
@@ -156,22 +163,20 @@ class DeckRow:
 
     @property
     def joints(self) -> tuple[DeckItem, ...]:
-        """All connecting hardware of the row."""
         return (*self.between, *self.after)
 
     @property
     def ends(self) -> bool:
-        """Whether a swivel follows and ends the row."""
+        """Whether a swivel follows the items, so that the next item begins a new row."""
         return any(one.is_swivel for one in self.after)
 
     @property
     def is_followed_by_clamps(self) -> bool:
-        """Whether the rows of the clamps on its piece follow."""
+        """Whether the next rows show the clamps on the piece in this row."""
         return bool(getattr(self.first.part, "clamps", ())) and not self.floats
 
     @property
     def first(self) -> DeckItem:
-        """First item of the row."""
         return self.items[0]
 
     @property
@@ -181,14 +186,14 @@ class DeckRow:
 
     @property
     def name(self) -> str:
-        """Names with their counts, or the names of the floats on a chain."""
+        """Names of the items with their counts. A chain with floats has the name of the floats."""
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
     @property
     def cluster(self) -> tuple[object, ...]:
-        """Key that chains with floats have in common if they may share a row; empty for other
-        items.
+        """Key for grouping chains with floats: consecutive rows with the same key are joined. Empty
+        for other items.
         """
         if not self.floats or any(one._has_own_data for one in (*self.items, *self.floats)):
             return ()
@@ -198,22 +203,25 @@ class DeckRow:
 
     @property
     def lengths(self) -> str:
-        """Cut length of a cable or chain, with the number of pieces of this length."""
+        """Cut length of a cable or chain, preceded by the number of pieces of this length."""
         many = f"{len(self.items)} × " if len(self.items) > 1 else ""
         return many + QUANTITIES["length"].format(self.first.cut_length)
 
 
 def hardware_text(joints: Iterable[DeckItem]) -> str:
-    """Describe connecting hardware, such as `2 × 13 mm shackle`; empty without hardware."""
+    """Describe connecting hardware, such as `2 × 13 mm shackle`. The text is empty without
+    hardware.
+    """
     counts = Counter(one.hardware for one in joints)
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
 def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
-    """Group successive items into the rows in which they are listed or drawn, in line order.
+    """Group consecutive items into the rows in which they are listed or drawn, in line order.
 
-    Hardware is in the row of the piece before it, not in that of a clamp on this piece. In a
-    drawing it follows the clamps, and hardware marked as `apart` has a separate row.
+    In a list, hardware is in the row of the piece before it, even if clamps on this piece are
+    listed in between. In a drawing, hardware follows the clamps, and hardware marked as `apart` has
+    a separate row.
     """
 
     def is_joint(one: DeckItem) -> bool:
@@ -240,7 +248,6 @@ def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[Dec
 
 
 def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
-    """Yield the rows; successive rows of one cluster of floats are joined."""
     joined: list[DeckRow] = []
     key: tuple[object, ...] = ()
     for row in rows:
@@ -255,8 +262,8 @@ def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
-    """Return whether a run of clamps consists of floats, and comprises all clamps on a
-    row's cable.
+    """Return whether a run of clamps consists of floats and includes all clamps on the cable of
+    `row`.
     """
     first = run[0]
     if first.role != "float" or first.on is None or first.kind == (first.label,):
@@ -279,8 +286,8 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
-    """Find the labels of pieces that govern a check with a utilisation above `SHOWN_USE`, or have
-    an open finding.
+    """Return the labels of pieces that have an open finding, or govern a check with a utilisation
+    above `SHOWN_USE`.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)
@@ -296,10 +303,9 @@ SHOWN_USE = 0.4999
 
 
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
-    """List the items down the line to the anchor, or down each leg, with the clamps after their
-    piece.
+    """List the items from the top to the anchor, leg by leg, with the clamps after their piece.
 
-    Connecting hardware with a label in `apart` is drawn in a row of its own.
+    Connecting hardware whose label is in `apart` is drawn in a separate row.
     """
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
@@ -351,12 +357,12 @@ class Extreme:
 
 @dataclass(frozen=True)
 class DeckInstrument:
-    """An instrument, a float or frame that holds one, or a release.
+    """An instrument, a float or frame that holds an instrument, or a release.
 
     Attributes
     ----------
     item : the item in the environment of the sheets
-    still : depth in still water [m]; None if the line has no unique shape there
+    still : depth in still water [m]; None if the line has no unique shape in still water
     shallowest, deepest : extreme depths over all environments
     greatest_tilt : maximum tilt over all environments [degrees]
     """
@@ -371,8 +377,10 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
 ) -> tuple[DeckInstrument, ...]:
-    """List the instruments, the floats and frames that hold one, and the releases, down the line;
-    the first result is that of the sheets.
+    """List the instruments, the floats and frames that hold an instrument, and the releases, down
+    the line.
+
+    `results` lists the name and the result of each environment, beginning with that of the sheets.
     """
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
@@ -396,7 +404,7 @@ def instruments_of(
 
 
 class Order(StrEnum):
-    """Order of deployment over the side: anchor first or anchor last."""
+    """Order of deployment: anchor first or anchor last."""
 
     ANCHOR_LAST = "anchor-last"
     ANCHOR_FIRST = "anchor-first"
@@ -405,8 +413,8 @@ class Order(StrEnum):
 def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
     """Sort the pieces in the order of deployment, each followed by its clamps.
 
-    In an anchor-first deployment, the lower end of a piece goes first, and with it the lowest
-    clamp.
+    In an anchor-first deployment, the lower end of a piece and its lowest clamp go over the side
+    first.
     """
     if order is Order.ANCHOR_LAST:
         return tuple(parts)

@@ -30,7 +30,9 @@ LEAST_TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class Mark:
-    """Position of a clamp mark from the upper end [m], measured under the load of the cable."""
+    """Mark for a clamp on a cable: label and distance from the upper end [m], measured under the
+    load of the cable.
+    """
 
     label: str
     at: float
@@ -38,20 +40,20 @@ class Mark:
 
 @dataclass(frozen=True)
 class Cut:
-    """A wire, a rope or a chain.
+    """A wire, a rope or a chain to be cut.
 
     Attributes
     ----------
     item : the piece
-    length, load : length to measure [m], under this load [N]
+    length, load : length to measure [m], and the load under which it is measured [N]
     unstretched : length without load [m]
     marks : clamp marks down the cable, measured under the same load
     termination : termination in the file, or None
     tolerance : tolerance of the length [m]
-    effect : increase in depth of the top of its line or leg if the piece is longer by
-        `LENGTH_ERROR` [m]; None if that line has no equilibrium
-    over, onto : sequence number of a wire or rope over the side, and onto the drum in reverse
-        order; None for a chain
+    effect : increase in depth of the top of the line or leg if the piece is longer by the fraction
+        `LENGTH_ERROR` [m]; None if the longer line has no equilibrium
+    over, onto : sequence numbers of a wire or rope, over the side and, in reverse order, onto the
+        drum; None for a chain
     """
 
     item: DeckItem
@@ -72,7 +74,7 @@ class Cut:
 
     @property
     def marks_text(self) -> str:
-        """Marks as ``label@metres`` from the upper end, separated by `;`."""
+        """Marks as text: ``label@metres`` from the upper end, separated by `;`."""
         return ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in self.marks)
 
 
@@ -119,8 +121,8 @@ def _cut(result: Result, one: DeckItem, over: int | None, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Compute the increase in depth of the top if one piece is cut too long, in unchanged water
-    [m].
+    """Compute the increase in depth of the top if one piece is cut too long and the water is
+    unchanged [m].
     """
     number = leg_numbers(result.file)[index]
     longer = result.design.with_length(index, length * (1.0 + LENGTH_ERROR))
@@ -162,7 +164,7 @@ class Stock:
     use, name : id and name of the component; accessories have only a name
     count : number in the line
     length : total length of chains [m]
-    basis : basis of the count, unless the item is a piece of the line
+    basis : how the number is determined, if the item is not itself a piece of the line
     """
 
     kind: str
@@ -174,8 +176,8 @@ class Stock:
 
     @property
     def spares(self) -> int:
-        """Number of spares: a tenth, rounded up, with a minimum of two for small parts and one for
-        others.
+        """Number of spares, which is one tenth rounded up, but at least two for small parts and one
+        for others.
         """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
@@ -189,8 +191,8 @@ def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
     """List the connectors and chains of a line or of legs, with their accessories.
 
     A shackle has a bolt with nut and cotter pin, unless its definition mentions a screw pin. A
-    termination that mentions a thimble has one at each end. For each contact of dissimilar metals,
-    an isolator is listed, and an anode for the less noble piece.
+    cable whose termination mentions a thimble has one at each end. For each contact of dissimilar
+    metals, an isolator is listed, and an anode for the less noble piece.
     """
     parts = [one for leg in legs for one in leg]
     groups: dict[tuple[str, str], list[DeckItem]] = {}
@@ -274,12 +276,13 @@ class ShippedComponent:
     Attributes
     ----------
     use, name, count : id, name and number of the component
-    units : number of units; larger than `count` if a component consists of several, such as a pair
+    units : number of units; larger than `count` if the component has several units, such as a pair
         of releases
     length : total length of cable or chain [m]
     mass : total of the known masses in air [kg]
     volume : total of the known volumes, without packing [m³]
-    missing_masses, missing_volumes : number of unknown values; unless 0, the sum is a lower bound
+    missing_masses, missing_volumes : number of unknown values; if there are any, the total is a
+        lower bound
     """
 
     use: str
@@ -306,7 +309,7 @@ class ShippedComponent:
 def shipped_of(
     file: MooringFile, inventory: Sequence[InventoryItem]
 ) -> tuple[ShippedComponent, ...]:
-    """Create a row for each component, in line order."""
+    """Return the shipping list with one row per component, in line order."""
     components = {
         (piece.index, part.label): part.component
         for piece in file.pieces
@@ -317,17 +320,17 @@ def shipped_of(
 
 
 def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
-    """Return the total of the shipping list."""
+    """Return the totals of the shipping list."""
     names = ("count", "units", "mass", "volume", "missing_masses", "missing_volumes")
     sums = {name: sum(getattr(one, name) for one in shipped) for name in names}
     return ShippedComponent(use="", name="Total", length=None, **sums)
 
 
 def volume_of(component: Component, length: float | None) -> float | None:
-    """Return the volume of a piece [m³], from the dimensions of spheres, cylinders and cables, else
-    from displacement.
+    """Return the volume of a piece [m³]; None if unknown.
 
-    None if unknown.
+    The volumes of spheres, cylinders and cables are computed from their dimensions; other pieces
+    have their displaced volume.
     """
     if isinstance(component, Sphere):
         return pi * component.diameter**3 / 6.0

@@ -1,4 +1,5 @@
 """Pictures: side view and plan of a line, its parts, and graphs.
 
-Every picture is a model in metres; a separate printer exists for each medium.
+Pictures of a line are first described in metres, independently of the medium. Each medium has a
+module that draws them.
 """

@@ -1,4 +1,4 @@
-"""Figures of a design check: mooring to scale, loads, and line symbols for table rows.
+"""Figures of a design check: the mooring to scale, the loads, and line symbols for table rows.
 
 They are black on white, so that no information depends on colour. Lengths are in points.
 """
@@ -52,8 +52,8 @@ class DrawnCase:
 class Label:
     """A label next to the line: a part, its text, and its depth as text.
 
-    `at` is its depth and its positions east and north [m]; None for a cable. `tag` is the mark and
-    the number of its open finding.
+    `at` is the depth of the part and its positions east and north [m]; None for a cable. `tag` is
+    the mark and the number of its open finding.
     """
 
     part: ShownPart
@@ -64,7 +64,7 @@ class Label:
 
 
 def grey(svg: str) -> str:
-    """Replace the colours of a drawing by greys of equal luminance."""
+    """Replace the colours of a drawing with greys of equal luminance."""
 
     def of(match: re.Match[str]) -> str:
         red, green, blue = (int(match[1][at : at + 2], 16) for at in (0, 2, 4))
@@ -77,18 +77,18 @@ def grey(svg: str) -> str:
 def elevation(
     title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
 ) -> tuple[str, float]:
-    """Draw the elevation of the mooring as SVG with equal scales; return it with the scale in
-    metres per point.
+    """Draw the elevation of the mooring as SVG, with equal scales. Also return the scale [m per
+    point].
 
     The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
     other cases are thin lines. The current of the first case is drawn on the left. The labels and
-    their symbols are on the right, from the top down; without room for them, in a wide mooring,
-    only the places of the parts are marked.
+    their symbols are on the right, from the top down. A wide mooring leaves no space for labels, so
+    only the positions of the parts are marked.
 
     Parameters
     ----------
-    cases : the load cases, all drawn in the vertical plane of the first one
-    labels : the labels, from the top
+    cases : load cases, all drawn in the vertical plane of the first one
+    labels : labels, from the top down
     size : width and height of the drawing
     """
     width, height = size
@@ -174,18 +174,15 @@ _MOST_LEVELS = 7
 
 
 def _longest(labels: Sequence[Label]) -> float:
-    """Return the width of the labels with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
     return _REAL * max(widths, default=0.0) + _FIGURES + _GAP
 
 
 def _level(place: int, count: int, height: float) -> float:
-    """Return the vertical position of a label."""
     return _ABOVE + (place + 0.5) * (height - _ABOVE) / count
 
 
 def _draw_flow(page: Pen, leg: LegResult, sea: float, scale: float) -> None:
-    """Draw the current speed by depth, with arrows at as many levels as there is room for."""
     speed = np.hypot(leg.water.u, leg.water.v)
     fastest = float(speed.max())
     if fastest == 0.0:
@@ -240,7 +237,7 @@ class PieceBar(NamedTuple):
     number : number of the piece in the line
     tension, capacity : maximum tension, and the capacity; None if unknown
     launch, launch_capacity : maximum tension and capacity during the launch
-    judged : whether the piece needs a capacity
+    judged : whether the capacity of the piece is checked
     """
 
     number: int
@@ -254,7 +251,7 @@ class PieceBar(NamedTuple):
 def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float]) -> str:
     """Draw tension and capacity of every piece as SVG, with the top of the line on the left.
 
-    `size` is its width and height.
+    `size` is the width and height of the chart.
     """
     width, height = size
     page = picture(width, height, title)
@@ -307,7 +304,9 @@ def beside_row(part: ShownPart, height: float, *, first: bool = False, last: boo
 
 
 def _row_picture(height: float, title: str) -> Pen:
-    """Return a picture without background, which would cover the rules of the table."""
+    """Return a picture without background, because a background would hide the rules of the
+    table.
+    """
     page = picture(ROW_WIDTH, height, title)
     page.element.remove(page.element[-1])
     return page

@@ -1,4 +1,4 @@
-"""Graphs as SVG: scales, axes and legends, drawn by the pen.
+"""Graphs as SVG: scales, axes and legends.
 
 Lengths are in points (1/72 inch); the upper left corner of a graph is its origin.
 """
@@ -40,8 +40,8 @@ class Scale:
     logarithmic: bool = False
 
     def share(self, value: ArrayLike) -> Floats:
-        """Return the positions of values between `low` (0) and `high` (1); NaN if the logarithm is
-        undefined.
+        """Return the positions of values as fractions, 0 at `low` and 1 at `high`; NaN if a
+        logarithm is undefined.
         """
         given: Any = np.asarray(value, dtype=np.float64)
         if not self.logarithmic:
@@ -51,7 +51,7 @@ class Scale:
 
 
 def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
-    """Find the linear range of all finite values, with a margin; 0 to 1 if there are none."""
+    """Return a linear scale for all finite values, with a margin; 0 to 1 if there are none."""
     every = np.concatenate([np.ravel(np.asarray(each, dtype=np.float64)) for each in values])
     every = every[np.isfinite(every)]
     if not every.size:
@@ -62,7 +62,7 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
 
 
 def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
-    """Widen the narrower of two ranges about its middle, so that both axes have equal scales.
+    """Widen the narrower range about its middle, so that both axes have the same scale.
 
     Parameters
     ----------
@@ -105,7 +105,9 @@ def numbers(low: float, high: float, most: int) -> list[Tick]:
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return ticks at whole numbers, `first` to `last`, in at most `most` equal round steps."""
+    """Return at most about `most` ticks at whole numbers from `first` to `last`, in equal round
+    steps.
+    """
     wanted = max((last - first) / max(most, 1), 1.0)
     power = 10 ** floor(log10(wanted))
     step = next(int(each) * power for each in _STEPS if each * power >= wanted)
@@ -149,7 +151,9 @@ def seconds(times: Any) -> NDArray[np.float64]:
 
 
 def _days(months: Any, step: int) -> Any:
-    """Days of each month in equal steps from the first, without days just before the next month."""
+    """Return days of each month in equal steps from the first day; days just before the next month
+    are omitted.
+    """
     each = np.arange(months[0], months[1] + 1).astype("datetime64[D]")
     return (each[:, None] + np.arange(0, 29 - step // 2, step)).ravel()
 
@@ -169,15 +173,15 @@ def _multiples(step: float, low: float, high: float) -> list[float]:
 
 
 def number(value: float) -> str:
-    """Format a number for an axis."""
+    """Format a number for the axis of a graph."""
     return f"{value:z.6g}" if abs(value) < 1e6 else f"{value:.0f}"
 
 
 class Stroke(NamedTuple):
     """Colour, width [pt] and dashes of a line.
 
-    `dashes` are the lengths [pt] of dashes and gaps, empty for a solid line; a `square` line
-    extends by half its width at both ends, so that even the shortest is visible.
+    `dashes` are the lengths of dashes and gaps [pt]; empty for a solid line. A `square` line
+    extends by half its width at both ends, so that even the shortest line is visible.
     """
 
     colour: str
@@ -197,14 +201,14 @@ class Stroke(NamedTuple):
 
 _FRAME, _GRID = Stroke(INK, 0.7), Stroke("#e3e6ea", 0.6)
 _TICK = 3.0  # points
-_NEAREST = 0.05  # points: of two that are nearer one is drawn
+_NEAREST = 0.05  # points; a point closer to the previous one is not drawn
 
 
 _SAMPLE, _GAP = 16.0, 5.0  # points: length of the line next to a text, and the gap between them
 
 
 class LegendEntry(NamedTuple):
-    """A legend entry: text with a line or a mark (form, width [pt], colour)."""
+    """Legend entry: text with a line or with a mark (form, width [pt], colour)."""
 
     text: str
     line: Stroke | None = None
@@ -212,11 +216,11 @@ class LegendEntry(NamedTuple):
 
 
 class Graph:
-    """An SVG graph with a white background; width and height in points."""
+    """An SVG graph with a white background. Its width and height are in points."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size
-        self.pen.element.set("fill", "none")  # a curve and a frame are lines
+        self.pen.element.set("fill", "none")  # curves and frames are not filled
 
     def svg(self) -> str:
         """Return the graph as an SVG element, for a file or for embedding in a page."""
@@ -233,9 +237,9 @@ class Graph:
         *,
         clipped: bool = False,
     ) -> Axes:
-        """Add axes at a position [pt] of the graph, with ranges from left to right and upward.
+        """Add axes at a position on the graph [pt], with ranges from left to right and upward.
 
-        The frame of `clipped` axes clips lines that leave it.
+        With `clipped`, lines are clipped at the frame.
         """
         return Axes(self, (left, top, width, height), across, up, clipped)
 
@@ -247,7 +251,7 @@ class Graph:
         row: float,
         columns: int = 1,
     ) -> None:
-        """Write the legend row by row in columns; long texts are shortened.
+        """Draw the legend row by row in columns; long texts are shortened.
 
         Parameters
         ----------
@@ -266,7 +270,7 @@ class Graph:
 
 
 class Axes:
-    """Drawing area with two scales; the frame is drawn last."""
+    """Drawing area with two scales. Draw the frame last, with `frame`."""
 
     def __init__(
         self,
@@ -302,7 +306,9 @@ class Axes:
             self.drawn.path(path, **stroke.attributes())
 
     def lines(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
-        """Draw separate segments with ends of shape (2, n); segments with NaN are skipped."""
+        """Draw separate line segments between points of shape (2, n); segments with NaN are
+        skipped.
+        """
         (x1, x2), (y1, y2) = np.broadcast_arrays(self.x(x), self.y(y))
         for ends in zip(x1.tolist(), y1.tolist(), x2.tolist(), y2.tolist(), strict=True):
             if all(map(isfinite, ends)):
@@ -356,7 +362,7 @@ class Axes:
         anchor: str = "start",
         colour: str = INK,
     ) -> None:
-        """Write a text next to a point, with a shift to the right and down [pt]."""
+        """Write a text next to a point; `shift` is its distance to the right and down [pt]."""
         at = float(self.x(x)) + shift[0], float(self.y(y)) + shift[1]
         self.drawn.letters(*at, text, size=self.graph.size, anchor=anchor, colour=colour)
 
@@ -393,13 +399,13 @@ class Axes:
         grid: bool = False,
         numbered: tuple[bool, bool] = (True, True),
     ) -> None:
-        """Draw the frame with its ticks, after everything inside it.
+        """Draw the frame with its ticks; call it after everything inside the frame is drawn.
 
         Parameters
         ----------
-        across, up : the ticks, or the approximate number of round numbers to show
+        across, up : ticks, or approximate number of ticks at round numbers
         below, beside : labels of the horizontal and the vertical axis; line feeds separate lines
-        grid : whether ticks continue as thin lines behind the drawing
+        grid : whether thin lines continue the ticks behind the drawing
         numbered : whether the horizontal and the vertical axis have numbers
         """
         pen, size = self.graph.pen, self.graph.size
@@ -462,7 +468,7 @@ def _path(x: Floats, y: Floats) -> str:
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
-    """Draw a mark of a width [pt] at a point.
+    """Draw a mark of width `size` [pt] at a point.
 
     Filled marks: o, s (square), D (diamond), v and ^ (triangles); line marks: +, | (vertical).
     """

@@ -1,4 +1,4 @@
-"""Draw a result: side view of the line with the current next to it, and plan."""
+"""Drawing of a result as SVG: side view of the line, current by depth, and plan."""
 
 from __future__ import annotations
 
@@ -56,13 +56,14 @@ _FASTER, _IN_PLANE = Stroke(WATER_COLOUR, 1.4), Stroke(WATER_COLOUR, 1.0, (3.0, 
 
 
 def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
-    """Draw a mooring, a net or a tow, from the side and above, as SVG.
+    """Draw a mooring, a net or a tow from the side and from above, as SVG.
 
-    The elevation of a mooring is in the vertical plane of its anchor and its free end, that of a
-    net in the plane in which the net is widest, that of a tow in the plane of the tow, with the
-    ship at distance 0. The line in still water is dashed. The second view has the speed of the
-    water past the line and its component in that plane. The third view, from above, is omitted if a
-    tow stays in its plane. The band of an uncertain mooring is behind the line.
+    The elevation of a mooring is in the vertical plane of its anchor and its free end. The
+    elevation of a net is in the plane in which the net is widest. The elevation of a tow is in the
+    plane of the tow, with the ship at distance 0. The line in still water is dashed, and the
+    uncertainty of a mooring is shown as a band behind the line. A second graph shows the speed of
+    the water past the line, and its component in the plane of the elevation. The plan is omitted if
+    a tow stays in its plane.
     """
     plane = line_picture.plane_of(result)
     side = line_picture.elevation_of(result, uncertain=uncertain)
@@ -128,7 +129,9 @@ def draw_elevation(
     written: Sequence[tuple[str, PictureMark]],
     depths: Scale,
 ) -> None:
-    """Draw the side view of the line between surface and seabed, with part names in a column."""
+    """Draw the side view of the line between surface and seabed, with the names of its parts in a
+    column.
+    """
     _, _, width, _ = place
     widest = max((text_width(text, _SIZE) for text, _ in written), default=0.0)
     room = min(widest, _LONGEST_NAME)
@@ -164,7 +167,6 @@ def _draw_marks(axes: Axes, marks: Sequence[PictureMark]) -> None:
 
 
 def _write_names(axes: Axes, written: Sequence[tuple[str, PictureMark]], room: float) -> None:
-    """Write names in a column at the right edge, each with a thin line to its part."""
     left, half = axes.left + axes.width - room - 4.0, _NAME_LEADING / 2
     wanted = [float(axes.y(part.depth)) for _, part in written]
     places = line_picture.spread(
@@ -211,13 +213,13 @@ def draw_flow(
     depths: Scale,
     what: str,
 ) -> None:
-    """Draw current speed against depth, and its component in a vertical plane if different.
+    """Draw current speed against depth and, if it differs, the component in a vertical plane.
 
     Parameters
     ----------
     flow : (n,) depth [m], speed to the east and to the north [m/s]
     plane : (2,) direction of the plane, east and north
-    what : label of the scale, after the word speed
+    what : words after "speed" in the label of the scale
     """
     depth, u, v = flow
     speed, in_plane = np.hypot(u, v), along(u, v, plane)

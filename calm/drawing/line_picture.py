@@ -1,8 +1,8 @@
 """Side view and plan of a solved line [m], independent of the output format.
 
-The picture is drawn by `calm.drawing.line_drawing` for files and pages, by
-`calm.drawing.check_figures` with other figures of a check, by `calm.drawing.sketch` in a terminal,
-and by `calm.drawing.plot` on matplotlib axes.
+`calm.drawing.line_drawing` draws the picture for files and pages, `calm.drawing.sketch` draws it in
+a terminal, and `calm.drawing.plot` on matplotlib axes. `calm.drawing.check_figures` combines it
+with the figures of a design check.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,7 +28,7 @@ NAMED_ROLES = ("float", "instrument", "release", "anchor")
 
 
 class LineKind(Enum):
-    """Kind of a line in a picture; each output format has a stroke per kind."""
+    """Kind of a line in a picture; each output format draws the kinds differently."""
 
     LINE = "line"
     STILL = "still"
@@ -49,10 +49,10 @@ class Polyline:
 
 @dataclass(frozen=True)
 class PictureMark:
-    """A marked point of the line: its component, name, role and depth [m].
+    """A marked point of the line: component, name and role of the part, and its depth [m].
 
-    `x` and `y` are its coordinates in the picture [m]; in `named_parts` they are east and north
-    [m].
+    `x` and `y` are coordinates in the picture [m]; in `named_parts`, they are distances to the east
+    and north [m].
     """
 
     use: str
@@ -71,11 +71,11 @@ class LinePicture:
     ----------
     lines : lines in drawing order, from back to front
     marks : floats, instruments, releases and the anchor
-    top, bottom : depths at the edges of a view from the side, with their margins [m]
+    top, bottom : depths at the upper and lower edge of a side view, with margins [m]
     height : water depth of a mooring, or height of a towed line [m]
     surface : whether there is a sea surface at depth 0
     seabed : depth of the seabed [m]; None if it is not in the picture
-    ship : position of the ship of a tow
+    ship : position of the towing ship
     across, up : labels of the axes, with units
     """
 
@@ -91,7 +91,7 @@ class LinePicture:
     seabed: float | None = None
 
     def span(self) -> tuple[float, float]:
-        """Minimum and maximum `x`, including zero, but without the line in still water."""
+        """Return the minimum and maximum `x`; zero is included, the line in still water is not."""
         reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
         return min(0.0, *(float(x.min()) for x in reach)), max(
             0.0, *(float(x.max()) for x in reach)
@@ -106,7 +106,7 @@ def elevation_of(
     Parameters
     ----------
     overlays : shapes of the mooring in other environments, or of other designs
-    uncertain : uncertainty of a mooring, for the band between 5 and 95 %
+    uncertain : uncertainty of a mooring, which is shown as a band from 5 to 95 %
     """
     plane, depth = plane_of(result), QUANTITIES["depth"].label
     marks = tuple(
@@ -138,7 +138,10 @@ def elevation_of(
 
 
 def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
-    """Return the plan of a line, with the anchor or the ship at the origin, and any `overlays`."""
+    """Return the plan of a line, with the anchor or the ship at the origin.
+
+    `overlays` are shapes of the mooring in other environments, or of other designs.
+    """
     shapes = [(LineKind.BESIDE, shape) for shape in overlays]
     shapes += [(LineKind.LINE, leg.shape) for leg in result.legs]
     return LinePicture(
@@ -164,7 +167,7 @@ def from_the_side(
 
 
 def _beds(result: AnyResult) -> Iterator[Polyline]:
-    """Yield the seabed near each anchor, if it is sloping or shallower than at the deepest
+    """Yield the seabed near each anchor that is on a slope, or in shallower water than the deepest
     anchor.
     """
     plane, legs = plane_of(result), result.legs
@@ -182,7 +185,9 @@ def _beds(result: AnyResult) -> Iterator[Polyline]:
 
 
 def _band(uncertain: Uncertain) -> Polyline:
-    """Return the outline of the line between the 5 and 95 % values of offset and depth."""
+    """Return the outline of the area between the 5 and 95 % values of offset and depth along the
+    line.
+    """
     (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
     return Polyline(
         LineKind.BAND,
@@ -193,17 +198,18 @@ def _band(uncertain: Uncertain) -> Polyline:
 
 
 def plane_of(result: AnyResult) -> Floats:
-    """Return the horizontal direction (east, north) from the anchor to the free end, or behind the
-    ship.
+    """Return the horizontal direction (east, north) of the side view.
 
-    For an upright mooring the direction is east; for a net it is the direction in which the net is
-    widest.
+    It points from the anchor to the free end of a mooring (east for an upright mooring), along the
+    largest extent of a net, or from the ship backward for a tow.
     """
     return plane_of_legs(result.legs)
 
 
 def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
-    """Return the horizontal direction (east, north) of the side view for one leg or for a net."""
+    """Return the horizontal direction (east, north) of the side view for one leg or for the legs of
+    a net; see `plane_of`.
+    """
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
@@ -236,28 +242,28 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: AnyResult) -> float:
-    """Return the water depth at the deepest anchor [m], or the depth of the drawn seabed if
-    deeper.
+    """Return the depth of the deepest seabed in the picture [m]: at an anchor, or at the end of a
+    slope that is drawn.
     """
     beds = (float(bed.y.max()) for bed in _beds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
-    """Project points (east, north) onto a horizontal direction."""
+    """Return the coordinates of points (east, north) along a horizontal direction."""
     return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
 
 
 def current_between(
     water: Water, top: float, bottom: float, samples: int = 200
 ) -> tuple[Floats, Floats, Floats]:
-    """Return depths, and the current east and north at these depths [m/s], including all profile
-    levels.
+    """Return depths, and the current to the east and north at these depths [m/s]. All levels of the
+    current profile are included.
 
     Parameters
     ----------
     top, bottom : range of depths [m]
-    samples : smallest number of depths
+    samples : minimum number of depths
     """
     depth = np.union1d(np.linspace(top, bottom, samples), water.level)
     depth = depth[(depth >= top) & (depth <= bottom)]
@@ -268,7 +274,7 @@ def current_between(
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
-    This is the current for a mooring and a net; for a tow the ship's speed is added.
+    For a mooring or a net this is the current. For a tow, the speed of the ship is added.
     """
     water, tow = result.water, result.file.tow
     if tow is None:
@@ -287,7 +293,9 @@ def along_the_line(shape: Shape) -> Floats:
 
 
 def named_parts(result: AnyResult) -> list[PictureMark]:
-    """Return floats, instruments, releases and anchors, including clamped items, in file order."""
+    """Return the floats, instruments, releases and anchors, whether in line or clamped, in file
+    order.
+    """
     parts = []
     for row, clamps in rows_down(result):
         ends = (
@@ -304,15 +312,15 @@ def named_parts(result: AnyResult) -> list[PictureMark]:
 
 
 def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]]:
-    """Return the part names to write in a drawing, each with its part.
+    """Return the names to write in a drawing, each with its part.
 
-    Neighbours of the same component within `near` [m] of each other, whose labels differ only by a
-    number at the end, get a common text: ``glass 1–6``.
+    Adjacent parts of the same component share a name, such as ``glass 1–6``, if their labels differ
+    only by a number at the end and they are at most `near` [m] apart in depth.
     """
     runs: list[list[PictureMark]] = []
     for part in parts:
         last = runs[-1][-1] if runs else None
-        same = last and last.use == part.use and alike(last.text, part.text)
+        same = last and last.use == part.use and differ_by_number(last.text, part.text)
         if last and same and abs(part.depth - last.depth) <= near:
             runs[-1].append(part)
         else:
@@ -320,25 +328,24 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
     return [(together([part.text for part in run]), run[len(run) // 2]) for run in runs]
 
 
-def alike(label: str, other: str) -> bool:
+def differ_by_number(label: str, other: str) -> bool:
     """Return whether two labels differ only by a number at the end."""
     stems = [text.removesuffix(_number(text)) for text in (label, other)]
     return stems[0] == stems[1] and bool(_number(other))
 
 
 def together(labels: list[str]) -> str:
-    """Join labels that differ only by a number to one name: ``glass 1–6``."""
+    """Join labels that differ only by a number at the end to one name: ``glass 1–6``."""
     return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Shift positions until they are at least `gap` apart, as close as possible to the ascending
-    `wanted` positions.
+    """Shift positions so that they are at least `gap` apart, but as close as possible to the
+    `wanted` positions, which are in ascending order.
 
-    The sum of the squared shifts is the smallest possible between `start` and `end`; if not all
-    positions fit, they extend beyond the end. After subtraction of the gaps before each position,
-    the positions only need to ascend: descending runs are replaced by their mean (isotonic
-    regression).
+    Between `start` and `end`, the sum of the squared shifts is minimal. If not all positions fit,
+    they extend beyond the end. After subtraction of the gaps before each position, this is an
+    isotonic regression: descending runs are replaced by their mean.
     """
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):
@@ -353,5 +360,4 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
 
 
 def _number(label: str) -> str:
-    """Digits at the end of a label."""
     return label[len(label.rstrip("0123456789")) :]

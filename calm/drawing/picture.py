@@ -1,4 +1,4 @@
-"""Write drawings to files, and replace characters not allowed in drawings."""
+"""Writing of drawings to files, and replacement of characters that a drawing must not contain."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 
 
 def check_format(path: Path) -> None:
-    """Raise UsageError, with the allowed formats, if the suffix of a picture's file name is not
-    allowed.
+    """Raise UsageError, with the allowed formats, if a picture cannot have the suffix of the given
+    file name.
     """
     if path.suffix.lower() not in FORMATS:
         allowed = f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}"
@@ -24,7 +24,7 @@ def check_format(path: Path) -> None:
 
 
 def image(svg: str, suffix: str) -> bytes:
-    """Convert a drawing to the bytes of an SVG, PNG or PDF file; a PDF page has the size of the
+    """Convert a drawing to the content of an SVG, PNG or PDF file. A PDF page has the size of the
     drawing.
 
     The suffix is one of `FORMATS`, in upper or lower case.
@@ -43,12 +43,12 @@ _NOT_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 def within_xml(text: str) -> str:
-    """Replace characters that XML does not allow by �."""
+    """Replace characters that XML does not allow with �."""
     return re.sub(_NOT_XML, "\ufffd", text)
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """Prefix the identifiers of a drawing, so that several drawings on a page have distinct
+    """Prefix the identifiers in a drawing, so that several drawings on a page have distinct
     identifiers.
     """
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
@@ -64,12 +64,12 @@ _IN_ASCII = str.maketrans({
 
 
 def printable(text: str) -> str:
-    """Replace characters that XML or a terminal cannot show by a mark."""
+    """Replace characters that XML or a terminal cannot show with a mark."""
     return re.sub(_UNPRINTABLE, "\ufffd", text)
 
 
 def in_ascii(text: str) -> str:
-    """Write out the symbols of units and arithmetic in ASCII: ``27 deg`` for ``27°``.
+    """Replace the symbols of units and arithmetic with ASCII text: ``27 deg`` for ``27°``.
 
     Letters are not changed.
     """

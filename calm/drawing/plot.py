@@ -1,6 +1,6 @@
-"""Draw lines on matplotlib axes, and convert matplotlib figures to SVG.
+"""Drawing of lines on matplotlib axes, and conversion of matplotlib figures to SVG.
 
-matplotlib comes with the extra `plot`.
+matplotlib is installed with the extra `plot`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _STYLES: dict[LineKind, dict[str, Any]] = {
 
 
 def empty_figure(width: float, height: float, **options: Any) -> Figure:
-    """Create a figure of a given size [inches] without a window."""
+    """Create a figure of a given size [inches], which opens no window."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), **options)
@@ -39,9 +39,10 @@ _ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
 
 
 def figure_svg(figure: Figure) -> str:
-    """Convert a figure to SVG, with texts as text, without prologue and metadata.
+    """Convert a figure to SVG without prologue and metadata. Letters remain text.
 
-    A style sheet in the drawing would apply to the whole page, so its settings become attributes.
+    A style sheet inside the drawing would apply to the whole page, so its settings become
+    attributes.
     """
     import matplotlib
 

@@ -1,4 +1,4 @@
-"""Typeset PDF and PNG files by typst, in the fonts of this package.
+"""Typesetting of PDF and PNG files with typst, in the fonts of this package.
 
 System fonts are not used, so that the same input gives the same bytes on every computer.
 """
@@ -26,11 +26,11 @@ def typeset(
     kind: Literal["pdf", "png"],
     timestamp: int | None = None,
 ) -> bytes:
-    """Typeset a typst template; a PNG contains only the first page.
+    """Typeset a typst template. A PNG contains only the first page.
 
     Parameters
     ----------
-    inputs : texts that the template reads from `sys.inputs`, as data only
+    inputs : texts that the template reads from `sys.inputs`; they are not interpreted as markup
     timestamp : date of a PDF, in seconds since 1970; None for no date
     """
     import typst
@@ -48,7 +48,7 @@ def typeset(
 
 
 def lacking(texts: Iterable[str]) -> str:
-    """Return the characters that the fonts lack, each once, in order of occurrence."""
+    """Return the characters that the fonts lack. Each is listed once, in order of occurrence."""
     held, known = list(texts), signs()
     unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
     if not unknown:  # almost always, since a report has millions of characters
@@ -57,7 +57,7 @@ def lacking(texts: Iterable[str]) -> str:
 
 
 def legible(text: str) -> str:
-    """Replace each character that the fonts lack by �.
+    """Replace each character that the fonts lack with �.
 
     A single missing character would otherwise make typst show a drawing's whole label as boxes.
     """
@@ -67,7 +67,7 @@ def legible(text: str) -> str:
 
 @cache
 def signs() -> frozenset[int]:
-    """Return the characters of the regular font as code points, from its OpenType `cmap` table
+    """Return the code points of the characters in the regular font, from its OpenType `cmap` table
     (format 12).
 
     Source: OpenType 1.9, chapters `otff` and `cmap`.

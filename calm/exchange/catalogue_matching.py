@@ -81,8 +81,8 @@ def _likeness(name: str, id: str, other: str) -> float:
         set(re.findall(r"[a-z]+|\d+(?:[./]\d+)?", text.lower())) for text in (name, f"{id} {other}")
     )
     shared = words & others
-    alike = len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
-    return len(shared) / len(words | others) if alike else 0.0
+    similar = len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
+    return len(shared) / len(words | others) if similar else 0.0
 
 
 def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:

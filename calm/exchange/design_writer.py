@@ -152,8 +152,8 @@ def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
             return id(item)
         return item.component.identity(), item.length, item.component.entry
 
-    alike = ([*group] for _, group in groupby(items, what))
-    return [replace(group[0], count=sum(each.count for each in group)) for group in alike]
+    groups = ([*group] for _, group in groupby(items, what))
+    return [replace(group[0], count=sum(each.count for each in group)) for group in groups]
 
 
 def _write_item(page: _Page, item: model.ImportedPiece, ids: dict[int, str]) -> None:

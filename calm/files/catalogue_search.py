@@ -218,9 +218,9 @@ class WordIndex:
         for word in _words(_SIZE.sub(" ", _parsed(text)[0])):
             if len(word) >= _SHORT_WORD and word.isalpha() and word not in every:
                 short = len(word) == _SHORT_WORD
-                alike = _MIN_SIMILARITY_SHORT if short else _MIN_SIMILARITY
+                least = _MIN_SIMILARITY_SHORT if short else _MIN_SIMILARITY
                 likely = [one for one in known if not short or one[0] == word[0]]
-                near = difflib.get_close_matches(word, likely, 1, alike)
+                near = difflib.get_close_matches(word, likely, 1, least)
                 text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
         return text
 

@@ -61,8 +61,8 @@ class SeabedKeys(Model):
     @property
     def plane(self) -> tuple[float, float]:
         """Depth increase per metre towards east and towards north [-]."""
-        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
-        return steep * math.sin(way), steep * math.cos(way)
+        azimuth, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
+        return steep * math.sin(azimuth), steep * math.cos(azimuth)
 
     def deeper(self, places: Floats) -> Floats:
         """Return the depth increase [m] at positions east and north of the reference point [m];

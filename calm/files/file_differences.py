@@ -338,11 +338,11 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
     removed = [i for i in range(len(before)) if i not in pairs]
     added = sorted(set(range(len(after))) - set(pairs.values()))
     for i in removed.copy():
-        alike = [j for j in added if after[j].contents[0] == before[i].contents[0]]
-        if alike:
-            pairs[i] = alike[0]
+        equals = [j for j in added if after[j].contents[0] == before[i].contents[0]]
+        if equals:
+            pairs[i] = equals[0]
             removed.remove(i)
-            added.remove(alike[0])
+            added.remove(equals[0])
     ordered = tuple(sorted(pairs.items()))
     steady = _longest_rise([j for _, j in ordered])
     moved = frozenset(pair for pair in ordered if pair[1] not in steady)

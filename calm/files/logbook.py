@@ -70,8 +70,8 @@ def nearest_unit(text: str) -> tuple[str, str] | None:
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):
             value = parse_quantity(f"1 {text}", dimension)
-            alike = (unit for unit, one in units.items() if math.isclose(one, value))
-            return next(((dimension, unit) for unit in alike), None)
+            equal = (unit for unit, one in units.items() if math.isclose(one, value))
+            return next(((dimension, unit) for unit in equal), None)
     return None
 
 

@@ -274,8 +274,8 @@ class Shaped(Rigid):
 
     @model_validator(mode="after")
     def _drag_is_given_once(self) -> Shaped:
-        ways = [[key for key in form if getattr(self, key) is not None] for form in DRAG_FORMS]
-        given = [keys for keys in ways if keys]
+        forms = [[key for key in form if getattr(self, key) is not None] for form in DRAG_FORMS]
+        given = [keys for keys in forms if keys]
         if len(given) != 1:
             what = " and ".join(f"`{key}`" for keys in given for key in keys) or "no drag"
             raise ValueError(

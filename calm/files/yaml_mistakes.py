@@ -75,8 +75,8 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
         return _at(mark, f"`{problem[-2]}` closes nothing")
     if "expected <block end>" in problem:
         above = _above(lines, mark.line)
-        alike = above is not None and _indent(lines[above]) == _indent(lines[mark.line])
-        if above is not None and alike and re.match(r"\s*[A-Za-z]\w*(?!.*: )", lines[above]):
+        same_indent = above is not None and _indent(lines[above]) == _indent(lines[mark.line])
+        if above is not None and same_indent and re.match(r"\s*[A-Za-z]\w*(?!.*: )", lines[above]):
             return _without_colon(lines, above)
         begin = f"line {begun.line + 1}, which begins this block"
         others = f"{begin}, in column {begun.column + 1}"

@@ -107,9 +107,9 @@ def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[f
     i = 1
     while i < last and rows[i].volume <= volume:
         i += 1
-    way = (volume - rows[i - 1].volume) / (rows[i].volume - rows[i - 1].volume)
-    draft = rows[i - 1].draft + way * (rows[i].draft - rows[i - 1].draft)
-    area = rows[i - 1].area + way * (rows[i].area - rows[i - 1].area)
+    part = (volume - rows[i - 1].volume) / (rows[i].volume - rows[i - 1].volume)
+    draft = rows[i - 1].draft + part * (rows[i].draft - rows[i - 1].draft)
+    area = rows[i - 1].area + part * (rows[i].area - rows[i - 1].area)
     whole = rows[last].area
     return draft / rows[last].draft, area / whole if whole > 0.0 else share
 

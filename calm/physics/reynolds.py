@@ -110,8 +110,8 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
         return factor
     if reynolds >= _KAPPA_ABOVE:
         return factor * smooth.lengthening
-    way = log(reynolds / _KAPPA_BELOW) / _CHANGE
-    return factor * (1.0 + (smooth.lengthening - 1.0) * way)
+    fraction = log(reynolds / _KAPPA_BELOW) / _CHANGE
+    return factor * (1.0 + (smooth.lengthening - 1.0) * fraction)
 
 
 def varying_share(

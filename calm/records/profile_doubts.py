@@ -16,7 +16,7 @@ _NEAR = 0.01
 """Rounding error of a multiple of 45 degrees in radians."""
 
 _OPPOSITE = 150.0
-_SAME_WAY = 60.0
+_SAME_DIRECTION = 60.0
 """Minimum angle between opposite currents, and maximum angle between similar ones [degrees]."""
 
 _LEAST_REVERSED = 0.05
@@ -87,7 +87,7 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
         if three.min() < _LEAST_REVERSED or not three[0] >= three[1] >= three[2]:
             continue
         across = [_between(toward[i], toward[j]) for j in (i - 1, i + 1)]
-        if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_WAY:
+        if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_DIRECTION:
             yield (
                 f"the current at {say('depth', float(depth[i]))} is opposite to those above and "
                 "below it, with a speed between theirs: is its direction, or a sign, wrong?"

@@ -233,7 +233,7 @@ def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
             )
 
 
-_WAYS = {"east": ("E", "EAST"), "north": ("N", "NORTH"), "up": ("U", "UP", "U1")}
+_COMPONENTS = {"east": ("E", "EAST"), "north": ("N", "NORTH"), "up": ("U", "UP", "U1")}
 _NAMES = ("vel", "velocity", "vel_avg")
 _DIRECTIONS = "dir"
 
@@ -255,7 +255,7 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     _checked(dataset, name)
     labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
     units, parts = vector.attrs.get("units", ""), {}
-    for sense, wanted in _WAYS.items():
+    for sense, wanted in _COMPONENTS.items():
         label = next((label for label in wanted if label in labels), None)
         if label is not None:
             part = vector.isel({_DIRECTIONS: labels.index(label)}, drop=True)

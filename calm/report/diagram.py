@@ -1,17 +1,16 @@
 """Mooring diagram on as many pages as it needs, each with a title block."""
 
-from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import accumulate, count
+from itertools import count
 from string import ascii_uppercase
 
 from calm.case.leg_result import LegResult
 from calm.checks.finding import DEFAULT_ENVIRONMENT, OWN
 from calm.deck import Deck
 from calm.drawing import schematic
-from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
+from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, divided, placed
 from calm.drawing.schematic.deck_parts import has_plans, parts_of_deck
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
@@ -35,7 +34,6 @@ _SKY, _MAST, _SUBMERGED = 7.0, 26.0, 11.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
 _EVEN = 0.7  # of the first column: how far down the last one reaches at least, where it can
-_NEAR_THE_END = 0.3  # of a column: where a break is looked for
 
 
 class PageSize(StrEnum):
@@ -280,7 +278,7 @@ def _columns(
     """
     afloat, (above, bottom) = line.type == "surface", end_descriptions(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
-    for group in _broken(parts, lowest - _TOP - _CONTINUED - max(sea, _CONTINUED)):
+    for group in divided(parts, lowest - _TOP - _CONTINUED - max(sea, _CONTINUED)):
         mark = "" if group[-1] is parts[-1] else next(marks)
         if above is not None:
             there = placed(group, _TOP + _CONTINUED)
@@ -290,28 +288,6 @@ def _columns(
         leg = leg_title(line) if line.leg.of_several else ""
         yield _PageColumn(there, above, below, afloat and above is None, leg)
         above = f"from {mark}"
-
-
-def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
-    """Split the parts into groups that fit a column; a group ends at a junction if possible."""
-    rest = [*parts]
-    while rest:
-        heights = [*accumulate(one.height for one in rest)]
-        fits = max(bisect_right(heights, room), 1)
-        if fits < len(rest):
-            fits = _break(rest, heights, fits, room)
-        yield rest[:fits]
-        rest = rest[fits:]
-
-
-def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room: float) -> int:
-    """Choose the part before which a column ends, as low as possible: a junction, else a piece,
-    else a clamp.
-    """
-    least = (1.0 - _NEAR_THE_END) * room
-    near = [each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least]
-    parts = {each: rest[each].part for each in near}
-    return min(near, key=lambda each: (not parts[each].junction, parts[each].clamped))
 
 
 _FIELDS = (

@@ -8,7 +8,7 @@ from calm.case.leg_result import LegResult
 from calm.case.result_tables import ComponentRow, run_of
 from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
-from calm.drawing.line_picture import alike, together
+from calm.drawing.line_picture import differ_by_number, together
 from calm.files import Clamp, Piece
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
@@ -67,7 +67,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         same = (
             last is not None
             and last.row.use == one.row.use
-            and alike(last.row.label, one.row.label)
+            and differ_by_number(last.row.label, one.row.label)
         )
         if same and _floats(one.row):
             groups[-1].append(one)

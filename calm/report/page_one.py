@@ -12,7 +12,7 @@ from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding, State, governing_of_each_rule
 from calm.deck.deck_items import SHOWN_USE, DeckItem, deck_items_of, standing_out
 from calm.drawing.check_figures import DrawnCase, Label, elevation
-from calm.drawing.line_picture import alike, together
+from calm.drawing.line_picture import differ_by_number, together
 from calm.drawing.schematic.deck_parts import Cells, parts_of
 from calm.drawing.schematic.shown_parts import ShownPart
 from calm.drawing.schematic.symbols import LINES
@@ -430,7 +430,7 @@ def drawn_parts(
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
         first, _, last = row.label.partition(" – ")
-        if last and not part.junction and alike(first, last):
+        if last and not part.junction and differ_by_number(first, last):
             part = replace(part, rows=(replace(row, label=together([first, last])),))
         found.append(part)
     return tuple(found)

@@ -5,13 +5,14 @@ from functools import partial
 from typing import Any
 
 from calm.case import Result
+from calm.case.design import AnyResult
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.finding import DEFAULT_ENVIRONMENT
 from calm.checks.posture import reaches_the_surface
 from calm.drawing.line_drawing import line_drawing
-from calm.drawing.schematic import schematic_svg
-from calm.files import Uncertainty
+from calm.drawing.schematic import schematic_sheets
+from calm.files import MooringFile, Uncertainty
 from calm.files.uncertainty import Spread
 from calm.quantities import QUANTITIES
 from calm.report import blocks
@@ -37,13 +38,14 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
         title, summary = net.title, net.blocks
         table: tuple[Block, ...] = ()
         schematics = tuple(
-            Figure(f"Schematic of leg {leg_title(leg)}", schematic_svg(leg.file, leg), tall=True)
+            sheet
             for leg in result.legs
+            for sheet in _schematics(f"Schematic of leg {leg_title(leg)}", leg.file, leg)
         )
     else:
         title, summary = title_of(result.leg), summary_of(result.leg)
         table = (table_of_line(result, "Table of the line", places=True),)
-        schematics = (Figure("Schematic", schematic_svg(file, result), tall=True),)
+        schematics = _schematics("Schematic", file, result)
     if not (result.several or result.towed):  # these have no margins in their tables
         keys = limits_used(result.file, reaches_the_surface(result.leg.leg))
         limits = (ReportPart("Limits", (limits_table(keys),)),)
@@ -61,6 +63,14 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
         *limits,
         NOT_JUDGED,
         inputs_part([(file.environment.name or DEFAULT_ENVIRONMENT, file, result.water)]),
+    )
+
+
+def _schematics(title: str, file: MooringFile, result: AnyResult) -> tuple[Figure, ...]:
+    sheets = schematic_sheets(file, result)
+    return tuple(
+        Figure(title if len(sheets) == 1 else f"{title}, {at} of {len(sheets)}", sheet, tall=True)
+        for at, sheet in enumerate(sheets, 1)
     )
 
 

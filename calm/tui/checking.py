@@ -23,13 +23,13 @@ class Reading:
     text : text to write, with a missing unit added
     complaint : reason why it is invalid; empty if valid
     offer : corrected text, if known
-    comes_to : meaning of a valid text, if the text alone is not clear
+    explained : meaning of a valid text, if the text alone is not clear
     """
 
     text: str
     complaint: str = ""
     offer: str | None = None
-    comes_to: str = ""
+    explained: str = ""
 
     @property
     def is_good(self) -> bool:
@@ -48,7 +48,7 @@ class Reading:
         obvious.
         """
         is_completed = self.text and self.text != " ".join(typed.split())
-        return self.note or self.comes_to or (f"= {self.text}" if is_completed else "")
+        return self.note or self.explained or (f"= {self.text}" if is_completed else "")
 
 
 Check = Callable[[str], Reading]

@@ -74,15 +74,15 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
     def on_focus(self) -> None:
         """Select the first line that links to a row."""
-        if not self._is_a_way(self._chosen):
+        if not self._is_choosable(self._chosen):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
         """Move to the next line that links to a row, or scroll."""
         number = self._chosen + by
-        while 0 <= number < len(self._lines) and not self._is_a_way(number):
+        while 0 <= number < len(self._lines) and not self._is_choosable(number):
             number += by
-        if self._is_a_way(number):
+        if self._is_choosable(number):
             self._chosen = number
             self._follow()
             self.refresh()
@@ -91,7 +91,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
     def action_go(self) -> None:
         """Go to the row that the selected line links to."""
-        if self._is_a_way(self._chosen):
+        if self._is_choosable(self._chosen):
             line = self._lines[self._chosen]
             text = f"{line.sign} {line.heading}: ".replace(" : ", " ") + line.text
             self._go_to(line.places, text)
@@ -104,11 +104,11 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         """Go to the row that the clicked line links to."""
         place = event.get_content_offset(self)
         at = len(self._numbers) if place is None else place.y + self.scroll_offset.y
-        if at < len(self._numbers) and self._is_a_way(self._numbers[at]):
+        if at < len(self._numbers) and self._is_choosable(self._numbers[at]):
             self._chosen = self._numbers[at]
             self.action_go()
 
-    def _is_a_way(self, number: int) -> bool:
+    def _is_choosable(self, number: int) -> bool:
         return 0 <= number < len(self._lines) and bool(self._lines[number].places)
 
     def _follow(self) -> None:

@@ -250,7 +250,7 @@ class WaterScreen(screen.DraftScreen):
 
         def check(text: str) -> checking.Reading:
             try:
-                return checking.Reading(text, comes_to=previewed(columns, taken(text)))
+                return checking.Reading(text, explained=previewed(columns, taken(text)))
             except NoRows as error:
                 return checking.Reading(text, str(error))
 

@@ -237,7 +237,7 @@ def _by_name(
         "v": table.v,
         "w": table.w,
         "speed": [flow for flow, _ in flows],
-        "toward": [round(way, 9) % 360.0 for _, way in flows],
+        "toward": [round(azimuth, 9) % 360.0 for _, azimuth in flows],
     }
 
 

@@ -1,9 +1,9 @@
 """Return levels: values that a response exceeds once in a given number of years on average.
 
-There are two methods, each with its own rules, which are reported with the levels:
+There are two methods. The report states the rules of each method next to its levels:
 
 - GEV: the generalised extreme value distribution of annual maxima (Coles 2001, chapter 3).
-- POT: the generalised Pareto distribution of independent peaks over a threshold (chapter 4).
+- POT: the generalised Pareto distribution of independent peaks over a threshold (Coles, chapter 4).
 """
 
 from collections.abc import Mapping
@@ -61,8 +61,8 @@ class Level:
 
     Attributes
     ----------
-    period : T [years]; by GEV one year in T has a maximum above the level, by POT there is a peak
-        above it once in T years on average
+    period : T [years]. GEV: the annual maximum exceeds the level in one of T years on average; POT:
+        a peak exceeds it once in T years on average
     level : estimated return level
     low, high : ends of the confidence interval; None if the data do not determine it
     """
@@ -75,7 +75,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted distribution and the return levels that follow from it.
+    """A fitted distribution and its return levels.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class LevelsRefused:
-    """Reason why a method in `METHODS` gives no return levels."""
+    """Reason why a method in `METHODS` has no return levels."""
 
     method: str
     reason: str
@@ -108,20 +108,19 @@ class LevelsRefused:
 def return_levels(
     time: Times, values: Column, statuses: Mapping[str, int], step: np.timedelta64 | None = None
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
-    """Compute return levels by GEV and by POT; each method returns 95 % intervals, or the reason
-    why there are no levels.
+    """Compute return levels with 95 % intervals by GEV and by POT; a method without levels returns
+    the reason.
 
-    No levels are computed either if profiles with a current were not solved: solutions are most
-    often missing in the strongest currents, and levels from the remaining profiles would be too
-    low.
+    No levels are computed if profiles with a current were not solved. Solutions are most often
+    missing in the strongest currents, so levels from the remaining profiles would be too low.
 
     Parameters
     ----------
     time : (n,) ascending and evenly spaced, except for gaps
     values : (n,) NaN for missing values
-    statuses : profiles by their status, as `calm.batch.finished.statuses_of` counts them; of those
-        that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles without data
-        are ignored
+    statuses : number of profiles by status, from `calm.batch.finished.statuses_of`. Unsolved
+        profiles are ignored if they have no data or a status in
+        `calm.batch.statuses.IN_WEAK_CURRENT`
     step : `median_step` of the times, if already known
     """
     refusal = _censored(statuses) or _unfit(time, values)
@@ -222,7 +221,6 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """Describe the gaps in a record, or return an empty string."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:
@@ -267,15 +265,15 @@ YEAR = np.timedelta64(31_557_600, "s")
 
 
 def years_of(step: np.timedelta64, count: int) -> float:
-    """Return the time represented by a number of profiles, each as long as the median step
+    """Return the time that a number of profiles represents, if each represents the median step
     [years].
     """
     return count * float(step / YEAR)
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Return the median time between profiles, which gaps do not affect, or zero for a single
-    profile.
+    """Return the median time between profiles, which is not affected by gaps. For a single profile,
+    it is zero.
     """
     if len(time) < 2:
         return np.timedelta64(0, "ns")
@@ -288,10 +286,10 @@ def median_step(time: Times) -> np.timedelta64:
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """Find the maximum of every whole year, and the number of all years, whole or not.
+    """Return the maximum of every complete year, and the number of years including incomplete ones.
 
-    Years have 365.25 days from the first profile. A year is whole if it has at least `WHOLE` of the
-    possible values. The maximum of a whole year with gaps is that of the existing values.
+    Years of 365.25 days are counted from the first profile. A year is complete if it has at least
+    the fraction `WHOLE` of the possible values.
     """
     years = int((time[-1] - time[0]) // YEAR) + 1
     starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)
@@ -306,11 +304,12 @@ def peaks_over(
 ) -> NDArray[np.float64]:
     """Find the maximum of each cluster of values above a threshold.
 
-    The extremal index θ is computed from the intervals T between the N exceedances, in steps: θ = 2
-    (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), at most 1. The θN - 1
-    longest intervals separate the clusters (Ferro and Segers 2003, eq. 6 and section 3), but
-    successive exceedances are never separated, since in a record of a single storm all intervals
-    are equal. An interval across a gap counts in full, as if it contained no exceedance.
+    The extremal index θ is computed from the intervals T between the N exceedances, counted in time
+    steps. θ = 2 (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)); θ is at
+    most 1. The θN - 1 longest intervals separate the clusters (Ferro and Segers 2003, eq. 6 and
+    section 3), but successive exceedances are never separated, since in a record of a single storm
+    all intervals are equal. An interval across a gap counts in full, as if it contained no
+    exceedance.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:

@@ -39,11 +39,11 @@ class CountedLimit:
     ----------
     rule : rule of the design check
     criterion : criterion of the rule
-    leg : leg that it applies to; where the catalogue lacks a value, the lower bound of its estimate
-        takes its place
+    leg : leg to which the criterion applies; values that the catalogue lacks are replaced by the
+        lower bounds of their estimates
     seats : columns of the leg, if there are several legs
-    on_estimate : whether the limit is the lower bound of an estimate, beyond which a failure is not
-        certain
+    on_estimate : whether the limit is the lower bound of an estimate, so that exceeding it is not
+        certain to be a failure
     """
 
     rule: Rule
@@ -72,9 +72,9 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
     line.
 
     The tension of a piece is the maximum or minimum of the tensions at its ends and at its clamps,
-    which are the values in a result. A line meant for the surface is always checked as such, even
-    if its float is submerged. Each leg is checked as in the design check, with the lower bounds of
-    estimates for missing figures of components.
+    because a result has no other values. A line designed to reach the surface is always checked as
+    a surface mooring, even if its float is submerged. As in the design check, values that a
+    component lacks are replaced by the lower bounds of their estimates.
     """
     seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
@@ -90,14 +90,14 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
 
 def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
-    """Return whether a rule uses a value of a part that is only known as an estimate."""
+    """Return whether a criterion uses a value of its part that is only an estimate."""
     figures, place = TEXTS[rule.name].figures, criterion.part.place
     own = (part.component.estimates for part in parts_of(leg.file.pieces) if part.place == place)
     return any(name in figures for estimates in own for name in estimates)
 
 
 def top_offset(series: ResultColumns) -> Column:
-    """Compute the horizontal distance (n,) of the line's top from the anchor [m]."""
+    """Return the horizontal distance (n,) of the line's top from the anchor [m]."""
     offset = series.column("x_top", 0) - series.column("x_top", -1)
     np.hypot(offset, series.column("y_top", 0) - series.column("y_top", -1), out=offset)
     return offset
@@ -120,7 +120,7 @@ def _greatest_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Colu
 
 
 def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Return the minimum tension at the ends of a piece; NaN if the whole piece is on the
+    """Return the minimum tension (n,) at the ends of a piece [N]; NaN if the whole piece is on the
     seabed.
     """
     water, pieces, least = leg.water, leg.file.pieces, series.least_tension(_seat(part))
@@ -134,7 +134,9 @@ def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
 
 
 def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Return the depth of a piece's deeper end; its lower end is the top of the next piece."""
+    """Return the depth (n,) of the deeper end of a piece [m]; the lower end has the depth of the
+    next piece's top.
+    """
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
     pieces = leg.file.pieces
@@ -183,13 +185,13 @@ _LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on
 
 @dataclass(frozen=True)
 class Exceedance:
-    """Frequency with which a limit is exceeded: `share` of the `count` profiles in which the limit
-    can be evaluated.
+    """Frequency with which a limit is exceeded: `share` is a fraction of the `count` profiles in
+    which the limit can be evaluated.
 
     A profile beyond a limit that is an estimate is not counted as a failure.
 
-    `worst` is the value that exceeds the limit most, or comes closest to it, and `time` its time.
-    They are None without a limit or without values.
+    `worst` is the value farthest beyond the limit, or the closest to it if none is beyond, and
+    `time` is the time of this value. Both are None without a limit or without values.
     """
 
     limit: CountedLimit
@@ -201,16 +203,17 @@ class Exceedance:
 
 @dataclass(frozen=True)
 class RuleShare:
-    """Fraction of profiles in which a rule fails, or warns, for any part of the line.
+    """Fraction of profiles in which a rule fails or warns for any part of the line.
 
     Attributes
     ----------
-    judged : number of profiles in which at least one of its limits is evaluated
-    fails, warns : share of these in which it fails, or only warns; None if there are none
-    fails_at_most : share of failures if it also failed in every unsolved profile with a
-        current, relative to these and the evaluated profiles; None without evaluated profiles
+    judged : number of profiles in which at least one limit of the rule is evaluated
+    fails, warns : fraction of these profiles in which the rule fails, or warns without failing;
+        None if there are no such profiles
+    fails_at_most : upper bound of `fails`, as if the rule also failed in every unsolved profile
+        with a current; None without evaluated profiles
     unknown : number of limits that cannot be evaluated, usually for lack of a value
-    exceedances : exceedances of its limits
+    exceedances : how often each limit is exceeded
     """
 
     name: str
@@ -235,10 +238,11 @@ def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
 def shares_of(
     series: ResultColumns, limits: Iterable[CountedLimit], unsolved: int
 ) -> Iterator[RuleShare]:
-    """Yield the fraction of failures for each rule, from successive limits of the rule.
+    """Yield the fraction of failures for each rule.
 
     Parameters
     ----------
+    limits : limits of the rules; limits of the same rule are consecutive
     unsolved : number of profiles with a current but without a solution
     """
     for rule, group in groupby(limits, key=lambda limit: limit.rule):
@@ -266,7 +270,7 @@ def _rule_share(
     unsolved: int,
     exceedances: tuple[Exceedance, ...],
 ) -> RuleShare:
-    """Compute the fractions for a rule from numbers of profiles."""
+    """Convert numbers of profiles to the fractions for a rule."""
     return RuleShare(
         name=rule.name,
         title=rule.title,
@@ -282,8 +286,8 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Compute how often a limit is exceeded, and mark the profiles that exceed it and those in
-    which it can be evaluated.
+    """Compute how often a limit is exceeded. Profiles that exceed it are marked in `beyond`,
+    profiles with a value in `judged`.
     """
     if limit.criterion.limit is None:
         return Exceedance(limit, 0, None, None, None)

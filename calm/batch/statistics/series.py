@@ -1,4 +1,4 @@
-"""Columns of a batch result, read so that only one column is in memory at a time."""
+"""Columns of a batch result, of which only one is in memory at a time."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _FIGURE = np.dtype(np.float32)
 
 
 class Seat(NamedTuple):
-    """Position of a part's column in a result.
+    """Column number of a part in a result.
 
     Attributes
     ----------
-    number : number from the top, among the components or among the clamps
-    clamped : whether it is a clamp
+    number : number among the components or among the clamps, counted from the top
+    clamped : whether the part is a clamp
     """
 
     number: int
@@ -71,15 +71,15 @@ class LegSeats(NamedTuple):
 class ResultColumns:
     """Columns of a batch result over n profiles, with NaN for unsolved profiles.
 
-    A result is stored by profiles. Here it is transposed once into a temporary file by columns, so
-    that columns can be read separately and memory does not grow with the number of components. The
-    file takes 4 bytes per number, without compression, and is deleted at the end of the `with`
+    A result file is ordered by profile. It is transposed once into a temporary file ordered by
+    column, so that columns can be read separately and memory use does not grow with the number of
+    components. The temporary file takes 4 bytes per number and is deleted at the end of the `with`
     block.
 
     Parameters
     ----------
     dataset : the result, opened without loading it
-    folder : folder of the temporary file; by default that of the system
+    folder : folder of the temporary file; by default the temporary folder of the system
     source : file of the result, for messages
 
     Attributes
@@ -124,7 +124,7 @@ class ResultColumns:
         return len(self.time)
 
     def of_leg(self, leg: LegSeats) -> ResultColumns:
-        """Return the columns for a leg of a net, read from the temporary file of the whole
+        """Return the columns of one leg of a net, which share the temporary file of the whole
         result.
         """
         view, ends = copy(self), slice(leg.number, leg.number + 1)
@@ -140,7 +140,7 @@ class ResultColumns:
 
     @property
     def seats(self) -> tuple[Seat, ...]:
-        """Column positions of the components, followed by those of the clamps."""
+        """Column numbers of all components, and then of all clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
         return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
 
@@ -153,12 +153,14 @@ class ResultColumns:
         return self.column(name, 0)
 
     def column(self, name: str, index: int) -> Column:
-        """Return the values (n,) for a component or a clamp, such as `tilt` or `clamp_tilt`."""
+        """Return the values (n,) of a variable, such as `tilt` or `clamp_tilt`, for one component
+        or clamp.
+        """
         return self._read(self._columns[name][index])
 
     def at(self, name: str, time: int) -> Column:
-        """Return the values (columns,) for all components or clamps in one profile; empty if there
-        are none.
+        """Return the values of a variable for all components or clamps in one profile. The array is
+        empty if the result has no such variable.
         """
         values = []
         for column in self._columns.get(name, ()):
@@ -172,18 +174,18 @@ class ResultColumns:
 
     def of_part(self, name: str, seat: Seat) -> Column:
         """Return the values (n,) of `tilt` [degrees] or `knockdown` [m] for a component or
-        a clamp.
+        clamp.
         """
         return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
 
     def greatest_tension(self, seats: Sequence[Seat]) -> Column:
-        """Return the maximum (n,) over given parts: of the tensions at both ends of a component, or
-        of the tension at a clamp [N].
+        """Return the maximum tension (n,) over several parts [N], at both ends of a component or at
+        a clamp.
         """
         return self._gathered(np.maximum, seats)
 
     def least_tension(self, seat: Seat) -> Column:
-        """Return the minimum (n,) of the tensions at both ends of a component, or the tension at a
+        """Return the smaller of the tensions (n,) at the ends of a component, or the tension at a
         clamp [N].
         """
         return self._gathered(np.minimum, [seat])
@@ -197,7 +199,6 @@ class ResultColumns:
         return chosen
 
     def _tensions(self, seat: Seat) -> tuple[int, ...]:
-        """Return the columns with the tensions of a part."""
         names = ("clamp_tension",) if seat.clamped else ("tension_top", "tension_bottom")
         return tuple(self._columns[name][seat.number] for name in names)
 

@@ -38,7 +38,7 @@ the hash of the complete input.
 
 @dataclass(frozen=True)
 class PartDistributions:
-    """Distributions for a component or a clamp; None if no values are known."""
+    """Distributions for a component or a clamp; a quantity without values has None."""
 
     label: str
     clamped: bool
@@ -68,8 +68,8 @@ class Response:
     Attributes
     ----------
     distribution : distribution over the profiles; None if there are no values
-    begin, low, high : start of each time interval of the drawing, and the
-        smallest and largest value in the interval, NaN without values
+    begin, low, high : start of each time interval in the plot, and the smallest and largest value
+        in the interval (NaN without values)
     return_levels : return levels by GEV and by POT
     """
 
@@ -83,8 +83,8 @@ class Response:
 
 @dataclass(frozen=True)
 class WorstProfile:
-    """One of the worst profiles, with all its responses; `leaning` is the label of the part with
-    the largest tilt.
+    """One of the worst profiles, with its responses. `leaning` is the label of the part with the
+    largest tilt.
     """
 
     time: np.datetime64
@@ -103,7 +103,7 @@ class Summary:
     ----------
     name : name of the mooring
     count : number of profiles
-    endings : number of profiles by ending
+    endings : number of profiles by category of their status
     statuses : number of profiles for each status that occurs
     begin, end : times of the first and the last profile
     years : years represented by the solved profiles
@@ -111,9 +111,9 @@ class Summary:
     responses : one for each of `RESPONSES`
     worst : worst profiles by the names in `RANKED`, in order
     rules : the equilibrium rule, and the rules that can be evaluated in every profile
-    not_judged : reasons why other rules are not evaluated, by their names
+    not_judged : reasons why the remaining rules are not evaluated, by the names of the rules
     source : origin of the result, by the names in `SOURCE`
-    read : records of the files from which the result was made
+    read : descriptions of the files from which the result was made
     limits_used : limits used by the rules, each with its default
     stops : stops of the profilers, down the line
     """
@@ -137,8 +137,8 @@ class Summary:
 
     @property
     def known_responses(self) -> Sequence[Response]:
-        """Responses with values in at least one profile, or all responses if there are none; most
-        nets have no offset.
+        """Responses with a value in at least one profile, or all responses if there are no values.
+        Most nets, for example, have no offset.
         """
         return [one for one in self.responses if one.distribution is not None] or self.responses
 
@@ -166,14 +166,14 @@ def summarize(
     Parameters
     ----------
     dataset : the result, opened without loading it
-    mooring : mooring that it was solved for, whose limits are evaluated
-    folder : folder for a temporary file, as large as the uncompressed result; by default
-        that of the system
+    mooring : mooring for which the result was computed, and whose limits are evaluated
+    folder : folder for a temporary file, which is as large as the uncompressed result; by default
+        the temporary folder of the system
     source : the file of the result, for messages
 
-    Unsolved profiles are excluded, and counted. All shares are shares of profiles, which are shares
-    of time if the record is evenly spaced. Memory use is about 35 bytes per profile, for any number
-    of components.
+    Unsolved profiles are counted but excluded from the statistics. All shares are fractions of the
+    profiles, and hence of the time if the record is evenly spaced. Memory use is about 35 bytes per
+    profile, whatever the number of components.
 
     Raises
     ------
@@ -270,8 +270,10 @@ _LegColumns = Mapping[str, Sequence[ResultColumns]]
 
 
 def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
-    """Select the columns for each response. For a net these are the columns of the free ends and
-    the anchors; offsets are relative to the leg's own anchor.
+    """Select the columns from which each response is computed.
+
+    For a net, these are the columns of the legs with a free end or an anchor. Offsets are relative
+    to the anchor of the same leg.
     """
     if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
@@ -286,7 +288,9 @@ def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
 def _responses(
     series: ResultColumns, legs: _LegColumns, step: np.timedelta64
 ) -> tuple[tuple[Response, ...], Mapping[str, tuple[WorstProfile, ...]]]:
-    """Compute the responses, with one response in memory at a time."""
+    """Compute the statistics of all responses, holding the values of one response in memory at a
+    time.
+    """
     responses, worst = [], {}
     for name, of in RESPONSES.items():
         values = np.full(len(series), np.nan, np.float32)
@@ -315,8 +319,8 @@ def _greatest(values: Column) -> list[int]:
         least = known[len(known) - WORST]
     above = np.flatnonzero(values > least)  # fewer than `WORST`, even if many are equal
     above = above[np.argsort(-values[above], kind="stable")]
-    alike = np.flatnonzero(values == least)[: WORST - len(above)]
-    return [int(index) for index in (*above, *alike)]
+    ties = np.flatnonzero(values == least)[: WORST - len(above)]
+    return [int(index) for index in (*above, *ties)]
 
 
 def _profile(series: ResultColumns, legs: _LegColumns, index: int) -> WorstProfile:
@@ -358,11 +362,11 @@ class Distribution:
     ----------
     count : n
     mean : mean over the profiles
-    percentiles : values at `PERCENTILES`: linear between the order statistics, where rank
-        1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
+    percentiles : values at `PERCENTILES`, interpolated linearly between the sorted values, where
+        rank 1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
     maximum, time : the maximum, and the time at which it is first reached
-    share, value : exceedance curve: the value that a share of the profiles reaches or exceeds,
-        the quantile 1 - share, for `SHARES` down to a single profile
+    share, value : exceedance curve. A fraction `share` of the profiles reaches or exceeds `value`,
+        which is the quantile 1 - share; the shares are `SHARES` down to a single profile
     """
 
     count: int
@@ -401,10 +405,10 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
 
 
 def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
-    """Return the start of each of `MOST_INTERVALS` time intervals, with the smallest and the
-    largest value.
+    """Divide the record into `MOST_INTERVALS` intervals, and return their start times and extreme
+    values.
 
-    The intervals contain equal numbers of profiles; in a shorter record, each profile is an
+    The intervals contain equal numbers of profiles. In a shorter record, each profile is an
     interval.
     """
     count = min(len(values), MOST_INTERVALS)

@@ -52,8 +52,8 @@ class Tail:
     location, scale : μ, σ, in the unit of the values; the location of a Pareto distribution is
         its threshold
     shape : ξ; a tail with ξ < 0 has a finite end, a tail with ξ > 0 decreases slowly
-    maxima : whether it describes maxima (GEV), rather than peaks over a threshold (Pareto)
-    values : (n,) maxima or peaks that it was fitted to
+    maxima : whether the distribution describes maxima (GEV) or peaks over a threshold (Pareto)
+    values : (n,) fitted maxima or peaks
     """
 
     location: float
@@ -65,7 +65,7 @@ class Tail:
     def level(self, growth: float) -> float:
         """Return the level μ + σ (e^{ξ g} - 1)/ξ for a return period of T years.
 
-        The growth g is -log(-log(1 - 1/T)) for annual maxima (Coles 2001, eq. 3.4), and log(λ T)
+        The variable g is -log(-log(1 - 1/T)) for annual maxima (Coles 2001, eq. 3.4), and log(λ T)
         for λ independent peaks per year (eq. 4.12 with λ instead of the rate of exceedances).
         """
         return self.location + self.scale * _grown(self.shape, growth)
@@ -76,9 +76,9 @@ class Tail:
 
         For each possible level the likelihood is maximised over the other parameters. The interval
         contains the levels for which twice the logarithm of this maximum is less than `CHI_SQUARE`
-        below that of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if it is not
-        within 100 standard deviations of the values: the data then do not bound the level. Raises
-        NotFitted if the search for a maximum fails.
+        below that of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if it is more
+        than 100 standard deviations away from the estimate, because the data then do not bound the
+        level. Raises NotFitted if the search for a maximum fails.
         """
         estimate = self.level(growth)
         best = _loss(self.values, self.location, self.scale, self.shape, self.maxima)
@@ -91,7 +91,7 @@ class Tail:
         return _end(excess, estimate, -spread), _end(excess, estimate, spread)
 
     def _profile(self, level: float, growth: float) -> float:
-        """Return the smallest loss of all distributions that have a given return level."""
+        """Return the minimum loss over all distributions with a given return level."""
         if not self.maxima:
 
             def of_shape(free: Floats) -> float:
@@ -194,7 +194,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Minimise the loss from several starts, and return the best minimum and its loss."""
+    """Minimise the loss from the best starting point, and return the minimum with its loss."""
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))
@@ -208,8 +208,8 @@ def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, 
 
 
 def _end(excess: Callable[[float], float], estimate: float, step: float) -> float | None:
-    """Find the position, in the direction of a step from the estimate, at which a function becomes
-    positive.
+    """Find the root of a function that is negative at the estimate, in the direction of `step`;
+    None if it is too far away.
     """
     from scipy.optimize import brentq
 

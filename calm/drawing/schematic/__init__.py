@@ -1,15 +1,16 @@
-"""Draw the parts of a line in a column, with symbols, wrapped texts and values.
+"""Drawing of the parts of a line in a column, with symbols, wrapped texts and values.
 
-The schematic is one such column, an SVG picture in order from the top and not to scale; the pages
-of a mooring diagram hold several columns. Lengths are in points (1/72 inch).
+The schematic of a line is one such column as an SVG picture, in order from the top and not to
+scale. The pages of a mooring diagram have several columns. Lengths are in points (1/72 inch).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
-from math import isnan, log10
+from math import inf, isnan, log10
 from typing import NamedTuple
 
 from calm.case.design import AnyResult
@@ -30,6 +31,7 @@ HEAD = 38.0
 _PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
 _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
+_NEAR_THE_END = 0.3  # of a group of parts: range of the places where it may end
 
 # A4 leaves 180 by 267 mm; a long line is reduced to fit this height, but stays legible
 _WIDTH, _MARGIN = 508.0, 3.0
@@ -43,15 +45,29 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
-    """Draw a line as an SVG picture that prints on A4 up to about 50 parts, and on a longer sheet
-    otherwise.
+    """Draw a line as one SVG picture. Up to about 50 parts fit on an A4 page; more parts need a
+    longer sheet.
 
-    The picture has no external references, identifiers or style sheets, so that it can be placed on
-    a page with others. Long texts wrap and are never cut. The same line gives the same text. With a
-    result, depths are under load and in the current; without a result, they refer to the upright,
-    unstretched line, and are unknown for a tow and for a float at the surface.
+    The picture has no external references, identifiers or style sheets, so that several pictures
+    can be placed on a page. Long texts are wrapped and never cut. The same line always gives the
+    same picture. With a result, depths are under load and in the current. Without a result, depths
+    are those of the upright, unstretched line; they are unknown for a tow and for a float at the
+    surface.
     """
-    shown = schematic_of(file, result)
+    (drawn,) = _drawn(schematic_of(file, result), inf)
+    return drawn
+
+
+def schematic_sheets(file: MooringFile, result: AnyResult | None = None) -> list[str]:
+    """Draw the picture of `schematic_svg` on several sheets, each of which is legible on A4.
+
+    The picture is divided between parts.
+    """
+    return _drawn(schematic_of(file, result), _PRINTED_HEIGHT / _LEAST_SCALE)
+
+
+def _drawn(shown: Schematic, most: float) -> list[str]:
+    """Draw the sheets of a schematic; `most` is the maximum height of a sheet."""
     rows = [row for part in shown.parts for row in part.rows]
     rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
     headings = [(*HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
@@ -60,32 +76,59 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     words = [(text, _TITLE, INK) for text in wrapped(shown.title, room, _TITLE, bold=True)]
     words += [(text, FONT, SOFT) for text in wrapped(shown.subtitle, room, FONT)]
     head = _MARGIN + sum(_TITLE_LEADING if size > FONT else LEADING for _, size, _ in words)
-    surface, line = _hung(shown, column, head + HEAD)
-    bottom = line[-1].top + line[-1].height + (_BELOW_BODY if shown.towed_by else 0.0)
-    foot = bottom + (SEABED_ROOM if shown.seabed else 0.0) + LEADING
     notes = wrapped(shown.note, room, FONT)
-    height = foot + LEADING * len(notes)
-    scale = min(max(_PRINTED_HEIGHT / height, _LEAST_SCALE), 1.0) / _MILLIMETRE
-    printed = f"{_WIDTH * scale:.2f}mm", f"{height * scale:.2f}mm"
-    page = picture(_WIDTH, height, shown.title, printed)
-    y = _MARGIN
-    for text, size, colour in words:
-        leading = _TITLE_LEADING if size > FONT else LEADING
-        page.letters(_MARGIN, y + leading / 2, text, size=size, colour=colour, bold=size > FONT)
-        y += leading
-    draw_headings(page, column, 0.0, head)
-    _draw_scene(page, shown, column, surface, bottom)
-    draw_parts(page, line, column, 0.0)
-    for number, text in enumerate(notes):
-        page.letters(_MARGIN, foot + LEADING * number, text, size=FONT, colour=SOFT)
-    return svg_text(page)
+    ends = _MAST + _SHIP + SEABED_ROOM + LEADING * (1 + len(notes))  # above and below the line
+    groups = _evenly(measured(shown.parts, column), most - head - HEAD - ends)
+    sheets = []
+    for number, group in enumerate(groups):
+        first, last = number == 0, number + 1 == len(groups)
+        surface, line = _placed(shown, group, head + HEAD, first=first)
+        if shown.towed_by is not None and last:
+            *others, body = line
+            line = (*others, replace(body, ends=(body.ends[0], body.middle)))
+        bottom = line[-1].top + line[-1].height + (_BELOW_BODY if shown.towed_by else 0.0)
+        foot = bottom + (SEABED_ROOM if shown.seabed and last else 0.0) + LEADING
+        height = foot + LEADING * len(notes)
+        scale = min(max(_PRINTED_HEIGHT / height, _LEAST_SCALE), 1.0) / _MILLIMETRE
+        printed = f"{_WIDTH * scale:.2f}mm", f"{height * scale:.2f}mm"
+        page = picture(_WIDTH, height, shown.title, printed)
+        y = _MARGIN
+        for text, size, colour in words:
+            leading = _TITLE_LEADING if size > FONT else LEADING
+            page.letters(_MARGIN, y + leading / 2, text, size=size, colour=colour, bold=size > FONT)
+            y += leading
+        draw_headings(page, column, 0.0, head)
+        _draw_scene(page, shown, column, (surface, bottom), first=first, last=last)
+        draw_parts(page, line, column, 0.0)
+        for place, text in enumerate(notes):
+            page.letters(_MARGIN, foot + LEADING * place, text, size=FONT, colour=SOFT)
+        sheets.append(svg_text(page))
+    return sheets
 
 
-def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:
-    """Level of the sea surface, or of a helicopter's hook, and the placed parts below."""
-    parts = measured(shown.parts, column)
+def _evenly(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
+    """Divide the parts into the smallest number of groups that fit the height `room`, with about
+    equal heights.
+    """
+    fewest = len([*divided(parts, room)])
+    each = sum(one.height for one in parts) / fewest
+    while len(groups := [*divided(parts, each)]) > fewest:
+        each += LEADING
+    return groups
+
+
+def _placed(
+    shown: Schematic, parts: Sequence[PlacedPart], top: float, *, first: bool
+) -> tuple[float, tuple[PlacedPart, ...]]:
+    """Place the parts of a sheet. Return the parts and the level of the sea surface, or of the hook
+    of a helicopter.
+
+    On every sheet but the first, this is the level of its top.
+    """
+    if not first:
+        return top, placed(parts, top)
+    middle = parts[0].height / 2
     if shown.towed_by is None:
-        middle = parts[0].height / 2
         surface = top + (_MAST if shown.surface else _SKY)
         start = surface - middle if shown.surface else surface + _SUBMERGED
         return surface, placed(parts, start, start + middle)
@@ -94,19 +137,30 @@ def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tupl
     else:
         surface = top + _SHIP
         line_top, start = surface - _SHEAVE, surface + _SUBMERGED
-    *others, last = placed(parts, start, line_top)
-    return surface, (*others, replace(last, ends=(last.ends[0], last.middle)))
+    return surface, placed(parts, start, line_top)
 
 
 def _draw_scene(
-    page: Pen, shown: Schematic, column: LineColumn, surface: float, bottom: float
+    page: Pen,
+    shown: Schematic,
+    column: LineColumn,
+    levels: tuple[float, float],
+    *,
+    first: bool,
+    last: bool,
 ) -> None:
-    """Draw water, surface, seabed and the towing vehicle, with their texts."""
-    if shown.sea is not None:
-        draw_sea(page, column, 0.0, (surface, bottom), None if shown.surface else shown.sea)
-    if shown.seabed is not None:
+    """Draw the water, its surface, the seabed and the towing vehicle, with their texts.
+
+    The surface and the towing vehicle are on the first sheet, the seabed is on the last.
+    """
+    surface, bottom = levels
+    if shown.sea is not None and first:
+        draw_sea(page, column, 0.0, levels, None if shown.surface else shown.sea)
+    elif shown.sea is not None:
+        symbols.draw_water(page.group(0.0, 0.0), 2.0 * column.line_at, *levels)
+    if shown.seabed is not None and last:
         draw_ground(page, column, 0.0, bottom, shown.seabed)
-    if shown.towed_by is not None:
+    if shown.towed_by is not None and first:
         pen = page.draw("g", stroke=INK, stroke_width=1.2)
         if shown.sea is None:
             symbols.draw_helicopter(pen.group(column.line_at, surface, SYMBOL_SCALE))
@@ -117,13 +171,13 @@ def _draw_scene(
 
 @dataclass(frozen=True)
 class LineColumn:
-    """Layout of a column: positions of line, texts and values.
+    """Layout of a column: positions of the line, the texts and the values.
 
     Attributes
     ----------
     width : total width
-    headings : headings of the values, line by line, with the unit last
-    rights : right edges of the columns of values
+    headings : headings of the values; each is a sequence of text lines, with the unit last
+    rights : right edge of each column of values
     text : left and right edge of the texts
     line_at : position of the line from the left edge
     """
@@ -141,13 +195,13 @@ def column_of(
     width: float,
     line_at: float = 26.0,
 ) -> LineColumn:
-    """Compute the layout of a column, with room for the widest entry in each column of values.
+    """Compute the layout of a column. Each column of values is as wide as its widest entry.
 
     Parameters
     ----------
     parts : rows of text next to the line
-    headings : headings of their values
-    line_at : position of the line; the picture is twice as wide
+    headings : headings of the values
+    line_at : distance of the line from the left edge; the symbols take twice this width
     """
     cells = [[*heading] for heading in headings]
     for row in parts:
@@ -160,7 +214,9 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text next to a part, with values and an optional `side_text` at distance `at`."""
+    """A line of text next to a part, with values, and with an optional `side_text` at the distance
+    `at`.
+    """
 
     text: str
     colour: str = INK
@@ -171,14 +227,15 @@ class TextLine(NamedTuple):
 
     @property
     def width(self) -> float:
-        """Width of the line of text."""
         side_text = self.at + text_width(self.side_text, FONT) if self.side_text else 0.0
         return max(text_width(self.text, FONT, bold=self.bold), side_text)
 
 
 @dataclass(frozen=True)
 class PlacedPart:
-    """A part with its position and texts; `ends` are the ends of its section of the line."""
+    """A part with its position and texts; `ends` are the upper and lower end of the line drawn
+    through it.
+    """
 
     part: ShownPart
     top: float
@@ -195,9 +252,9 @@ class PlacedPart:
 def measured(
     parts: Sequence[ShownPart], column: LineColumn, growth: float = 1.0
 ) -> list[PlacedPart]:
-    """Compute the height of each part, before the parts are placed.
+    """Compute the height of each part; the parts are not placed yet.
 
-    The height of a cable, with its clamps, grows with the logarithm of its length at a rate of
+    The height of a cable with its clamps increases with the logarithm of its length, at a rate of
     `growth`, so that long cables look long.
     """
     found = [_measured(part, column) for part in parts]
@@ -226,7 +283,7 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Place label and name on one line if they fit, otherwise below each other with wrapping."""
+    """Write label and name on one line if they fit, and on separate, wrapped lines otherwise."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
@@ -237,11 +294,32 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
     return [lines[0]._replace(cells=row.cells), *lines[1:]] if lines else [TextLine("")]
 
 
+def divided(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
+    """Divide parts into groups at most `room` high.
+
+    A group ends above a junction if there is one near its end, else between two pieces, else
+    between two clamps.
+    """
+    rest = [*parts]
+    while rest:
+        heights = [*accumulate(one.height for one in rest)]
+        fits = max(bisect_right(heights, room), 1)
+        if fits < len(rest):
+            least = (1.0 - _NEAR_THE_END) * room
+            near = [
+                each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least
+            ]
+            next_parts = {each: rest[each].part for each in near}
+            fits = min(near, key=lambda at: (not next_parts[at].junction, next_parts[at].clamped))
+        yield rest[:fits]
+        rest = rest[fits:]
+
+
 def placed(
     parts: Sequence[PlacedPart], top: float, line_top: float | None = None
 ) -> tuple[PlacedPart, ...]:
-    """Place parts one below the other from `top`; the line begins at `line_top` if given, else at
-    `top`.
+    """Place parts below each other, beginning at `top`. The line begins at `line_top`, by default
+    at `top`.
     """
     tops = accumulate((part.height for part in parts), initial=top)
     found = [
@@ -254,7 +332,9 @@ def placed(
 
 
 def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
-    """Write the headings of the values, aligned at their last lines, and a rule below."""
+    """Write the headings of the values, with their last lines aligned, and draw a rule below
+    them.
+    """
     for lines, right in zip(column.headings, column.rights, strict=True):
         for number, word in enumerate(reversed(lines)):
             y = top + HEAD - 8.0 - 9.4 * number
@@ -265,7 +345,7 @@ def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> Non
 def draw_sea(
     page: Pen, column: LineColumn, left: float, levels: tuple[float, float], row: TextRow | None
 ) -> None:
-    """Draw the water between two levels, and the surface with its text, if any."""
+    """Draw the water between two levels, and the surface with an optional text."""
     pen = page.group(left, 0.0)
     symbols.draw_water(pen, 2.0 * column.line_at, *levels)
     symbols.draw_surface(pen, 2.0 * column.line_at, levels[0])
@@ -313,7 +393,6 @@ def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
 
 
 def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> None:
-    """Write the texts of a part, with a dotted line from its symbol to its values."""
     start = left + column.text[0] + (_INDENT if one.part.clamped else 0.0)
     levels = [
         one.middle + LEADING * (number - (len(one.lines) - 1) / 2)

@@ -1,4 +1,4 @@
-"""Select and list the parts in a mooring diagram for the deck, from the top down."""
+"""Selection of the parts in a mooring diagram for the deck, from the top down."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -22,8 +22,8 @@ Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
 def parts_of_deck(
     deck: Deck, listed: Sequence[DeckItem], *, surface: bool
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts with values; its top is at the `surface`
-    or submerged.
+    """Convert the listed items of a line or leg to parts with values; `surface` is set if its top
+    floats at the surface.
 
     The values of each part are its number, cut length or position on the wire, stretched length,
     depth, planned depth if any part has one, height, tension and net buoyancy.
@@ -41,16 +41,16 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts, from its top, which may be at the
-    `surface`.
+    """Convert the listed items of a line or leg to parts, from the top down.
 
     Consecutive connectors form one junction, unless they are listed separately. A part has the
     labels of all items that it represents.
 
     Parameters
     ----------
-    every : all items of the line, to find labels that were chosen by the user
-    cells : values next to the items of a part
+    every : all items of the line, from which labels chosen by the user are found
+    cells : function that returns the values next to a part
+    surface : whether the top of the line floats at the surface
     """
     own = _own_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}
@@ -82,7 +82,9 @@ def has_plans(deck: Deck) -> bool:
 
 
 def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
-    """User-defined labels of parts by their identity, empty for default labels."""
+    """Return the labels that the user has chosen, by the identity of the part; empty for default
+    labels.
+    """
     labels = own_labels([one.label for one in parts])
     return {
         id(one): "" if label == one.part.use else one.label
@@ -134,7 +136,7 @@ def _piece(
 
 
 def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
-    """Return the codes of a release; for a pair, the codes of each release after its serial
+    """Return the codes of a release. For a pair, the codes of each release follow its serial
     number.
     """
     known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
@@ -151,8 +153,10 @@ def _figures(
     *,
     planned: bool,
 ) -> tuple[str, ...]:
-    """Numbers, lengths, depth, planned depth and height of the first item, maximum tension, and
-    total net buoyancy.
+    """Return the values of a part.
+
+    These are item numbers, lengths, depth, planned depth and height of the first item, maximum
+    tension, and total net buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)

@@ -1,4 +1,4 @@
-"""The schematic of a line for a terminal, with a row of text for each part and without colour."""
+"""Schematic of a line for a terminal, with a row of text for each part and without colour."""
 
 import textwrap
 from collections.abc import Iterator
@@ -68,13 +68,13 @@ def schematic_text(
 
 
 def can_carry(encoding: str | None) -> bool:
-    """Whether an output encoding has all characters of the picture."""
+    """Return whether an output encoding has all characters of the schematic."""
     return encodable(encoding, _SIGNS)
 
 
 @dataclass(frozen=True)
 class TerminalSchematic:
-    """The schematic for a rich console, with the width of the console."""
+    """Schematic for a rich console, as wide as the console."""
 
     file: MooringFile
     result: AnyResult | None
@@ -86,7 +86,9 @@ class TerminalSchematic:
 
 
 def _table(schematic: Schematic, width: int) -> Iterator[str]:
-    """Yield headings and rows; column widths fit the texts, limited by the terminal."""
+    """Yield the headings and rows. Columns are as wide as their texts, within the width of the
+    terminal.
+    """
     drawn = list(_drawn(schematic))
     rows = [row for _, row in drawn if row is not None]
     figures = []
@@ -141,7 +143,9 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
 
 
 def _art(sign: Sign) -> str:
-    """Draw a symbol; an ADCP has its viewing direction in the middle."""
+    """Return the characters of a symbol; an ADCP has an arrow in its viewing direction in the
+    middle.
+    """
     art = _PACK if sign.symbol in BALLS and sign.count > 1 else _SYMBOLS[sign.symbol]
     if not sign.sounding:
         return art

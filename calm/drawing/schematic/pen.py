@@ -1,4 +1,4 @@
-"""Write elements of an SVG picture; texts and attributes are escaped."""
+"""Elements of an SVG picture; texts and attributes are escaped."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ FONTS = "'Source Sans 3', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sa
 
 
 class Pen:
-    """Draws into an element of a picture."""
+    """Pen that draws inside one element of a picture."""
 
     def __init__(self, element: ElementTree.Element) -> None:
         self.element = element
 
     def draw(self, tag: str, **attributes: float | str) -> Pen:
-        """Add an element and return a pen that draws inside it; ``_`` in attribute names becomes
+        """Add an element, and return a pen that draws inside it. ``_`` in attribute names becomes
         ``-``.
         """
         written = {name.replace("_", "-"): _text(value) for name, value in attributes.items()}
@@ -55,14 +55,13 @@ class Pen:
         self.draw("rect", x=left, y=top, width=width, height=height, **attributes)
 
     def path(self, d: str, **attributes: float | str) -> None:
-        """Draw a path."""
         self.draw("path", d=d, **attributes)
 
     def write(
         self, x: float, y: float, text: str, width: float, *, size: float, bold: bool = False
     ) -> None:
-        """Write a text, vertically centred at `y`. A text wider than `width` is shortened, with the
-        whole text as its tooltip.
+        """Write a text, vertically centred at `y`. A text wider than `width` is shortened, and its
+        tooltip has the whole text.
         """
         shown = shortened(text, width, size, bold=bold)
         pen = self.letters(x, y, shown, size=size, bold=bold)
@@ -82,8 +81,8 @@ class Pen:
         bold: bool = False,
         anchor: str = "start",
     ) -> Pen:
-        """Write a text without shortening, vertically centred at `y`; an empty text draws
-        nothing.
+        """Write a text without shortening, vertically centred at `y`. Nothing is drawn for an empty
+        text.
         """
         if not text:
             return self
@@ -101,14 +100,14 @@ def _text(value: float | str) -> str:
 
 
 def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
-    """Create an empty picture with a white background; return its pen, with the origin in the upper
+    """Create an empty picture with a white background, and return its pen. The origin is the upper
     left corner.
 
     Parameters
     ----------
-    width, height : size in units of the picture; in points if `size` is None
+    width, height : width and height in the units of the picture; in points if `size` is None
     title : title of the picture
-    size : width and height in print
+    size : printed width and height, with units
     """
     printed = size or (f"{width:g}pt", f"{height:g}pt")
     attributes = {

@@ -1,4 +1,4 @@
-"""Parts of a line in a schematic, from the top down, with rows of text and lengths."""
+"""Parts of a line in a schematic, from the top down, each with its rows of text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 
 from calm.case.design import AnyResult
-from calm.drawing.line_picture import alike, together
+from calm.drawing.line_picture import differ_by_number, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Clamp, MooringFile, Piece, Place, Rigid
@@ -33,18 +33,18 @@ class TextRow:
 
 @dataclass(frozen=True)
 class ShownPart:
-    """A part drawn with one symbol: one or several equal pieces, a junction, or a clamped
+    """A part that has its own symbol: a piece, several equal pieces, a junction, or a clamped
     instrument.
 
     Attributes
     ----------
-    sign : symbol to draw; of a chain or cable with floats that of the floats, with their number
-    rows : rows of text; two for a pair of releases, else one
-    labels : labels of the pieces it represents
-    cable : symbol of the cable that it is or is clamped on; None for a rigid part
+    sign : symbol to draw; for a chain or cable with floats, the symbol and number of the floats
+    rows : rows of text: two for a pair of releases, else one
+    labels : labels of the pieces that the part represents
+    cable : symbol of the cable, if the part is a cable or clamped on a cable; None for a rigid part
     length : length of a cable [m], NaN if unknown
-    clamped : whether it is clamped on the part above it
-    junction : whether a page break above it separates nothing that belongs together
+    clamped : whether the part is clamped on the part above it
+    junction : whether the part is a junction, above which a page may end
     """
 
     sign: Sign
@@ -62,13 +62,15 @@ class Schematic:
 
     Attributes
     ----------
-    title, subtitle, note : its name; depth and position, or speed; explanation of the values
+    title : name of the line
+    subtitle : depth and position of a mooring, or speed of a tow
+    note : explanation of the depths
     columns : the known quantities of `HEADINGS`
-    parts : clamped instruments after the piece they are on
+    parts : parts from the top, with clamped instruments after their piece
     surface : whether the first part floats at the surface
-    towed_by : the text at the ship or the helicopter
-    sea : the text at the sea surface; None in air
-    seabed : the text at the seabed; None if its depth is unknown
+    towed_by : row of text at the ship or the helicopter
+    sea : row of text at the sea surface; None in air
+    seabed : row of text at the seabed; None if its depth is unknown
     """
 
     title: str
@@ -83,12 +85,13 @@ class Schematic:
 
 
 def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schematic:
-    """Build the contents of the schematic of a line, with solved depths if there is a result."""
+    """Build the contents of the schematic of a line. With a result, depths are those of the
+    solution.
+    """
     levels = levels_of(file, result)
     bottom = file.environment.depth
 
     def cells(length: str, depth: float) -> tuple[str, ...]:
-        """Return length, depth, and the height if the depth of the seabed is known."""
         heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
         return length, QUANTITIES["depth"].format(depth), *heights
 
@@ -114,8 +117,8 @@ def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schemati
 
 
 def one_line(text: str) -> str:
-    """Convert a text to a single line, with a mark for characters that XML or a terminal cannot
-    show.
+    """Convert a text to a single line, with a mark in place of characters that XML or a terminal
+    cannot show.
     """
     return printable(" ".join(text.split()))
 
@@ -125,7 +128,7 @@ Cells = Callable[[str, float], tuple[str, ...]]
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield the parts from the top; pieces drawn with one symbol form one part."""
+    """Yield the parts from the top. Equal adjacent pieces that share a symbol form one part."""
     run: list[Piece] = []
     for piece in pieces:
         if run and not _goes_with(run, piece, levels):
@@ -142,7 +145,7 @@ def _goes_with(run: list[Piece], piece: Piece, levels: Levels) -> bool:
     if sign.symbol is Symbol.RELEASE:
         return len(run) == 1
     same = above.use == piece.use and above.component == piece.component
-    return sign.symbol in _JOINED and same and alike(run[0].label, piece.label)
+    return sign.symbol in _JOINED and same and differ_by_number(run[0].label, piece.label)
 
 
 def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
@@ -151,12 +154,14 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the sign with a buoy as its symbol, unless the symbol is a sphere."""
+    """Return the sign for a float at the surface: a sphere is unchanged, any other symbol becomes a
+    buoy.
+    """
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
 def _part(run: list[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield the part for equal pieces, and the clamps on a single piece."""
+    """Yield one part for a run of equal pieces, followed by a part for each clamp on them."""
     first, sign = run[0], _sign(run[0], levels)
     cable = sign.symbol if sign.symbol in LINES else None
     start = first.index - levels.first.index
@@ -185,7 +190,6 @@ def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
 
 
 def _subtitle(file: MooringFile) -> str:
-    """Depth and position of a mooring, or speed of a tow."""
     facts = []
     if file.tow is not None:
         facts.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
@@ -206,7 +210,7 @@ _UNKNOWN = "Not to scale. Depths are unknown until the line is solved."
 
 @dataclass(frozen=True)
 class Levels:
-    """Lengths of pieces, and depths of their ends; NaN if unknown.
+    """Lengths of pieces, and depths of pieces and clamps; NaN if unknown.
 
     Attributes
     ----------
@@ -214,7 +218,7 @@ class Levels:
     clamps : depth of each clamped instrument [m]
     first : piece at the top of the line
     surface : whether this piece floats at the surface
-    note : description of the depths
+    note : explanation of the depths
     """
 
     lengths: tuple[float, ...]
@@ -226,9 +230,10 @@ class Levels:
 
 
 def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
-    """Return the solved depths, or the depths of the upright, unstretched line.
+    """Return lengths and depths from a result or, without a result, from the upright, unstretched
+    line.
 
-    Without a result they are unknown for a tow, and for a line that reaches the surface.
+    Without a result, depths are unknown for a tow and for a line that reaches the surface.
     """
     if result is not None:
         return Levels(
@@ -264,7 +269,7 @@ def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
 
 
 def place_text(at: float) -> str:
-    """Format the distance of a clamp from the upper end of its piece [m], for the column of
-    lengths.
+    """Format the distance of a clamp from the upper end of its piece [m], as it appears in the
+    column of lengths.
     """
     return f"at {QUANTITIES['at'].format(at)}"

@@ -1,6 +1,7 @@
-"""Symbols of a schematic: chosen by kind, role and name of a component, and drawn as SVG.
+"""Symbols of a schematic. They are chosen by the kind, role and name of a component, and drawn as
+SVG.
 
-Each symbol is drawn about an origin; the line runs vertically through the origin.
+Each symbol is drawn about an origin, through which the line runs vertically.
 """
 
 import re
@@ -49,7 +50,9 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 
 @dataclass(frozen=True)
 class Sign:
-    """A symbol, how often it is repeated, and the ADCP it contains, if any (looking up or down)."""
+    """A symbol, the number of times it is repeated, and whether it contains an ADCP that looks up
+    or down.
+    """
 
     symbol: Symbol
     count: int = 1
@@ -82,8 +85,8 @@ def sign_of(use: str, label: str, component: Component) -> Sign:
 
     Parameters
     ----------
-    use, label : its names in the line, which may also identify it
-    component : its kind, role, name and note, which are considered first
+    use, label : id and label of the part; words in the label are considered last
+    component : component of the part, whose kind, role, name and note are considered first
     """
     own = f"{use} {component.name or ''} {component.note or ''}".lower()
     words = f"{own} {label.lower()}"
@@ -130,7 +133,6 @@ def _sphere(diameter: float) -> Symbol:
 
 
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
-    """Return the first symbol whose pattern matches the words, or `other`."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
 
 
@@ -151,14 +153,14 @@ _BEAM = 11.0
 
 @dataclass(frozen=True)
 class SymbolFigure:
-    """A symbol with its height and its drawing function, which draws about the origin of a pen."""
+    """Height of a symbol, and the function that draws it about the origin of a pen."""
 
     height: float
     draw: Callable[[Pen], None]
 
 
 def figure_of(sign: Sign) -> SymbolFigure:
-    """Return the figure of a sign, except for cables and chains."""
+    """Return the drawing of a sign; signs of cables and chains have none."""
     if sign.symbol in BALLS:
         figure = _pack(sign)
     elif sign.symbol is Symbol.WHEELS:
@@ -171,7 +173,9 @@ def figure_of(sign: Sign) -> SymbolFigure:
 
 
 def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
-    """Add an ADCP to a symbol: acoustic beams upward or downward, or only the transducers."""
+    """Add an ADCP to a symbol: acoustic beams upward or downward, or only transducers if the
+    direction is unknown.
+    """
     shift = _BEAM / 2 * (sign.up - sign.down)
 
     def draw(pen: Pen) -> None:
@@ -233,7 +237,7 @@ _BARE: dict[str, Any] = {"fill": "none"}
 
 
 def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
-    """Create a symbol of given height from SVG shapes about its origin, from back to front."""
+    """Create a symbol of a given height from SVG shapes, listed from back to front."""
 
     def draw(pen: Pen) -> None:
         for part in parts:
@@ -331,7 +335,6 @@ def draw_cable(pen: Pen, symbol: Symbol, x: float, top: float, bottom: float) ->
 
 
 def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
-    """Draw links alternately from the front and from the side."""
     count = max(3, round((bottom - top) / _LINK))
     pitch = (bottom - top) / count
     for number in range(count):
@@ -344,7 +347,7 @@ def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
 
 
 def draw_water(pen: Pen, width: float, top: float, bottom: float) -> None:
-    """Draw the water behind the line."""
+    """Draw the water in the background of the line."""
     height = bottom - top
     pen.box(width / 2, (top + bottom) / 2, width, height, fill=_WATER, stroke="none")
 
@@ -390,6 +393,6 @@ def draw_helicopter(pen: Pen) -> None:
 
 
 def draw_clamp(pen: Pen, reach: float) -> None:
-    """Draw the clamp between an instrument and the line, which is at the origin."""
+    """Draw the clamp between an instrument and the line; the origin is on the line."""
     for y in (-3.5, 3.5):
         pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

@@ -1,7 +1,7 @@
-"""Draw a solved line in a terminal: side view, plan, tension, and current by depth.
+"""Drawings of a solved line in a terminal: side view, plan, tension, and current by depth.
 
-Each picture is drawn with braille dots, as a text for each row, in any number of cells. From 20 by
-6 cells it shows a scale; larger pictures show more.
+Each drawing consists of braille dots, with one text per row of cells, and can have any number of
+cells. Drawings of at least 20 by 6 cells have scales; larger ones show more.
 """
 
 from collections.abc import Iterable, Sequence
@@ -54,8 +54,8 @@ def elevation(
 
     Distances are from the anchor towards the free end, or from the ship backward; their scale
     differs from that of the depths. The line in still water is dotted. From a width of 50 cells,
-    the names of parts are shown. The shapes `overlays`, from other environments or designs,
-    are dashed.
+    the names of parts are shown. `overlays` are shapes in other environments or of other designs;
+    they are dashed.
     """
     side = line_picture.elevation_of(result, overlays)
     moored = not result.towed
@@ -124,7 +124,7 @@ def _span(side: LinePicture) -> tuple[float, float]:
 
 
 def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
-    """Choose the rows of part names, each close to its part."""
+    """Choose the names to write and their rows, each close to its part."""
     height = (side.bottom - side.top) / rows
     found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
@@ -142,8 +142,9 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
 
 
 def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
-    """Return the index of the name to omit among crowded names: an instrument, farthest from the
-    others.
+    """Select which of several crowded names to omit, and return its index.
+
+    Names of instruments are omitted first; among these, the name closest to the middle.
     """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
@@ -184,8 +185,9 @@ _KILO = 1e4
 def tension(result: LegResult, width: int, height: int) -> list[Text]:
     """Draw tension against the distance along the line, from the top.
 
-    A red dotted line shows the allowable load of the weakest piece at each position: its working
-    load, or its breaking load over the required safety factor. Much larger loads are not drawn.
+    A red dotted line shows the allowable load at each position: the working load of the piece, or
+    its breaking load divided by the required safety factor. Loads much larger than the tension are
+    not drawn.
     """
     pulls, along = result.shape.tension, along_the_line(result.shape)
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body
@@ -209,7 +211,9 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
 
 
 def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
-    """Start and end along the line [m] of each piece with a known limit, and the limit [N]."""
+    """Return start and end along the line [m] and allowable load [N] for each piece with a known
+    load.
+    """
     factors = result.file.checks.safety_factor
     surface = not result.towed and reaches_the_surface(result.leg)
     found, start = [], 0.0
@@ -224,7 +228,6 @@ def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
 def _weakest(
     loads: list[tuple[float, float, float]], length: float, dots: int
 ) -> list[tuple[int, float]]:
-    """Smallest limit for each dot down the line."""
     least: dict[int, float] = {}
     for start, end, load in loads:
         first, last = (round(each / length * (dots - 1)) for each in (start, min(end, length)))
@@ -273,7 +276,7 @@ _MARGIN = 0.06
 def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()) -> list[Text]:
     """Draw a line from above, with its anchor or the ship at the origin.
 
-    The shapes `overlays`, from other environments or designs, are dashed.
+    `overlays` are shapes in other environments or of other designs; they are dashed.
     """
     shapes = [*(leg.shape for leg in result.legs), *overlays]
     rows = height - header_rows(height) - 2

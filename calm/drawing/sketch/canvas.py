@@ -1,4 +1,6 @@
-"""Draw in terminal cells with braille dots and characters, and with axes around the drawing."""
+"""Drawing area of terminal cells with braille dots and characters, and the scales along its
+edges.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,7 +23,7 @@ _MOST_STEPS = 4000
 
 
 class Canvas:
-    """Drawing area of `width` by `height` cells; parts outside are clipped.
+    """Drawing area of `width` by `height` cells; everything outside is clipped.
 
     Dots, columns and rows are counted from the upper left corner.
     """
@@ -77,7 +79,7 @@ class Canvas:
             column += width
 
     def sign(self, column: int, row: int) -> str | None:
-        """Return the character in a cell, if any."""
+        """Return the character that was written in a cell, if any."""
         return self._signs[row][column]
 
     def rows(self) -> list[Text]:
@@ -103,7 +105,7 @@ _ROWS_PER_TICK = 3
 
 @dataclass(frozen=True)
 class CellScale:
-    """A range of a quantity, from `low` (left or top) to `high`, over a number of dots."""
+    """Range of a quantity over a number of dots, from `low` at the left or top to `high`."""
 
     low: float
     high: float
@@ -116,7 +118,7 @@ class CellScale:
 
 @dataclass(frozen=True)
 class PlotFrame:
-    """Area of a canvas between its scales: first column and row, size, and the two scales."""
+    """Area of a canvas inside its scales: first column and row, size, and the two scales."""
 
     canvas: Canvas
     column: int
@@ -127,12 +129,12 @@ class PlotFrame:
     down: CellScale
 
     def point(self, x: float, y: float) -> tuple[float, float]:
-        """Return the dot for a pair of values."""
+        """Convert a pair of values to the position of a dot."""
         column = self.column * DOTS_ACROSS + self.across.dot(x)
         return column, self.row * DOTS_DOWN + self.down.dot(y)
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return column and row for a pair of values, limited to the frame."""
+        """Convert a pair of values to the column and row of the nearest cell inside the frame."""
         dot_x, dot_y = self.point(x, y)
         column, row = int((dot_x + 0.5) // DOTS_ACROSS), int((dot_y + 0.5) // DOTS_DOWN)
         return (
@@ -145,8 +147,10 @@ class PlotFrame:
         self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
-        """Draw a mark at a point, or next to it if another mark is in this cell; an equal mark is
-        not repeated.
+        """Draw a mark at a point, or in an adjacent cell if another mark is in the cell of the
+        point.
+
+        A mark is not repeated if an equal mark is already there.
         """
         column, row = self.cell(x, y)
         for shift in (0, 1, -1, 2):
@@ -160,10 +164,9 @@ class PlotFrame:
                 return
 
     def scale_down(self, values: Iterable[float], width: int, foot: str = "m") -> None:
-        """Write numbers and ticks along the left edge; `width` is the width of the numbers in
-        cells.
+        """Write numbers and ticks along the left edge, with the unit `foot` below them.
 
-        The unit `foot` is below the numbers.
+        `width` is the width of the numbers in cells.
         """
         axis = self.column - 1
         self.canvas.text(axis - width, self.row + self.rows, f"{foot:>{width}}", AXIS)
@@ -176,8 +179,8 @@ class PlotFrame:
     def scale_across(self, values: Iterable[float], *units: str) -> None:
         """Write numbers along the last row of the canvas, and ticks on the row above.
 
-        The first unit that fits follows the numbers. For the last unit numbers are removed, as long
-        as two remain.
+        The first of the `units` that fits is written after the numbers. If none fits, numbers are
+        removed until the last unit fits, but at least two numbers remain.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
@@ -203,12 +206,12 @@ def _end(labels: list[tuple[int, str]]) -> int:
 
 
 def levels(low: float, high: float, rows: int) -> list[float]:
-    """Return round tick values for a scale with a number of rows."""
+    """Return round tick values for a vertical scale with a number of rows."""
     return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))
 
 
 def header_rows(height: int) -> int:
-    """Return the number of caption rows above a picture; 0 for a low picture."""
+    """Return the number of caption rows above a picture; 0 for a picture of few rows."""
     return int(height >= _HEADED)
 
 
@@ -222,16 +225,16 @@ def scaled_frame(
     margin: int = 0,
     per_tick: int = COLUMNS_PER_TICK,
 ) -> PlotFrame:
-    """Create a canvas with scales along two edges; return its frame.
+    """Create a canvas with scales along the left and lower edges, and return its frame.
 
     Parameters
     ----------
     size : total numbers of columns and rows
-    caption : text above the frame, if there is room
+    caption : text above the frame, if there is a row for it
     across, down : values at the left and the right edge, and at the upper and the lower edge
-    units : units of the horizontal scale; room is made for the last one
+    units : alternative texts for the unit of the horizontal scale (see `PlotFrame.scale_across`)
     seabed : depth of the seabed below the frame, if any [m]
-    margin : number of columns to the right for other texts
+    margin : number of free columns on the right for other texts
     per_tick : number of columns per number of the horizontal scale
     """
     canvas, head = Canvas(*size), header_rows(size[1])

@@ -72,13 +72,13 @@ class TokenStream:
         """Whether the next token is one of the given operators."""
         return self.next.kind == "sign" and self.next.text in signs
 
-    def comes(self, sign: str) -> bool:
+    def accept(self, sign: str) -> bool:
         """Consume the next token if it is a given sign; return whether it is."""
         return self.is_next(sign) and bool(self.take())
 
     def expect(self, sign: str) -> None:
         """Consume the next token, which must be a given sign."""
-        if not self.comes(sign):
+        if not self.accept(sign):
             raise self.next.refuse(f"`{sign}` is missing before `{self.next.text}`")
 
 
@@ -147,7 +147,7 @@ class _Reader:
         if depth > _DEEPEST:
             raise self._words.next.refuse("parentheses are nested too deeply")
         condition = self._binary(0, depth)
-        if not self._words.comes("?"):
+        if not self._words.accept("?"):
             return condition
         yes = self.choice(depth + 1)
         self._words.expect(":")
@@ -201,7 +201,7 @@ class _Reader:
         count, function = _FUNCTIONS[token.text.lower()]
         self._words.expect("(")
         arguments = [self.choice(depth + 1)]
-        while self._words.comes(","):
+        while self._words.accept(","):
             arguments.append(self.choice(depth + 1))
         self._words.expect(")")
         if len(arguments) != count:

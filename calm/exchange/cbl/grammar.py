@@ -239,7 +239,7 @@ def _value(words: TokenStream, key: Token) -> KeyValue:
         words.take()
         words.expect("}")
     if words.is_next("(") and (rows := _rows(words)):
-        return KeyValue(key, rows=rows, repeats=words.comes("+"))
+        return KeyValue(key, rows=rows, repeats=words.accept("+"))
     if words.next.kind == "text":
         return KeyValue(key, text=words.take().text)
     return KeyValue(key, formula=read_expression(words))
@@ -264,12 +264,12 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
     while True:
         back = words.at
         if rows:
-            words.comes(",")
-        if not words.comes("("):
+            words.accept(",")
+        if not words.accept("("):
             words.at = back
             return rows
         row = [read_expression(words)]
-        while words.comes(","):
+        while words.accept(","):
             row.append(read_expression(words))
         words.expect(")")
         if not rows and len(row) == 1:
@@ -337,22 +337,22 @@ def _attachments(words: TokenStream, key: Token) -> list[tuple[Token, list[int]]
     found: list[tuple[Token, list[int]]] = []
     while words.next.kind in ("name", "text"):
         token = words.take()
-        words.comes(":")
+        words.accept(":")
         found.append((token, _nodes(words, token)))
-        words.comes(",")
+        words.accept(",")
     if not found:
         raise key.refuse("`attachments` names nothing")
     return found
 
 
 def _nodes(words: TokenStream, token: Token) -> list[int]:
-    spaced = words.comes("[")
+    spaced = words.accept("[")
     if not spaced:
         words.expect("(")
     numbers: list[int] = []
     while words.next.kind == "number":
         numbers.append(round(words.take().number))
-        words.comes(",")
+        words.accept(",")
     words.expect("]" if spaced else ")")
     if not spaced:
         return numbers

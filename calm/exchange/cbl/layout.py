@@ -150,7 +150,7 @@ class CableLayout:
         for part in range(count):
             depth = max(lower - length * (part + 0.5) / count, 0.0)
             component = self.makers.material(material, length, depth, self._speed(depth))
-            if made and _alike(made[-1].component, component):
+            if made and _similar_drag(made[-1].component, component):
                 made[-1].length = made[-1].extent + length / count
             else:
                 made.append(model.ImportedPiece(component, length / count))
@@ -265,7 +265,7 @@ def _turned(item: model.ImportedPiece) -> model.ImportedPiece:
     return replace(item, clamps=clamps)
 
 
-def _alike(one: model.ImportedComponent, other: model.ImportedComponent) -> bool:
+def _similar_drag(one: model.ImportedComponent, other: model.ImportedComponent) -> bool:
     pairs = ((one.number(key), other.number(key)) for key in ("cn", "ct"))
     return all(abs(a - b) <= _CHANGE * max(abs(a), abs(b)) for a, b in pairs)
 

@@ -57,8 +57,8 @@ def read_water(
     water = model.ImportedWater(None if towed else seabed)
     if density.size:
         rows = list(zip(depth[keep].tolist(), density[order][keep].tolist(), strict=True))
-        alike = all(row[1] == rows[0][1] for row in rows)
-        water.density = rows[0][1] if alike else tuple(rows)
+        uniform = all(row[1] == rows[0][1] for row in rows)
+        water.density = rows[0][1] if uniform else tuple(rows)
     first = np.column_stack([depth, u[:, 0], v[:, 0], w[:, 0]])[keep]
     if np.any(first[:, 1:]) or times > 1:
         water.current = tuple((float(d), float(e), float(n), float(up)) for d, e, n, up in first)

@@ -295,8 +295,8 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
     an added line.
     """
     # Comparing is slow, and most often only a line differs.
-    head = _alike(old, new)
-    tail = _alike(old[head:][::-1], new[head:][::-1])
+    head = _common_start(old, new)
+    tail = _common_start(old[head:][::-1], new[head:][::-1])
     middle = old[head : len(old) - tail], new[head : len(new) - tail]
     found: list[int | None] = [*range(head)]
     for _, start, end, new_start, new_end in SequenceMatcher(None, *middle, False).get_opcodes():
@@ -306,7 +306,7 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
     return [*found, *range(len(old) - tail, len(old))]
 
 
-def _alike(old: Sequence[str], new: Sequence[str]) -> int:
+def _common_start(old: Sequence[str], new: Sequence[str]) -> int:
     """Count the equal lines at the beginning."""
     pairs = enumerate(zip(old, new, strict=False))
     return next((i for i, (one, other) in pairs if one != other), min(len(old), len(new)))

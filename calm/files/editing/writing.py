@@ -241,7 +241,7 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
-    if quote != '"' and _stands_plain(text, flow):
+    if quote != '"' and _can_be_plain(text, flow):
         return text
     escaped = "".join(
         _ESCAPED.get(sign) or (sign if sign.isprintable() else f"\\U{ord(sign):08x}")
@@ -250,7 +250,7 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
     return f'"{escaped}"'
 
 
-def _stands_plain(text: str, flow: bool) -> bool:
+def _can_be_plain(text: str, flow: bool) -> bool:
     if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
         return False
     return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 import calm
-from calm.drawing.schematic import schematic_svg
+from calm.drawing.schematic import schematic_sheets, schematic_svg
 from tests.drawings import SVG, assert_none_overlap, texts_of
 
 LINES = sorted((Path(__file__).resolve().parents[3] / "lines").glob("*.yaml"))
@@ -52,6 +52,26 @@ def test_every_piece_and_clamp_of_a_shipped_line_is_named(path, solved):
         assert piece.label in pieces
         assert all(clamp.label in titles for clamp in piece.clamps)
     assert_none_overlap(svg)
+
+
+def test_a_long_line_is_divided_into_legible_sheets_with_the_same_parts():
+    """A4 has 267 mm; text of 8 pt printed at two thirds stays legible."""
+    path = next(one for one in LINES if one.stem == "tall-array-mooring")
+    line = calm.load(path)
+    sheets = schematic_sheets(line.file)
+    shown = [[text for text, _ in texts_of(sheet)] for sheet in sheets]
+    pages = [ElementTree.fromstring(sheet) for sheet in sheets]
+    parts = [title.text for page in pages for title in page.iter(f"{SVG}title")]
+    whole = ElementTree.fromstring(schematic_svg(line.file)).iter(f"{SVG}title")
+    assert [one for one in parts if one != line.file.name] == [one.text for one in whole][1:]
+    assert len(sheets) == 3
+    for page, sheet in zip(pages, sheets, strict=True):
+        height = float(page.get("viewBox").split()[3])
+        printed = float(page.get("height").removesuffix("mm"))
+        assert printed <= 267.01 and printed / (height * 25.4 / 72) >= 0.67
+        assert_none_overlap(sheet)
+    assert ["sea surface" in texts for texts in shown] == [True, False, False]
+    assert [texts.count("seabed") for texts in shown] == [1, 1, 2]  # 1: the heading
 
 
 @pytest.mark.thorough
