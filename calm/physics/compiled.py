@@ -27,7 +27,7 @@ Law = Callable[..., Any]
 SOURCES = ("physics", "solve", "batch")
 """Packages that contain functions to compile."""
 
-OPTIMISATION = 2
+OPTIMISATION = 1
 """Level of LLVM's optimisation, which never changes a digit."""
 
 Fn = TypeVar("Fn", bound=Law)
