@@ -106,6 +106,11 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
         pace.consider()
 
 
+def may_compile() -> bool:
+    """Return whether a function that is compiled at once, for all its uses, may be compiled."""
+    return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
+
+
 def _may_choose() -> bool:
     return os.environ.get("CALM_COMPILED") not in ("never", "always") and _has_llvm()
 
