@@ -1,9 +1,9 @@
 """A line as a chain of straight bars between nodes, and the loads on the bars.
 
-A cable or chain is cut into bars, a rigid piece is one bar, and all pieces rigidly connected to the
-free end form one bar. The force of a load is distributed to the two nodes of its bar by the lever
-rule: in equilibrium a bar then lies along the mean of the forces at its ends, as everywhere in
-CALM.
+A cable or chain is divided into bars, a rigid piece is one bar, and all pieces rigidly connected to
+the free end form one bar. A load is a piece, its share on one bar, or a clamp. Its force is
+distributed to the two nodes of the bar by the lever rule. In equilibrium, a bar then lies along the
+mean of the forces at its two ends, as in the other solvers of CALM.
 """
 
 from dataclasses import dataclass
@@ -27,23 +27,23 @@ SHORT_SHARE = 0.02
 
 @dataclass(frozen=True)
 class Elements:
-    """The k loads of a chain, sorted by bar; every bar has at least one.
+    """The k loads on the bars of a chain, sorted by bar. Every bar has at least one.
 
     Attributes
     ----------
     bar : (k,) index of its bar
     place : (k,) position on the bar, from 0 at its upper node to 1 at its lower node
-    piece : (k,) index of the piece that it belongs to; -1 for a clamp
+    piece : (k,) index of the piece to which the load belongs; -1 for a clamp
     buoyancy, volume : (k,) totals in reference water [N], [m³]
     normal_drag, tangential_drag : (k,) total Kn and Kt [N/(m/s)²]
-    directional : (k,) False if the drag is Kn|V|V
-    flexible : (k,) whether it belongs to a cable or chain
+    directional : (k,) False if the drag is Kn|V|V, whatever the direction of the flow
+    flexible : (k,) whether the load belongs to a cable or chain
     thinning, lift : (k,) as in `Line`
     push : (3, k) force of the wind [N]
     height : (k,) length of a rigid load, from its top to its lower end [m]
-    out : (k,) whether it is mounted above the float, and so out of the water if the float is at the
-        surface
-    curve : drag curves (k,) of smooth spheres and cylinders, None for other loads
+    out : (k,) whether the load is mounted above the float, so that it is in air if the float is at
+        the surface
+    curve : (k,) drag curves of smooth spheres and cylinders; None for other loads
     """
 
     bar: Integers
@@ -84,15 +84,15 @@ class Elements:
 
 @dataclass(frozen=True)
 class FloatOnChain:
-    """The first float at the surface, as a function of its draft divided by its height, 0 to 1.
+    """The uppermost float: table of its properties at the surface against its draft.
 
     Attributes
     ----------
-    element : index of its load
+    element : index of the load that is the float
     height : height of the float [m]
     weight : weight in air [N]
-    draft : (m,) draft, increasing
-    immersed, drag : (m,) immersed share of the volume, and drag as a share of the drag when
+    draft : (m,) draft divided by the height of the float, 0 to 1, increasing
+    immersed, drag : (m,) immersed share of the volume, and drag as a share of the drag when fully
         immersed
     push : (m, 2) force of the wind to the east and north [N]
     """
@@ -114,15 +114,16 @@ class BarChain:
     ----------
     line : line that the chain represents
     length : (n,) unstretched length of the bars [m]
-    piece : (n,) piece of each bar; for the rigid head, its last piece
-    compliance : (n,) 1/EA [1/N]
-    elongation : the bars of every cable with an elongation curve, and the knots of the curve
+    piece : (n,) index of the piece of each bar; the last one if several rigid pieces share a bar
+    compliance : (n,) strain per tension, 1/EA [1/N]
+    elongation : for every cable with an elongation curve, its bars and the knots of the curve
     elements : the loads
     bars : (p, 2) first bar of every piece, and the bar after its last; equal for a piece without
         length
-    span : (p, 2) position of a piece's ends on its first and on its last bar, 0 to 1
-    clamp_bar, clamp_place : (m,) bar of each clamp, and position on the bar
-    afloat : the first float at the surface, None if its hull is unknown
+    span : (p, 2) position of the upper end of each piece on its first bar, and of its lower end on
+        its last bar, 0 to 1
+    clamp_bar, clamp_place : (m,) bar of each clamp, and position on this bar, 0 to 1
+    afloat : the uppermost float; None if its hull is unknown
     """
 
     line: Line
@@ -139,11 +140,12 @@ class BarChain:
 
 
 def chain_of(line: Line, count: int) -> BarChain:
-    """Divide the cables and chains of a line into about `count` bars.
+    """Represent a line by a chain of bars, with about `count` bars for its cables and chains.
 
     Parameters
     ----------
     line : line above an anchor, free end first
+    count : approximate number of bars of all cables and chains
 
     Raises
     ------
@@ -178,7 +180,7 @@ def chain_of(line: Line, count: int) -> BarChain:
 
 
 def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
-    """Return the length and piece of every bar, and the bars and length of every piece."""
+    """Return `length`, `piece`, `bars` and `span` of a `BarChain`."""
     pieces, head = len(line.length), head_count(line)
     cable = float(line.length[line.flexible].sum())
     share = line.length / max(cable, 1e-300)
@@ -210,8 +212,9 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Return bar, and position on the bar, of points at given fractions of the length of their
-    pieces.
+    """Find points at given fractions of the length of their pieces.
+
+    Return their bars, and their positions on the bars.
     """
     first, end = bars[piece].T
     begin, stop = span[piece].T
@@ -224,7 +227,6 @@ def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tupl
 def _elements(
     line: Line, bars: Integers, span: Floats, clamp_bar: Integers, clamp_place: Floats
 ) -> Elements:
-    """Return the loads: pieces, distributed over their bars, and clamps."""
     first, end = bars.T
     parts = np.maximum(end - first, 1)
     piece = np.repeat(np.arange(len(parts)), parts)
@@ -265,8 +267,9 @@ _DRAFTS = 401
 
 
 def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
-    """Return buoyancy and drag of a line's first float as functions of its draft; None if its hull
-    is unknown.
+    """Tabulate buoyancy, drag and wind force of the uppermost float against its draft.
+
+    Return None if the hull of the float is unknown.
     """
     floating = line.floating
     if floating is None or floating.hull is None:
@@ -278,7 +281,6 @@ def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
 
 @lru_cache(maxsize=4)
 def _afloat(floating: Floating, element: int, height: float) -> FloatOnChain:
-    """Return the table of a float with a hull, for a load of a given height [m]."""
     hull = floating.hull
     assert hull is not None
     # by the immersed share, finer where a hull is thin: at its keel and at its top

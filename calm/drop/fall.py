@@ -1,4 +1,4 @@
-"""Anchor drop: the line is towed, released, and settles on its anchor."""
+"""Anchor drop: the line is towed and released, falls, and settles on the seabed."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -46,9 +46,7 @@ _MOST = 20
 
 @dataclass(frozen=True)
 class Fineness:
-    """Approximate number of bars of cables and chains, and approximate number of time steps of the
-    fall.
-    """
+    """Resolution: approximate numbers of bars of cables and chains, and of time steps."""
 
     bars: int
     steps: int
@@ -58,8 +56,8 @@ class Fineness:
 class Ship:
     """Ship that drops the anchor: its velocity to the east and north over the ground [m/s].
 
-    `streamed` is the horizontal distance from the anchor to the free end [m]; None uses the
-    distance under tow.
+    `streamed` is the horizontal distance from the anchor to the free end at the release [m]; None
+    uses the distance that results under tow.
     """
 
     east: float
@@ -78,19 +76,18 @@ class Motion:
 def towed(
     line: Line, water: Water, anchor: FallingAnchor, ship: Ship, fineness: Fineness
 ) -> ChainState:
-    """Return the line as it streams behind the ship, with its lower end at the surface, at the
-    origin.
+    """Compute the line as it streams behind the ship, with its lower end at the origin.
 
-    If the required distance is shorter than that under tow, the shape is that of a slower tow. If
-    it is longer, the free end is held at this distance.
+    If the required distance is shorter than the distance under tow, the line has the shape of a
+    slower tow. If it is longer, the free end is held at the required distance.
 
     Raises
     ------
     NoEquilibrium
-        ``not-converged`` if no steady shape is found, ``no-equilibrium`` if there is no drag to
-        limit the speed of the fall.
+        ``not-converged`` if no steady shape is found; ``no-equilibrium`` if neither line nor anchor
+        has drag, so that the speed of the fall has no limit.
     UsageError
-        The line streams farther than required even behind a very slow ship.
+        Even behind a very slow ship, the line extends farther than the required distance.
     """
     across = line.normal_drag[~line.directional]
     if not (anchor.drag or any(k.any() for k in (line.tangential_drag, across, line.clamp_drag))):
@@ -120,11 +117,15 @@ def towed(
 def fall(
     line: Line, water: Water, anchor: FallingAnchor, start: ChainState, fineness: Fineness
 ) -> Motion:
-    """Compute the fall of a line, from its shape under tow until its anchor reaches the seabed.
+    """Compute the fall of a line from its shape under tow until its anchor reaches the seabed.
 
-    The instant of the touchdown is interpolated within the last step. Raises NoEquilibrium:
-    ``anchor-lifts`` if the anchor does not reach the seabed, ``not-converged`` if a step is not
-    found.
+    The touchdown is interpolated within the last time step.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``anchor-lifts`` if the anchor does not reach the seabed; ``not-converged`` if a time step
+        has no solution.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
@@ -153,9 +154,7 @@ def fall(
 
 
 def nothing_limits() -> NoEquilibrium:
-    """Return the exception for a fall without a terminal speed, since the line has no tangential
-    drag.
-    """
+    """Return the exception for a fall without drag, whose speed would be unlimited."""
     return Status.NO_EQUILIBRIUM.because(
         "The speed of the line is unlimited, since neither the line nor its anchor has drag.",
         advice="Set the drag of its pieces, or `kt` of the anchor.",
@@ -165,9 +164,12 @@ def nothing_limits() -> NoEquilibrium:
 def settle(
     line: Line, water: Water, anchor: FallingAnchor, landed: ChainState, fineness: Fineness
 ) -> Motion:
-    """Compute how a line settles on the anchor after touchdown.
+    """Compute how a line settles after the touchdown of its anchor.
 
-    Raises NoEquilibrium: ``not-converged`` if the line does not settle.
+    Raises
+    ------
+    NoEquilibrium
+        ``not-converged`` if the line does not come to rest.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
     return Motion(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))
@@ -178,7 +180,7 @@ def _sea(water: Water) -> WaterColumn:
 
 
 def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState:
-    """Return the state at which the lower end passes a given height [m]."""
+    """Interpolate the state at which the lower end passes the height `bottom` [m]."""
     high, low = float(before.node[-1, 2]), float(after.node[-1, 2])
     share = (high - bottom) / (high - low)
     return ChainState(
@@ -190,8 +192,12 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """Advance by one time step, or a shorter step if necessary; raises NoEquilibrium
-    ``not-converged``.
+    """Advance by one time step, or by a shorter step if necessary.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``not-converged`` if even a very short step has no solution.
     """
     shortest = _SHORTEST * depth
     extrapolations = (False, True) if state.velocity.any() else (True,)
@@ -206,10 +212,10 @@ def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> Chai
 
 
 def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, ...]:
-    """Return the states in ever longer time steps until the line is at rest.
+    """Return the states until the line is at rest, in ever longer time steps.
 
-    Bars that then balance upright on their lower end, under compression, are laid down: a long step
-    keeps them upright, unlike a short step.
+    Long steps can leave a bar balanced upright on its lower end, under compression. Such bars are
+    laid down, and the line settles again.
     """
     depth = mover.sea.water.depth
     states = [state]
@@ -232,10 +238,9 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
 
 
 def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
-    """Return the state after compressed bars are aligned with the next bar above that is under
-    tension.
+    """Align bars under compression with the nearest bar above them that is under tension.
 
-    None if no bar is compressed.
+    Return None if no bar is under compression.
     """
     pushed = state.tension < -LEAST_COMPRESSION * mover.scale
     if not pushed.any() or pushed[0]:
@@ -255,10 +260,10 @@ def _streamed(state: ChainState) -> float:
 
 
 def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Return the line in a slower flow, in which it streams to a given distance behind the ship
-    [m].
+    """Find a slower flow in which the line streams the required distance [m] behind the ship.
 
-    If the free end were held closer in the full flow, the line would bend unlike a rope.
+    Holding the free end closer in the full flow would instead bend the line in a way that a rope
+    does not bend.
     """
     sea = mover.sea
     reach = float(mover.chain.length.sum())
@@ -293,9 +298,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
 
 def _drawn(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Return the line with its free end held at a given horizontal distance from the other
-    end [m].
-    """
+    """Move the free end to a distance [m] from the lower end, and let the line settle."""
     end = state.node[0, :2]
     here = float(np.linalg.norm(end))
     for share in np.linspace(0.0, 1.0, 21)[1:]:

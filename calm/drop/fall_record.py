@@ -1,6 +1,4 @@
-"""Results of an anchor drop: depths, tensions and shapes of the pieces, from the states of the
-chain.
-"""
+"""Results of an anchor drop: depths, tensions and shapes of the line over time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,18 +23,18 @@ MOMENTS = 5
 class DepthReached:
     """Largest depth of a piece or clamp while the line falls and settles.
 
-    Depths are at the upper end of a piece, as in all tables. The rating is compared with the depth
-    of the deeper end, as in the design check.
+    Depths are those of the upper end of a piece, as in all tables, but the rating is compared with
+    the depth of the deeper end, as in the design check.
 
     Attributes
     ----------
     part : the piece or clamp
-    rest : depth of its upper end at rest [m]
-    greatest : the largest depth of its upper end [m]
-    time : time at which it is reached, after the release of the anchor [s]; None if it exceeds the
-        depth at rest by no more than `OVERSHOOT`
-    rating : its depth rating [m]; None if unknown
-    beyond : whether its deeper end exceeds the rating
+    rest : depth of the upper end at rest [m]
+    greatest : largest depth of the upper end [m]
+    time : time of the largest depth, from the release of the anchor [s]; None if the largest depth
+        exceeds the depth at rest by no more than `OVERSHOOT`
+    rating : depth rating of the part [m]; None if unknown
+    beyond : whether the deeper end exceeds the rating
     """
 
     part: Piece | Clamp
@@ -48,13 +46,12 @@ class DepthReached:
 
     @property
     def label(self) -> str:
-        """Label of the piece or clamp."""
         return self.part.label
 
 
 @dataclass(frozen=True)
 class Pull:
-    """Maximum tension in a piece during the fall [N], and its time [s]."""
+    """Maximum tension in a piece during the fall [N], and the time at which it occurs [s]."""
 
     part: Piece
     tension: float
@@ -63,7 +60,7 @@ class Pull:
 
 @dataclass(frozen=True)
 class ShapeInTime:
-    """Shape of the line at a time [s]: distance towards the float and depth of the nodes [m]."""
+    """Shape of the line at one time: distance `x` towards the float and depth of the nodes [m]."""
 
     time: float
     name: str
@@ -73,14 +70,15 @@ class ShapeInTime:
 
 @dataclass(frozen=True)
 class FallPath:
-    """Time series of the fall, from the release of the anchor to its touchdown, (t,) each.
+    """Time series (t,) of the fall, from the release of the anchor to its touchdown.
 
     Attributes
     ----------
     time : time since the release [s]
-    anchor_depth : depth of its foot [m]
-    anchor_speed : downward speed [m/s]
-    anchor_x, float_x : distance from the release position, towards the float [m]
+    anchor_depth : depth of the lower end of the anchor [m]
+    anchor_speed : downward speed of the anchor [m/s]
+    anchor_x, float_x : horizontal distance of anchor and free end from the release position,
+        towards the float [m]
     float_depth : depth of the free end [m]
     anchor_tension : tension of the line at the anchor [N]
     """
@@ -95,7 +93,7 @@ class FallPath:
 
 
 def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
-    """Return the positions (m, 3) of points on bars [m]."""
+    """Return the positions (m, 3) [m] of points given by bar and position on the bar, 0 to 1."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
@@ -109,14 +107,14 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
 
 
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
-    """Return the tensions (n, 2) at the upper and the lower end of every bar [N]; 0 for a
-    compressed bar.
+    """Return the tensions (n, 2) at the upper and the lower end of every bar [N].
+
+    Bars under compression have zero tension: in the first moment, the anchor pushes the pieces next
+    to it, where a real line becomes slack.
 
     Parameters
     ----------
     within : whether loads at the very ends of a bar are excluded; otherwise they are included
-
-    In the first moment the anchor pushes the pieces next to it, where a real line becomes slack.
     """
     on = mover.chain.elements
     strain, _ = mover.strain(state.tension)
@@ -136,7 +134,7 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
     Parameters
     ----------
     toward : (2,) horizontal unit vector from the anchor to the free end at the start
-    anchor_height : height of the line's end above the anchor's foot [m]
+    anchor_height : height of the end of the line above the lower end of the anchor [m]
     """
     states = drop.states
     foot, top = (np.array([state.node[i] for state in states]) for i in (-1, 0))
@@ -152,8 +150,9 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
 
 
 def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
-    """Return the shapes at equal intervals from release to touchdown, and the shape at rest if
-    known.
+    """Return the shapes at equal intervals from release to touchdown, and the shape at rest.
+
+    The shape at rest is omitted if `rest` is None.
     """
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
@@ -169,9 +168,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """Return the largest depths of floats, and of parts that hold an instrument, from release to
-    rest.
-    """
+    """Return the largest depths, until rest, of floats and parts that hold an instrument."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     upper, deeper = np.array([_depths(chain, state) for state in states]).swapaxes(0, 1)
@@ -192,9 +189,7 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the depths of the upper and of the deeper end of every piece; both of a clamp are its
-    depth [m].
-    """
+    """Return the depths [m] of the upper and lower ends of all pieces, and then of the clamps."""
     upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
     clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
     return np.append(upper, clamps), np.append(np.maximum(upper, lower), clamps)
@@ -211,12 +206,11 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 
 
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
-    """Return the tensions at both ends of every piece (t-1, p, 2), and the maximum over the piece
-    (t-1, p) [N].
+    """Return the tensions at the ends of all pieces (t-1, p, 2), and their maxima [N].
 
-    The first state is omitted, since the ship still tows then and the flow past the line differs.
-    Pieces that are rigidly connected to the free end are one bar, and share the tensions of its
-    ends.
+    The first state is omitted, because the flow past the line under tow differs from the flow after
+    the release. Pieces that are rigidly connected to the free end form one bar and share the
+    tensions at its ends.
     """
     tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])
     ends = _ends_of_pieces(drop, tension)
@@ -228,9 +222,7 @@ def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
 
 
 def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
-    """Select the tensions at the ends of pieces (t, p, 2) from those at the ends of bars (t, n, 2)
-    [N].
-    """
+    """Select tensions at the ends of pieces (t, p, 2) from those at the ends of bars (t, n, 2)."""
     first, end = drop.mover.chain.bars.T
     last = np.maximum(end, first + 1) - 1
     found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)
@@ -243,8 +235,8 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 def rest_difference(result: LegResult, rest: Motion) -> float:
     """Return the largest distance between a piece's end at rest and in equilibrium [m].
 
-    If the line has a touchdown before its anchor, pieces on the seabed are excluded: the
-    equilibrium has them at the foot of the anchor, while here they lead up to its top.
+    Pieces on the seabed are excluded if the line touches down before its anchor. In the equilibrium
+    they lie at the level of the seabed, but here they lead up to the top of the anchor.
     """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)

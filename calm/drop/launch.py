@@ -1,7 +1,7 @@
-"""Loads on the line during the descent of an anchor that is deployed last.
+"""Loads on the line while the anchor, deployed last, falls to the seabed.
 
-The design check uses these values. The plan of the anchor drop (`calm.drop.plan`) is the same fall
-from the same start, with finer bars and steps, and more detailed results.
+The design check uses these loads. The plan of the anchor drop (`calm.drop.plan`) computes the same
+fall from the same start, with more bars and shorter time steps, and has more detailed results.
 """
 
 from dataclasses import dataclass, replace
@@ -32,26 +32,27 @@ CHECK_FINENESS = Fineness(bars=50, steps=50)
 
 @dataclass(frozen=True)
 class Launch:
-    """Fall of a line behind its anchor, from a ship that tows it at 1 m/s against the current.
+    """Fall of a line behind its anchor, which is released while the ship tows the line.
 
-    The jerk as the line straightens, and the swing of the line, are not included.
+    The line is towed at 1 m/s against the current. The jerk as the line straightens and the swing
+    of the line are neglected.
 
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : slow and fast touchdown speed with the tangential drag of cables, chains and
-        cylinders, and the drag of the anchor, doubled and halved in the last step [m/s]; nan if
-        this step has no solution
+    fall_speed_band : touchdown speed [m/s] if the tangential drag of cables, chains and cylinders,
+        and the drag of the anchor, are doubled and halved in the last time step; NaN if this step
+        has no solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,
         from release to touchdown [N]
-    anchor_drag_known : False if the anchor has no `kt`; its drag is then that of a cube
-    greatest_speed, greatest_tension : largest touchdown speed [m/s] and tension of every piece (n,)
-        [N]; if the anchor's drag is unknown, also those without anchor drag in the last step, if
-        they are larger
-    tangles : pieces that have been overtaken, wholly or in part, by the line above them, at
-        touchdown
+    anchor_drag_known : False if the anchor has no `kt`, so that the drag of a cube is assumed
+    greatest_speed, greatest_tension : largest touchdown speed [m/s], and largest tension (n,) in
+        every piece [N]; if the drag of the anchor is unknown, the last time step without this drag
+        is considered as well
+    tangles : pieces that are upside down at touchdown, wholly or in part, because the line above
+        has overtaken them
     """
 
     fall_speed: float
@@ -66,7 +67,7 @@ class Launch:
     tangles: tuple[int, ...]
 
     def components(self) -> list[dict[str, Any]]:
-        """Values of the pieces above the anchor, by JSON name."""
+        """Tensions of the pieces above the anchor, with their names in JSON."""
         pairs = zip(self.tension_top.tolist(), self.tension_bottom.tolist(), strict=True)
         return [
             {"index": index, "tension_top": top, "tension_bottom": bottom}
@@ -75,7 +76,13 @@ class Launch:
 
 
 def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
-    """Compute the launch of a mooring, anchor last. Raises NoEquilibrium, see `fall`."""
+    """Compute the fall of a mooring that is deployed anchor last.
+
+    Raises
+    ------
+    NoEquilibrium
+        As in `fall`.
+    """
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))
     drop = leg.memory.of(_let_go, line, water, anchor, ship, fineness)
@@ -125,7 +132,7 @@ def falling_line(leg: Leg) -> Line:
 
 
 def falling_anchor(leg: Leg) -> FallingAnchor:
-    """Return the falling anchor of a mooring."""
+    """Return weight and drag of the anchor of a mooring, for its fall."""
     return FallingAnchor(leg.anchor_weight, leg.anchor_drag)
 
 
@@ -136,18 +143,18 @@ def course_into_current(water: Water) -> float:
 
 
 def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None) -> Ship:
-    """Return the ship, with its velocity, that tows the line of a mooring.
+    """Return the velocity of the ship that tows the line of a mooring.
 
     Parameters
     ----------
     speed, course : speed and course over the ground [m/s], [degrees]
-    streamed : horizontal distance from the anchor to the free end [m]; by default the distance
-        under tow
+    streamed : horizontal distance from the anchor to the free end at the release [m]; by default
+        the distance that results under tow
 
     Raises
     ------
     UsageError
-        The ship does not move through the water, or the line is shorter than the distance.
+        The ship does not move through the water, or the line is shorter than `streamed`.
     """
     east, north = speed * sin(radians(course)), speed * cos(radians(course))
     u, v, _ = leg.water.current_at(np.zeros(()))
@@ -167,9 +174,7 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
 
 
 def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -> Motion:
-    """Recompute the last step of a fall after the tangential drag of the line, and the drag of the
-    anchor, are multiplied by factors.
-    """
+    """Repeat the last time step with factors on the tangential drag and on the anchor drag."""
     landed, falling = drop.states[-1], drop.mover
     # the step ends at the touchdown and may be very short
     least = 0.5 * falling.sea.water.depth / fineness.steps
@@ -185,6 +190,5 @@ def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -
 
 
 def _tangles(drop: Motion) -> tuple[int, ...]:
-    """Return the pieces with a bar that is upside down at touchdown."""
     chain = drop.mover.chain
     return looped(chain.line, chain.piece, np.diff(drop.states[-1].node[:, 2]))

@@ -23,8 +23,8 @@ class WaterColumn:
     Attributes
     ----------
     water : the sea
-    skin : thickness of the layer below the surface in which a float with an unknown hull loses its
-        buoyancy [m]
+    skin : depth below the surface over which a float with unknown hull loses its buoyancy as it
+        emerges [m]
     """
 
     water: Water
@@ -32,9 +32,7 @@ class WaterColumn:
 
     @cached_property
     def _rows(self) -> tuple[Floats, Floats]:
-        """Rows with u, v, w and density at every level, and their increase per metre below this
-        level.
-        """
+        """u, v, w and density (4, levels) at every level, and their increase per metre below it."""
         water = self.water
         values = np.stack([water.u, water.v, water.w, water.density])
         slopes = np.zeros((4, values.shape[1] + 1))
@@ -42,9 +40,7 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return current (3, k), its increase per metre of depth (3, k), and density (k,) at given
-        depths.
-        """
+        """Return current and its increase per metre of depth (3, k), and density, at k depths."""
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
@@ -61,8 +57,8 @@ class Loads:
     Attributes
     ----------
     force : (3, k) force [N]
-    by_flow : (3, 3, k) derivative by the velocity of the water past the load [N/(m/s)]
-    by_axis : (3, 3, k) derivative by the unit axis of the bar, normal to this axis [N]
+    by_flow : (3, 3, k) derivative of the force by the velocity of the water past the load [N/(m/s)]
+    by_axis : (3, 3, k) derivative by changes of the unit axis of the bar normal to itself [N]
     by_height : (3, k) derivative by height, including the change of the current [N/m]
     """
 
@@ -82,15 +78,16 @@ def loads_on(
     variation: Floats,
     slowest: float = SLOWEST,
 ) -> Loads:
-    """Compute the forces on the loads of a chain.
+    """Compute the forces on the k loads of a chain, and their derivatives.
 
     Parameters
     ----------
     height : (k,) height of the loads above the surface [m]
-    velocity : (3, k) velocity over the ground [m/s]
+    velocity : (3, k) velocity of the loads over the ground [m/s]
     axis : (3, k) unit axis of their bars, downward along the line
     strain : (k,) strain of their bars
-    variation : (k,) ratio of a smooth body's drag to its constant drag
+    variation : (k,) ratio of the drag of a smooth body at its Reynolds number to its constant drag;
+        1 for other loads
     slowest : speed below which drag is linear in the speed [m/s]
     """
     on = chain.elements
@@ -139,11 +136,13 @@ _DIAGONAL = np.arange(3), np.arange(3)
 def _friction(
     chain: BarChain, kt: Floats, along: Floats, speed: Floats, slowest: float
 ) -> tuple[Floats, Floats, Floats | None, Floats | None]:
-    """Return the tangential drag, its derivative with respect to the tangential flow and,
-    multiplied by the flow, its derivative with respect to the speed.
+    """Compute the tangential drag of the loads, and its derivatives.
 
-    The last result, for Hoerner's law only, is the drag parallel to the flow, divided by the flow.
-    None means zero.
+    Returns
+    -------
+    The drag along the axis, its derivative by the tangential flow, its derivative by the speed,
+    multiplied by the speed, and for Hoerner's law the drag parallel to the flow divided by the
+    flow. None means zero.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)
@@ -164,11 +163,15 @@ def _friction(
 def _afloat(
     chain: BarChain, sea: WaterColumn, height: Floats, density: Floats
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """Return net force, its derivative with respect to height, immersed fraction and its
-    derivative, and wind force.
+    """Compute the effect of the surface on the loads.
 
-    Buoyant loads lose their buoyancy over the surface layer as their top emerges; a load of known
-    mass then weighs on the line. A float with a known hull loses buoyancy and drag by its draft.
+    Buoyant loads lose their buoyancy within the surface layer as their top emerges. A load of known
+    mass then weighs on the line. A float with a known hull loses buoyancy and drag with its draft.
+
+    Returns
+    -------
+    Net force and its derivative by height, immersed share of the drag and its derivative by height,
+    and wind force.
     """
     on, gravity = chain.elements, sea.water.gravity
     net = on.buoyancy + (density - REFERENCE_DENSITY) * gravity * on.volume

@@ -1,9 +1,9 @@
 """One time step of a chain without inertia: positions of its nodes at the end of the step.
 
 The forces on every node cancel at the end of the step, with drag for the velocity V = (X - Xₙ)/Δt
-over the step (implicit Euler), and the length of every bar follows from its tension. Nodes and
-tensions are unknown together, so that bars may be stiff or inextensible. The equations are solved
-by Newton's method; a node and the bar below it are one block of a block-tridiagonal matrix.
+over the step (implicit Euler), and the length of every bar follows from its tension. Positions and
+tensions are solved for together, so bars may be stiff or inextensible. The equations are solved by
+Newton's method; a node and the bar below it are one block of a block-tridiagonal matrix.
 """
 
 from dataclasses import dataclass
@@ -38,13 +38,11 @@ _UNIT = np.eye(3)
 
 
 class NoStep(ArithmeticError):
-    """Newton's method finds no solution for a time step, although it may find one for a shorter
-    step.
-    """
+    """Newton's method has no solution for this time step; it may have one for a shorter step."""
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
-    """Return whether a bar has rotated by more than 120°, so that it may be under compression."""
+    """True if any bar has rotated by more than 120°, so that it may be under compression."""
     chords = before[1:] - before[:-1], after[1:] - after[:-1]
     along = np.einsum("ij,ij->i", *chords)
     if along.min() >= 0.0:  # almost always
@@ -55,12 +53,12 @@ def _overturned(before: Floats, after: Floats) -> bool:
 
 @dataclass(frozen=True)
 class FallingAnchor:
-    """An anchor below a falling line.
+    """Properties of an anchor that falls at the end of a line.
 
     Attributes
     ----------
     weight : weight in water at the seabed [N]
-    drag : K of its drag K|V|V in reference water [N/(m/s)²]; 0 if unknown
+    drag : K of the drag K|V|V in reference water [N/(m/s)²]; 0 if unknown
     """
 
     weight: float
@@ -87,13 +85,13 @@ class ChainState:
 
 @dataclass(frozen=True)
 class Mover:
-    """Time-stepping solver for a chain in the sea.
+    """Time-stepping solver for the motion of a chain in the sea.
 
     Attributes
     ----------
-    held : whether its lower end is fixed; otherwise it falls with the anchor
+    held : whether the lower end is fixed; otherwise it falls with the anchor
     bedded : whether the seabed supports the line
-    tether : (2,) horizontal position of its free end [m]; None if it is free
+    tether : (2,) horizontal position at which the free end is held [m]; None if it can move
     """
 
     chain: BarChain
@@ -106,9 +104,13 @@ class Mover:
     def stepped(self, state: ChainState, step: float, gently: bool = False) -> ChainState:
         """Return the state at the end of a time step [s].
 
-        For a line at rest, the first iterations use a drag that is linear in the speed, as a start
-        for the quadratic drag. `gently` does the same for a moving line. Raises NoStep if Newton's
-        method does not converge.
+        For a line at rest, the first iterations use a drag that is linear in the speed, which helps
+        the quadratic drag to converge. `gently` does the same for a moving line.
+
+        Raises
+        ------
+        NoStep
+            Newton's method does not converge.
         """
         variation = self.variation(state)
         gently = gently or not state.velocity.any()
@@ -152,7 +154,7 @@ class Mover:
         variation: Floats,
         slowest: float = SLOWEST,
     ) -> tuple[Loads, Floats, Floats]:
-        """Return the forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
+        """Compute the forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
 
         Inputs are positions and velocities of the nodes (3, n+1), and strains of the bars (n,).
         """
@@ -170,8 +172,9 @@ class Mover:
         return loads, axis, length
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
-        """Return the strain (n,) of the bars and its derivative [1/N]; a compressed rope has the
-        strain of zero tension.
+        """Return the strain (n,) of the bars and its derivative [1/N].
+
+        A rope under compression has the strain of zero tension.
         """
         strain, growth = self.chain.compliance * tension, self.chain.compliance.copy()
         for bars, knots in self.chain.elongation:
@@ -185,9 +188,7 @@ class Mover:
     def anchor_force(
         self, node: Floats, velocity: Floats, slowest: float = SLOWEST
     ) -> tuple[Floats, Floats]:
-        """Return weight and drag of the falling anchor (3,) [N], and the derivative with respect to
-        its velocity (3, 3).
-        """
+        """Return weight plus drag of the falling anchor [N], and its derivative by velocity."""
         current, _, density = self.sea.at(-node[2, -1:])
         flow = current[:, 0] - velocity[:, -1]
         k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
@@ -196,8 +197,10 @@ class Mover:
         return force, -k * (speed * _UNIT + flow[:, np.newaxis] * flow / speed)
 
     def variation(self, state: ChainState) -> Floats:
-        """Return the ratio (k,) of a smooth body's drag to its drag with constant coefficients, for
-        the motion of the last step.
+        """Return the ratio (k,) of the drag of smooth bodies to their constant drag.
+
+        The drag depends on the Reynolds number, which is taken from the motion of the last step.
+        The ratio is 1 for other loads.
         """
         on = self.chain.elements
         variation = np.ones(len(on.bar))
@@ -226,9 +229,7 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last tension is a
-        dummy.
-        """
+        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last is unused."""
         chain, on = self.chain, self.chain.elements
         node = np.ascontiguousarray(node.T)
         velocity = (node - before.T) / step
@@ -271,9 +272,7 @@ class Mover:
 
     @cached_property
     def _bearing(self) -> Floats:
-        """Return the reaction (n,) of the seabed on a node that has penetrated by `BEARING_DEPTH`
-        [N].
-        """
+        """Reaction (n,) of the seabed on each node that has penetrated by `BEARING_DEPTH` [N]."""
         on = self.chain.elements
         weight = on.summed(np.abs(on.buoyancy))
         weight[1:] += weight[:-1]
@@ -282,7 +281,7 @@ class Mover:
 
     @cached_property
     def _fixed(self) -> tuple[int, ...]:
-        """Indices of unknowns that are fixed, at the held ends of the chain."""
+        """Indices of the unknowns that are fixed because an end of the chain is held."""
         last = 4 * len(self.chain.length)
         upper = () if self.tether is None else (0, 1)
         return (*upper, last, last + 1, last + 2) if self.held else upper
@@ -296,17 +295,19 @@ def _solved(
     slack: Floats,
     fixed: tuple[int, ...],
 ) -> Floats:
-    """Solve for the correction (n+1, 4) of nodes and tensions, with 0 for the last tension.
+    """Solve the linear system for the correction (n+1, 4) of nodes and tensions.
+
+    The last tension is 0.
 
     Parameters
     ----------
     residual : (4, n+1) residual forces on the nodes and residual lengths of the bars
     diagonal : (3, 3, n+1) derivative of the force on a node by its own position
-    beside : (3, 3, n) each; derivative of the force on a node by the position of the node below,
-        and by that of the node above
+    beside : two arrays (3, 3, n): derivative of the force on a node by the position of the node
+        below, and by the position of the node above
     axis : (3, n) axes of the bars, downward
     slack : (n,) derivative of a bar's length by its tension, negative
-    fixed : rows of the known unknowns
+    fixed : indices of the unknowns that are fixed
     """
     nodes, along = residual.shape[1], axis.T
     own, upper = np.zeros((nodes, 4, 4)), np.zeros((nodes - 1, 4, 4))

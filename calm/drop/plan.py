@@ -36,7 +36,7 @@ class RunStart:
 
     Attributes
     ----------
-    distance : distance to the target, along the ship's course; negative past the target [m]
+    distance : distance to the target along the ship's course [m]; negative if past the target
     time : time until the release of the anchor [s]
     place : position east and north of the target [m]
     """
@@ -51,8 +51,8 @@ class DropPlan:
     """Plan of an anchor drop, anchor last, with the line streamed behind the ship.
 
     Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
-    clockwise from north. Distances are positive towards the float, which is the direction in which
-    the line streams.
+    clockwise from north. Horizontal distances are positive towards the float, the direction in
+    which the line streams behind the anchor.
 
     Attributes
     ----------
@@ -61,24 +61,25 @@ class DropPlan:
     astern : direction from the anchor to the free end at the release
     fall_time : time until the touchdown of the anchor
     fall_back : horizontal distance from the release to the touchdown, towards the float
-    aside : distance of the touchdown to the right of this direction, seen from the release
-    time_error, distance_error : errors of `fall_time`, and of `fall_back` and `aside`: twice the
-        sum of the changes for steps of twice the length and bars of twice the length; for the time
-        at least 0.05 % least
-    fall_time_band, fall_back_band : range for half and twice the anchor's drag, the smaller value
+    aside : distance of the touchdown to the right of the line from the release towards the float
+    time_error, distance_error : numerical errors of `fall_time`, and of `fall_back` and `aside`:
+        twice the sum of the changes for time steps and for bars of twice the length; `time_error`
+        is at least 0.05 % of `fall_time`
+    fall_time_band, fall_back_band : range for half and twice the drag of the anchor, smaller value
         first
     touchdown_speed : speed of the anchor at touchdown
     greatest_tension : maximum tension in the line, from release to touchdown
     tow_past : distance past the target, along the course, at which the anchor is released
-    let_go : release position of the anchor, east and north of the target
+    let_go : position of the release of the anchor, east and north of the target
     deck_time : time to handle a piece, by its role [s]; None if not specified
     start : start of the run, with the float deployed first; None without a deck time
-    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False if it is that of a cube,
-        since the file has no value
-    path, moments, depths, pulls : time series; shapes; depths of floats and of parts that hold an
-        instrument, empty if the line settles away from its equilibrium; tensions of pieces
-    rest_difference : largest distance of a piece at rest from its equilibrium position; None
-        if the line is slack in still water and has no unique equilibrium
+    anchor_drag : K of the drag of the anchor [N/(m/s)²]
+    drag_known : False if the file has no value, so that the drag of a cube is assumed
+    path, moments, pulls : time series, shapes of the line, and maximum tensions of the pieces
+    depths : largest depths of floats and of parts that hold an instrument; empty if the line
+        settles away from its equilibrium
+    rest_difference : largest distance between a piece at rest and its equilibrium position; None if
+        the line is slack in still water and has no unique equilibrium
     """
 
     mooring: Design = field(repr=False)
@@ -108,10 +109,10 @@ class DropPlan:
     rest_difference: float | None
 
     def position(self, place: tuple[float, float]) -> Position | None:
-        """Return the geographic position of a point east and north of the target [m]; None if the
-        position of the target is unknown.
+        """Return the geographic position of a point given in m east and north of the target.
 
-        Uses the tangent plane of the WGS 84 ellipsoid, accurate within 1 m up to 10 km away.
+        Return None if the position of the target is unknown. The conversion uses the tangent plane
+        of the WGS 84 ellipsoid and is accurate within 1 m up to 10 km from the target.
         """
         target = self.mooring.file.position
         if target is None:
@@ -215,29 +216,29 @@ def drop_plan(
     fineness: Fineness = FINE,
     deck_time: Mapping[str, float] | None = None,
 ) -> DropPlan:
-    """Plan the anchor drop of a mooring from a ship that streams the line, anchor last.
+    """Plan the drop of a mooring that is deployed anchor last, behind the ship.
 
     Parameters
     ----------
     ship_speed : speed of the ship over the ground [m/s]; `ship_speed`, `streamed` and `course` may
         be texts with a unit, such as ``"2 knot"``
     streamed : horizontal distance from the anchor to the free end at the release [m]; by default
-        the distance under tow
+        the distance that results under tow
     course : course of the ship over the ground [degrees]; by default against the current at the
         surface, or north in still water
     result : result of the mooring in the same environment, if already solved
     fineness : resolution of the chain and its steps
-    deck_time : time to handle a piece before it goes over the side, by its role [s]; without it the
-        start of the run is not computed, since handling takes most of the time
+    deck_time : time to handle a piece on deck, by its role [s]; without it, the start of the run is
+        not computed, because handling takes most of the time
 
     Raises
     ------
     UsageError
-        The ship does not move through the water, the line is shorter than the distance, or the file
-        has a tow, or several legs.
+        The ship does not move through the water, the line is shorter than `streamed`, or the file
+        contains a tow or several legs.
     NoEquilibrium
         As `Design.solve`; ``anchor-lifts`` if the anchor does not pull the line down,
-        ``not-converged`` if no step is found.
+        ``not-converged`` if a time step has no solution.
     """
     leg = mooring.moored
     ship_speed = in_si("ship_speed", ship_speed, "speed")
@@ -255,9 +256,6 @@ def drop_plan(
         return fall(falling, water, replace(anchor, drag=drag), start, fineness)
 
     def dropped(fine: Fineness) -> tuple[ChainState, Motion, Motion, float | None]:
-        """Compute the line under tow, its fall, its state at rest, and the distance of this state
-        from equilibrium.
-        """
         start = towed(falling, water, anchor, ship, fine)
         drop = let_go(start, anchor.drag, fine)
         rest = settle(leg.line, water, anchor, drop.states[-1], fine)
@@ -328,15 +326,13 @@ def drop_plan(
 
 
 def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] | None:
-    """Return the handling time of a piece if it is the same for all roles, else the times by
-    role.
-    """
+    """Return the handling time as one number if it is the same for all roles, else by role."""
     once = set((times or {}).values())
     return once.pop() if len(once) == 1 else None if times is None else dict(times)
 
 
 def _equilibrium(mooring: Design) -> Result | None:
-    """Solve the mooring, or return None if it is slack in still water and has no unique shape."""
+    """Solve the mooring; return None if it is slack in still water and has no unique shape."""
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
@@ -346,9 +342,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the position of the anchor: distance towards the float, and distance to the right of
-    this direction [m].
-    """
+    """Return the distances of the anchor towards the float and to the right of it [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 

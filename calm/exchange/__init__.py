@@ -1,1 +1,1 @@
-"""Designs of other programs, read into mooring files, and written from mooring files."""
+"""Import of designs of other programs to mooring files, and export of mooring files to them."""

@@ -19,9 +19,10 @@ _LEAST = 100.0  # smallest guessed weight in N
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
     """Set the weight of each anchor that has no weight in the file, or that the line would lift.
 
-    The shape of the line does not depend on this weight, which is the weight required by `calm
-    check` in this current. A line without an equilibrium is left unchanged; `calm run` reports it.
-    The mooring file will be written to `output`.
+    The new weight is the weight that `calm check` requires in this current; the shape of the line
+    does not depend on it. If the line has no equilibrium, weights in the file are unchanged, a
+    missing weight is set to a value that holds any line, and `calm run` reports the problem. The
+    mooring file will be written to `output`.
     """
     last = design.items if design.legs else design.items[-1:]
     anchors = [item.component for item in last if item.component.kind == "anchor"]
@@ -49,7 +50,10 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
 def _pulls(
     design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
-    """Return each anchor with its vertical line load and its required weight [N]."""
+    """Return each anchor with its vertical line load and its required weight [N].
+
+    The load is None if there is no equilibrium.
+    """
     before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
         anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}

@@ -1,4 +1,4 @@
-"""Use catalogue entries for imported components with matching names and values."""
+"""Replacement of imported components by catalogue entries with matching names and values."""
 
 import re
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _GRADE = re.compile(r"\b(?:g|gr|grade)[ -]?(\d{1,3})\b", re.I)
 
 @dataclass(frozen=True)
 class CatalogueMatch:
-    """An imported component, by name, and the catalogue entry used in its place."""
+    """Name of an imported component, and the catalogue entry that replaces it."""
 
     name: str
     entry: str
@@ -69,8 +69,9 @@ def _model(component: model.ImportedComponent) -> Component | None:
 
 
 def _likeness(name: str, id: str, other: str) -> float:
-    """Similarity of two names: inf if they are equal, else the share of common words, 0 if they do
-    not match.
+    """Return the similarity of two names.
+
+    It is inf if they are equal, 0 if they do not match, and otherwise the share of common words.
     """
     if name.casefold() in (id, other.casefold()):
         return inf
@@ -86,8 +87,9 @@ def _likeness(name: str, id: str, other: str) -> float:
 
 
 def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
-    """Return whether two components have equal values; for `sizeless` components only net buoyancy
-    is compared.
+    """True if two components have equal values, as far as both have values.
+
+    For `sizeless` components, only the net buoyancy is compared.
     """
     pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
     if sizeless:

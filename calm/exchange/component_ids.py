@@ -18,10 +18,9 @@ def _kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """Choose a mooring-file id for each component object (key: Python's `id()`); components with
-    equal values share a mooring-file id.
+    """Choose a mooring-file id for each component, by the identity of the object (Python's `id()`).
 
-    Ids in `taken` are not used.
+    Components with equal values share an id. Ids in `taken` are not used.
     """
     components = list(components)
     ids: dict[int, str] = {}

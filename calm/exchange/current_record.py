@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 
 @dataclass(eq=False)
 class CurrentRecord:
-    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, and the `depth` of the
-    levels [m].
+    """Currents `u`, `v`, `w` [m/s] by time and level.
 
-    `days` are counted from the date `epoch`.
+    `depth` has the depths of the levels [m]. `days` are counted from the date `epoch`.
     """
 
     days: NDArray[np.float64]

@@ -26,7 +26,7 @@ _FORCES = {"buoyancy", "weight"}
 
 @dataclass
 class _Page:
-    """The lines written so far, and the guesses noted in their comments."""
+    """The lines of the mooring file so far, and the guesses that their comments mention."""
 
     lines: list[str] = field(default_factory=list)
     guessed: list[model.Remark] = field(default_factory=list)
@@ -45,7 +45,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Write the mooring file of a design; return its text and the guesses in it."""
+    """Write a design as a mooring file; return its text and the guesses in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
     for note in design.notes:
@@ -101,12 +101,12 @@ def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[m
 
 
 def _number(value: float) -> str:
-    """Format a number with at most nine digits."""
+    """Format a number with at most nine significant digits."""
     return f"{value:.9g}"
 
 
 def quoted(text: str) -> str:
-    """Format a text as a single line of YAML, without quotes if possible."""
+    """Format a text as a YAML scalar on a single line, without quotes if possible."""
     return written(one_line(text), flow=True)
 
 
@@ -145,7 +145,7 @@ def _keyed(page: _Page, key: str, value: str, water: model.ImportedWater) -> Non
 
 
 def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
-    """Combine consecutive equal items to one item with a count."""
+    """Combine consecutive equal items to a single item with a count."""
 
     def what(item: model.ImportedPiece) -> object:
         if item.clamps or item.guess or _called(item):

@@ -1,4 +1,4 @@
-"""Parts of a mooring or a tow for other programs, with their net buoyancy and drag."""
+"""Parts of a mooring or a tow with net buoyancy and drag, for export to other programs."""
 
 from __future__ import annotations
 
@@ -43,11 +43,12 @@ class ExportedPart:
     flexible : whether it is a cable or chain, whose values are per metre
     length : unstretched length [m]
     buoyancy : net buoyancy in reference water, positive up [N or N/m]
-    net, density : net buoyancy, and density of the water [kg/m³], at its depth in the upright line
+    net, density : net buoyancy [N or N/m] and density of the water [kg/m³] at the depth of the part
+        in the upright line
     kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre if flexible]
-    directional : whether its drag depends on its axis
+    directional : whether the drag depends on the direction of the flow relative to the axis
     stiffness : EA [N]; 0 if inextensible
-    clamps : clamps, with their distance from its upper end [m]
+    clamps : clamps on the part, with their distances from its upper end [m]
     """
 
     use: str
@@ -92,12 +93,13 @@ class ExportedPart:
         return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
 
     def area(self, density: float | None = None, *, along: bool = False) -> float:
-        """Drag coefficient times area [m²], per metre for a cable.
+        """Return drag coefficient times area [m²], per metre for a cable.
 
         Parameters
         ----------
-        density : density of a program with uniform density [kg/m³]: the area with the same drag in
-            this program as the part in its own water
+        density : uniform density of the water in the other program [kg/m³]; the area then gives the
+            same drag there as that of the part in its own water. By default, the area refers to
+            reference water
         along : whether to return the tangential drag area instead of the normal one
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
@@ -106,11 +108,11 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Net force, mass and drag areas summed over the parts at one point or on one stiff length.
+    """Sum of net force, mass and drag areas of the parts at one point or on one stiff length.
 
     Attributes
     ----------
-    density : uniform density of the water [kg/m³]
+    density : uniform density of the water in the other program [kg/m³]
     names : names of the parts
     net, mass : net force [N] and mass [kg]
     area, along : normal and tangential drag areas [m²]
@@ -124,7 +126,6 @@ class PartLoad:
     along: float = 0.0
 
     def merge(self, other: PartLoad) -> None:
-        """Add another sum."""
         self.names += other.names
         self.net += other.net
         self.mass += other.mass
@@ -137,7 +138,7 @@ class PartLoad:
         self.merge(PartLoad(self.density, [part.use], part.net, part.likely_mass, *areas))
 
     def add_whole(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part with its clamps; the part's own drag is multiplied by `share`."""
+        """Add a part and its clamps; the drag of the part itself is multiplied by `share`."""
         self.add(part, share)
         for clamp, _ in part.clamps:
             self.add(clamp)
@@ -149,12 +150,13 @@ class PartLoad:
 
 
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
-    """Register values under a name; if the name has other values already, append a number. Return
-    the name.
+    """Register values under a name, and return this name.
+
+    A number is appended to the preferred name if it already has other values.
 
     Parameters
     ----------
-    known : values by name, to which these are added
+    known : values by name, to which the values are added
     name : preferred name
     figures : values in the format of the file
     """
@@ -166,8 +168,9 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 
 
 def place_along(path: Floats, share: float) -> Coordinates:
-    """Interpolate the position at a fraction (`share`) of the length of a part; `path` holds the
-    nodes of the part (n, 3).
+    """Interpolate the position at the fraction `share` of the length of a part.
+
+    `path` are the positions (n, 3) of the nodes of the part.
     """
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -177,7 +180,7 @@ def place_along(path: Floats, share: float) -> Coordinates:
 
 @dataclass(frozen=True)
 class ExportedTow:
-    """Speed of the ship east and north [m/s], and height of the sheave [m]."""
+    """Velocity of the ship to the east and north [m/s], and height of the sheave [m]."""
 
     east: float
     north: float
@@ -186,24 +189,25 @@ class ExportedTow:
 
 @dataclass(frozen=True)
 class ExportedLine:
-    """Parts of a line from its first piece to its last, without the anchor.
+    """A mooring line, a tow, or a leg of a net, for export.
 
     Attributes
     ----------
     name : name of the file
-    parts : parts of a mooring from the top, or of a tow from the ship
+    parts : parts of a mooring from the top down without the anchor, or of a tow from the ship
     anchor : the anchor, and its weight including clamps [N]; None for a tow
-    depth, levels : water depth [m], and levels, the first at the surface
+    depth, levels : water depth [m], and current and density by level, from the surface down
     gravity : acceleration of gravity [m/s²]
     wind : wind velocity to the east and to the north [m/s]
-    tow : None for a mooring
-    afloat, has_draft : whether the line reaches the surface, and whether its float has a draft
-    riding : shares in use of the buoyancy of the float, and of its drag; 1, 1
-        below the surface
+    tow : the ship of a tow; None for a mooring
+    afloat, has_draft : whether the line reaches the surface, and whether the hull of its float is
+        known
+    riding : used share of the net buoyancy of the float, and its drag as a share of the drag when
+        immersed; both are 1 below the surface
     windage : wind area of the float [m²], and its drag coefficient
-    omitted : features that other programs cannot represent
+    omitted : features that no other program can represent
     solve : function that finds the equilibrium
-    ends : supports of the upper and the lower end of a leg of a net; None for a single line
+    ends : connections of the upper and the lower end of a leg of a net; None for a single line
     """
 
     name: str
@@ -228,15 +232,16 @@ class ExportedLine:
         return sum(row[4] for row in self.levels) / len(self.levels)
 
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
-        """Features that the other program cannot represent, without repetitions, with `more`
-        first.
+        """Return the features that the other program cannot represent.
+
+        They are those in `more`, followed by `omitted`, without repetitions.
         """
         return tuple(dict.fromkeys((*more, *self.omitted)))
 
     def paths(self) -> list[Floats]:
-        """Position of each part in equilibrium, from the top down, as `Coordinates` of nodes.
+        """Return the positions (n, 3) of the nodes of each part in equilibrium, from the top down.
 
-        Raises NoEquilibrium if there is none.
+        Positions are east, north and depth [m]. Raises NoEquilibrium if there is no equilibrium.
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
@@ -255,11 +260,11 @@ class ExportedLine:
         return paths
 
     def float_as_point(self, density: float) -> tuple[float, float]:
-        """Net force [N] and drag area [m²] of a float below the surface, represented as a point.
+        """Return net force [N] and drag area [m²] of a point that represents a submerged float.
 
-        In some programs a float is a point at the end of the line, and its drag is computed there,
-        without an axis, in water of uniform `density` [kg/m³]. Force and area give the same load on
-        the line as in CALM; without an equilibrium, the float's own values are returned.
+        Some programs treat a float as a point without an axis at the end of the line, in the flow
+        there and in water of uniform `density` [kg/m³]. The result gives the same load on the line
+        as in CALM. If there is no equilibrium, the values of the float itself are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)
@@ -282,7 +287,7 @@ class ExportedLine:
 
 @dataclass(frozen=True)
 class ExportedDesign:
-    """A design for another program: its name, and either a single line or the legs of a net."""
+    """A design for export: its name, and a single line or the legs of a net."""
 
     name: str
     legs: tuple[ExportedLine, ...]

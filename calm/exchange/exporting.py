@@ -29,12 +29,12 @@ _DIGITS = 9  # digits of a speed in m/s
 def export_file(
     path: Path, to: str, *, environment: str | None = None, catalogs: Sequence[Path] = ()
 ) -> Exported:
-    """Write a mooring or a tow for another program.
+    """Convert a mooring or a tow to the file of another program.
 
     Parameters
     ----------
     to : name of a registered format that can be written
-    environment : a name in the file, or an environment file
+    environment : name of an environment in the file, or path of an environment file
     catalogs : see `calm.load`
 
     Raises
@@ -63,7 +63,7 @@ def export_file(
 
 
 def written_format(to: str) -> FileFormat:
-    """Return a format that is written, by name; UsageError: there is none of that name."""
+    """Return the format with a name; UsageError is raised if CALM cannot write such a format."""
     try:
         chosen = file_format(to)
     except KeyError:
@@ -83,7 +83,7 @@ Solve = Callable[[], LegResult]
 
 
 def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
-    """Return the parts of a mooring or a tow, of which `solve` finds the equilibrium."""
+    """Convert a mooring or a tow for export; `solve` finds its equilibrium."""
     file, water, line = leg.file, leg.water, leg.line
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs know only water")
@@ -176,8 +176,9 @@ def _at_the_surface(
 
 
 def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
-    """Return the stiffness [N] of the pieces with an elongation table, by index: the secant of the
-    table at the tension in equilibrium.
+    """Return the stiffness EA [N] of pieces with an elongation table, by index.
+
+    It is the secant stiffness of the table at the tension in equilibrium.
     """
     curves = leg.line.elongation
     if not any(curves):

@@ -1,8 +1,7 @@
 """Run readers of foreign binary files in a separate process.
 
 The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
-may end the process, panic, or request all memory. Here only the child process ends, which is
-reported as an error.
+may crash or request all memory. This then ends only the child process, and is reported as an error.
 """
 
 import os
@@ -30,7 +29,10 @@ def read_apart(
 
     The reader must be a function of a module, so that the child process can import it.
 
-    ValueError: the reader failed, crashed, or took too much time or memory.
+    Raises
+    ------
+    ValueError
+        The reader failed, crashed, or took too much time or memory.
     """
     from multiprocessing import Pipe, Process
 

@@ -1,7 +1,7 @@
 """Import files of other programs: find the format, read the file, and write a mooring file.
 
-The design is completed with an anchor that holds, entries of the catalogue and an environment. The
-mooring file is read back as a check.
+CALM replaces components by entries of the catalogue where possible, and adds an environment and an
+anchor that is heavy enough. The mooring file is read back as a check.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Imported:
     file : the file that was read
     format : name of its format
     text : text of the mooring file
-    guessed, dropped : remarks about what was guessed, and about what was left out
+    guessed, dropped : remarks about guessed values, and about omitted features
     matched : components that were replaced by entries of the catalogue
     record : currents at several times; None if the file has none
     understood : how the file was interpreted; empty if its format leaves no choice
@@ -63,20 +63,20 @@ def import_file(
     options: model.ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
-    """Read a file of another program.
+    """Convert a file of another program to a mooring file.
 
     Parameters
     ----------
     output : path of the mooring file that will be written; this function does not write it
-    format : name of the format, as in `registry.register_format`; by default it is found from the
-        content
+    format : name of the format, as in `registry.register_format`; by default it is recognised from
+        the content
     environment : an environment file that replaces the environment of the file
     match_catalogue : whether components are replaced by catalogue entries that agree with them
 
     Raises
     ------
     InputError
-        The file is damaged, or holds something that CALM cannot represent; the message names it.
+        The file is damaged, or has a feature that CALM cannot represent; the message names it.
     UsageError
         There is no such format.
     """
@@ -113,9 +113,9 @@ def import_file(
 
 
 def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFormat:
-    """Find the format of a file, as named by the user or from the content of the file.
+    """Find the format of a file by a given name, or from the content of the file.
 
-    With `listed`, a file of no other format is read as a list, even one with a single column.
+    If `listed`, a file that no format recognises is read as a list.
     """
     if name is not None:
         return _format_named(name)
@@ -144,8 +144,9 @@ def _readable() -> list[FileFormat]:
 
 
 def _check(path: Path, output: Path, text: str) -> None:
-    """Check that `calm run` can read the new mooring file; mistakes are reported for the source
-    file.
+    """Check that `calm run` can read the new mooring file.
+
+    Mistakes are reported for the source file `path`.
     """
     try:
         read_mooring(output, text=text)
@@ -162,10 +163,14 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:
-    """Return the lines of the `environment` key of a file, with paths relative to the folder of the
-    mooring file.
+    """Return the `environment` key of a file as lines for the mooring file `output`.
 
-    InputError: the file cannot be read, or has no `environment`.
+    Paths are converted to paths relative to the folder of `output`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or has no `environment`.
     """
     found = read_document(path).data.get("environment")
     if not isinstance(found, dict) or not found:

@@ -63,11 +63,11 @@ class ListedInstrument:
     Attributes
     ----------
     where : position in the list, for messages
-    name, serial : empty if missing in the list
+    name, serial : name and serial number; empty if missing in the list
     nominal : nominal depth [m]; NaN if unknown
-    clock : lag of its clock [s]; None if unknown
+    clock : lag of the clock [s]; None if unknown
     checked : time at which this lag was measured; None if unknown
-    remark : other error of its clock, in words
+    remark : other error of the clock, in words
     """
 
     where: str
@@ -80,12 +80,12 @@ class ListedInstrument:
 
 
 def in_words(late: float) -> str:
-    """Describe the error of a clock [s]."""
+    """Describe the lag of a clock [s] in words."""
     return f"{abs(late):g} s {'late' if late >= 0.0 else 'early'}"
 
 
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
-    """Read an instrument list in its order.
+    """Read the instruments of a list, in the order of the list.
 
     Parameters
     ----------
@@ -130,10 +130,12 @@ def _listed(
     seabed: float,
     factors: Mapping[str, float] = MappingProxyType({}),
 ) -> tuple[ListedInstrument, dict[str, str]]:
-    """Return an instrument from its texts by the kinds of `_COLUMNS`, and mistakes by kind.
+    """Build an instrument from the texts of its row.
 
-    Its clock was late by `clock`, or by the difference of the times that both clocks showed. If the
-    time of this comparison is unknown, it is the time of recovery. Numbers times `factors` are SI.
+    `texts` are the texts by their kind in `_COLUMNS`, and `factors` convert their numbers to SI.
+    The lag of the clock is the value of `clock`, or the difference of the times that both clocks
+    showed. If the time of this comparison is unknown, the time of recovery is used. Also return
+    mistakes by kind.
     """
     figures, times, wrong = dict[str, float](), dict[str, np.datetime64](), dict[str, str]()
     compared = not all(is_gap(texts.get(kind, "")) for kind in ("clock", "true"))
@@ -173,7 +175,7 @@ def _of_oceanarray(path: Path, seabed: float) -> Iterator[ListedInstrument]:
 
 
 def _of_workbook(path: Path) -> list[NumberedLine]:
-    """Return the first sheet of a workbook as lines of CSV."""
+    """Convert the first sheet of a workbook to lines of CSV."""
     rows: SheetRows = next(iter(read_sheets(path).rows.values()), [[]])
     text, width = io.StringIO(), len(rows[0])
     csv.writer(text).writerows([*row, *[""] * width][:width] for row in rows)
@@ -181,9 +183,10 @@ def _of_workbook(path: Path) -> list[NumberedLine]:
 
 
 def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
-    """Yield the rows of `info.dat`, `Columns = z:instrument:serialnumber`; models are numbers.
+    """Yield the instruments in `info.dat`, such as `Columns = z:instrument:serialnumber`.
 
-    A column of clock offsets [s] is compared at the end of the record, `End_Date` and `End_Time`.
+    Instrument models are numbers. Clock offsets [s] are those at the end of the record, `End_Date`
+    and `End_Time`.
     """
     names: list[str] = []
     header: dict[str, str] = {}
@@ -205,7 +208,7 @@ def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
 
 
 def _kind_of(name: str) -> str:
-    """Return the kind of a column; empty for one that is not read."""
+    """Return the kind of a column by its heading; empty if the column is not read."""
     plain = name.strip().lower()
     return next((kind for kind, text in _COLUMNS.items() if re.fullmatch(text, plain)), "")
 

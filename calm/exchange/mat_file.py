@@ -40,9 +40,12 @@ RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
-    """Read the wanted variables; missing variables are omitted.
+    """Read the wanted variables of a file; missing variables are omitted.
 
-    InputError: the file is not a `.mat` file, or is damaged.
+    Raises
+    ------
+    InputError
+        The file is not a `.mat` file, or is damaged.
     """
     content = _inflated(read_content(path, largest=LARGEST), LARGEST + 1)
     if len(content) > LARGEST:
@@ -66,7 +69,7 @@ def _variables(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def is_mat(content: bytes) -> bool:
-    """Return whether a file begins like a MATLAB or Octave file."""
+    """True if a file begins like a MATLAB or Octave file."""
     content = _inflated(content, _HEAD)
     if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
@@ -74,8 +77,9 @@ def is_mat(content: bytes) -> bool:
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """Decompress gzip content as far as possible, up to `most` bytes; return other content
-    unchanged.
+    """Decompress gzip content as far as possible, up to `most` bytes.
+
+    Other content is returned unchanged.
     """
     if not content.startswith(_GZIP):
         return content
@@ -86,9 +90,7 @@ def _inflated(content: bytes, most: int) -> bytes:
 
 
 def _is_version_4(content: bytes) -> bool:
-    """Return whether a file begins with a MATLAB 4 header: type, rows, columns and length of a
-    name.
-    """
+    """True if a file begins with a MATLAB 4 header: type, rows, columns and length of a name."""
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
         if head.size == 5 and 0 <= head[0] < 5000 and 1 < head[4] < 64 and head[3] in (0, 1):
@@ -112,9 +114,12 @@ def _is_octave_text(content: bytes) -> bool:
 
 
 def read_octave_text(text: str) -> dict[str, MatValue]:
-    """Read an Octave text file; variables that cannot be read are omitted.
+    """Read the variables of an Octave text file; variables that cannot be read are omitted.
 
-    ValueError: a matrix has fewer numbers than its header says, or a header cannot be read.
+    Raises
+    ------
+    ValueError
+        A matrix has fewer numbers than its header says, or a header cannot be read.
     """
     variables: dict[str, MatValue] = {}
     cell: list[MatValue] | None = None
@@ -134,7 +139,7 @@ def read_octave_text(text: str) -> dict[str, MatValue]:
 
 
 def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]:
-    """Yield the name, the header and the lines below the header of each variable."""
+    """Yield each variable as its name, its header, and the lines below the header."""
     name, header, rows = "", dict[str, str](), list[str]()
     for line in lines:
         key, value = _header(line)
@@ -151,7 +156,7 @@ def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]
 
 
 def _header(line: str) -> tuple[str, str]:
-    """Parse a line such as ``# rows: 3``, with or without its colon, to key and value."""
+    """Parse a header line such as ``# rows: 3``, with or without colon, to key and value."""
     if not line.lstrip().startswith("#"):
         return "", ""
     body = line.lstrip()[1:].strip()
@@ -187,7 +192,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
 
 
 def _spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """Return the numbers of a range, including the last if a step ends there."""
+    """Return the numbers of a range, including its limit if a step ends there."""
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers")
@@ -212,7 +217,7 @@ def _texts(rows: list[str]) -> list[MatValue]:
 
 
 def _is_hdf5(content: bytes) -> bool:
-    """Return whether a file is HDF5, by the signature at its start or after a MATLAB header."""
+    """True if a file is HDF5, by the signature at its start or after a MATLAB header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
@@ -227,8 +232,9 @@ def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """Read a dataset as written by MATLAB, or a group as written by Octave; cells are read
-    recursively.
+    """Read a dataset as written by MATLAB, or a group as written by Octave.
+
+    Cell arrays are read recursively.
     """
     import h5py
 
@@ -284,7 +290,10 @@ class MatVariables(dict[str, MatValue]):
     def reals(self, name: str) -> RealArray:
         """Return a variable as real numbers; an empty array if the variable is missing.
 
-        ValueError: the variable does not hold real numbers.
+        Raises
+        ------
+        ValueError
+            The variable does not contain real numbers.
         """
         value = self.get(name)
         if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
@@ -294,29 +303,27 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array; an empty array if it does not hold real
-        numbers.
-        """
+        """Return a variable as a one-dimensional array; empty if it is not of real numbers."""
         try:
             return self.reals(name).ravel()
         except ValueError:
             return np.zeros(0)
 
     def first(self, name: str) -> float:
-        """Return the first number of a variable, or 0."""
+        """Return the first number of a variable; 0 if there is none."""
         row = self.row(name)
         return float(row[0]) if row.size else 0.0
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Raise ValueError if a variable of this shape is too large; otherwise return True."""
+    """Return True, but raise ValueError if a variable of this shape is too large."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True
 
 
 def names(value: MatValue | None) -> list[str]:
-    """Convert a variable to texts, from a character matrix, a cell array or character codes."""
+    """Convert a character matrix, a cell array or character codes to texts."""
     if value is None:
         return []
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Common design model of all importers, in the terms of a mooring file.
+"""Design model that all importers share, in the terms of a mooring file.
 
 Values are in SI units and degrees, under the key names of the mooring file; depths are positive
 down.
@@ -27,11 +27,12 @@ class ImportOptions:
 
     Attributes
     ----------
-    defines : macros of WHOI Cable; or catalogue ids by the names that oceanarray uses
-    columns : the headings of a table, by the name of the column in CALM
-    elements : a library with the figures missing in a table
-    allow_include : whether a file may include one from outside its folder
-    sheet : name of the sheet with the list in a workbook; None if only one can be meant
+    defines : for WHOI Cable, macros by name; for oceanarray, catalogue ids by the names in its
+        files
+    columns : headings in a table, by the name of the column in CALM
+    elements : library of elements with the values that a table lacks
+    allow_include : whether a file may include files from outside its folder
+    sheet : name of the sheet of a workbook that has the list; None if there is only one such sheet
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -58,13 +59,14 @@ class ImportedComponent:
 
     Attributes
     ----------
-    name : its name in that file
+    name : name in the file
     kind : sphere, cylinder, body, cable, chain or anchor
-    figures : figures by the fields of `kind`; those of cables and chains are per metre
-    guesses : for each field that is not from the file, why
-    comment : comment about the source of the figures
-    hull : rows of draft [m], displaced volume [m³] and immersed area [m²]
-    entry : id of the catalogue entry that replaces it, if any
+    figures : values by the fields of `kind`; those of cables and chains are per metre
+    guesses : reason for the value of each field that is not from the file
+    comment : comment about the source of the values
+    hull : displacement table of a float: rows of draft [m], displaced volume [m³] and immersed area
+        [m²]; empty for other components
+    entry : id of the catalogue entry that replaces the component; empty if there is none
     """
 
     name: str
@@ -83,9 +85,9 @@ class ImportedComponent:
 
         Parameters
         ----------
-        name : its name in that file
-        weight : weight in water per metre, negative for a line that floats [N]
-        figures : its diameter and drag; the weight is added here
+        name : name in the file
+        weight : weight in water per metre, negative for a line that floats [N/m]
+        figures : diameter, drag and other values, to which the weight is added
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"
@@ -96,7 +98,7 @@ class ImportedComponent:
         return float(self.figures.get(field, 0.0))
 
     def identity(self) -> tuple[object, ...]:
-        """All values, as a key: components with equal keys share a definition."""
+        """Return all values as a key; components with equal keys share a definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull
 
@@ -128,21 +130,21 @@ class ImportedPiece:
 
     @property
     def extent(self) -> float:
-        """Length of the piece [m], else of its component."""
+        """Length of the piece [m]: its own, or that of its component."""
         return self.component.number("length") if self.length is None else self.length
 
     def clamp(
         self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
         serial: str = "",
     ) -> None:  # fmt: skip
-        """Clamp a component on this piece, below the existing clamps.
+        """Clamp a component on this piece; clamps are kept in order from the top.
 
         Parameters
         ----------
         component : the component
-        at : distance from its upper end [m]
-        guess : why the place is guessed; empty if it is from the file
-        label, serial : its name in results, and its serial number
+        at : distance from the upper end of the piece [m]
+        guess : reason if the position is guessed; empty if it is from the file
+        label, serial : label and serial number of the clamp
         """
         self.clamps.append(ImportedClamp(component, at, guess, label, serial))
         self.clamps.sort(key=lambda clamp: clamp.at)
@@ -152,8 +154,8 @@ class ImportedPiece:
 class ImportedLeg:
     """A leg of a net.
 
-    `items` are its pieces from the upper end. `top` and `bottom` are the keys of its ends as in a
-    mooring file, such as ``{join: A}``; empty if the key is not needed.
+    `items` are its pieces from the upper end. `top` and `bottom` are the connections of its ends as
+    written in a mooring file, such as ``{join: A}``; empty if the key is not needed.
     """
 
     name: str
@@ -163,21 +165,21 @@ class ImportedLeg:
 
 
 def held_at(depth: float, east: float, north: float) -> str:
-    """Return the key for a leg end that is held at a depth and a position [m]."""
+    """Return the connection of a leg end held at a depth and a position east and north [m]."""
     return f"{{held: {{depth: {depth:.9g} m, at: [{east:.9g} m, {north:.9g} m]}}}}"
 
 
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
-    """Return the key for a lower leg end with an anchor at a position [m].
+    """Return the connection of a lower leg end with an anchor at a position east and north [m].
 
-    `depth` [m] is given if the anchor is not at the depth of the water.
+    `depth` [m] is written only if the depth at the anchor differs from the water depth.
     """
     deeper = "" if depth is None else f", depth: {depth:.9g} m"
     return f"{{anchor: {{at: [{east:.9g} m, {north:.9g} m]{deeper}}}}}"
 
 
 def joined_at(node: str) -> str:
-    """Return the key for a leg end that joins other legs at a node."""
+    """Return the connection of a leg end that joins other legs at a node."""
     return f"{{join: {node}}}"
 
 
@@ -192,7 +194,7 @@ class ImportedWater:
     gravity : gravitational acceleration [m/s²]
     current : rows of depth [m] and speeds east, north and up [m/s]
     wind : speed [m/s] and the direction toward which it blows [degrees]
-    guesses : for each field that is not from the file, why
+    guesses : reason for the value of each field that is not from the file
     """
 
     depth: float | None
@@ -224,13 +226,13 @@ class ImportedDesign:
     water : the environment; None if the file gives none
     environment : lines of the `environment` key that replaces `water`
     solver : keys of `solver`, each with its value and a comment
-    guessed : guesses about the design; those about a figure are kept with it
-    dropped : what the file gives but CALM cannot use
+    guessed : guesses about the design, except those about values of a component
+    dropped : contents of the file that CALM cannot use
     notes : further comments at the head of the mooring file
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : definition of the uppermost component if it turns out to be submerged once the line is
-        solved; None if the file decides this
+    sunken : definition that replaces the uppermost component if the solution shows it to be
+        submerged; None if the file states whether it is
     understood : how the file was interpreted, as a text; empty if its format leaves no choice
     """
 
@@ -258,9 +260,7 @@ class ImportedDesign:
         self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
-        """Yield the component of every piece, then the components of its clamps, with
-        repetitions.
-        """
+        """Yield the component of each piece, followed by those of its clamps, with repetitions."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:

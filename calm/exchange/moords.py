@@ -18,15 +18,18 @@ _NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs im
 
 
 def is_moords(content: bytes) -> bool:
-    """Return whether a file has the headings of a moords design."""
+    """True if a file has the headings of a moords design."""
     head = content.split(b"\n", 1)[0].decode("utf-8", "replace")
     return set(head.strip().split(",")) >= _MARKS
 
 
 def read_moords(path: Path) -> model.ImportedDesign:
-    """Read a design.
+    """Read a moords file as a design.
 
-    InputError: the headings or values are not valid for moords.
+    Raises
+    ------
+    InputError
+        The headings or values are not valid for moords.
     """
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:

@@ -1,9 +1,9 @@
 """Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
-`inline` lists the pieces of the line, and `clamp` the instruments clamped on it, both with heights
-above the seabed. Other values are mostly missing, and are read from an element library or the
-catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length required by
-their heights.
+In such a file, `inline` lists the pieces of the line and `clamp` the instruments clamped on it,
+both with heights above the seabed. Other values are mostly missing; they are read from an element
+library or the catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length
+that their heights require.
 """
 
 import re
@@ -36,21 +36,24 @@ _CLOSE = 0.05  # m between pieces that touch
 # relative difference, and difference in metres, allowed between heights: most are whole metres
 _OFF, _ROUNDED = 0.02, 0.5
 _MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
-# prefixes of the keys of a position, the most exact first
+# prefixes of the keys of a position, the most accurate first
 _PLACES = ("seabed", "deployment", "planned", "")
 _MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
 
 
 def is_oceanarray(content: bytes) -> bool:
-    """Return whether a file has the keys of an oceanarray configuration."""
+    """True if a file has the keys of an oceanarray configuration."""
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
 def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
-    """Read a configuration of oceanarray.
+    """Read a configuration of oceanarray as a design.
 
-    InputError: it lists no line, a height or length is missing or wrong, or a name is known neither
-    in the library nor in the catalogue.
+    Raises
+    ------
+    InputError
+        The file lists no line, a height or length is missing or wrong, or a component is neither in
+        the library nor in the catalogue.
     """
     document, problems = read_document(path), list[Problem]()
     library = {} if options.elements is None else read_library(options.elements)
@@ -83,10 +86,17 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
 
 
 def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[str, Any]]]:
-    """Return line, label, serial number and height above the bottom [m] of each instrument, and its
-    keys with the `recovery_time` of the file.
+    """List the instruments of a file that have a serial number and a height.
 
-    Instruments without a serial number or a height are omitted. InputError: the file is damaged.
+    Returns
+    -------
+    For each instrument: line number, label, serial number, height above the seabed [m], and the
+    keys of the item with the `recovery_time` of the file.
+
+    Raises
+    ------
+    InputError
+        The file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)
@@ -118,9 +128,10 @@ _Found = tuple[model.ImportedComponent, str]
 class _Entry:
     """An item in the file; heights are above the seabed [m].
 
-    `place` is its location in the file, `names` are its names, the most exact first, and
-    `instrument` is oceanarray's word for the kind of instrument. At most one of `middle`, `bottom`
-    and `top` is given. `item` has all keys of the file.
+    `place` is the location of the item in the file. `names` are the names by which to find its
+    component, the most specific first, and `instrument` is oceanarray's word for the kind of
+    instrument. At most one of `middle`, `bottom` and `top` is given. `item` has all keys of the
+    item.
     """
 
     place: _Location
@@ -146,7 +157,7 @@ class _Entry:
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
-        """Return the height of the item's lower end [m], for a piece of length `extent`."""
+        """Return the height of the lower end of the item [m], if its length is `extent`."""
         if self.is_anchor:
             return 0.0
         if self.bottom is not None:
@@ -158,7 +169,7 @@ class _Entry:
 
 @dataclass
 class _Reading:
-    """Read the items of the file, and add messages about mistakes to `problems`."""
+    """Reader of the items of a file; mistakes are added to `problems`."""
 
     document: Document
     problems: list[Problem]
@@ -169,7 +180,7 @@ class _Reading:
         self.problems.append(self.document.problem(place, message))
 
     def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
-        """Return a length or height of an item [m]; None if it is missing or wrong."""
+        """Return the length or height at a key of an item [m]; None if it is missing or wrong."""
         if item.get(key) is None:
             return None
         found = number(str(item[key]))
@@ -220,7 +231,7 @@ class _Reading:
 
 @dataclass
 class _Parts:
-    """Find components by name in the user's definitions, in the library or in the catalogue."""
+    """Finder of components by name, in the user's definitions, the library, or the catalogue."""
 
     reading: _Reading
     stands_for: Mapping[str, str]
@@ -229,14 +240,15 @@ class _Parts:
     _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
 
     def of(self, entry: _Entry) -> _Found | None:
-        """Find the component for an item; also return what was guessed. None if nothing is
-        known.
+        """Find the component of an item, and return it with a note on guesses.
+
+        Return None if there is none, which is recorded as a mistake.
         """
         message = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, message)
 
     def rope(self, entry: _Entry, between: str) -> _Found | None:
-        """Return the rope that is inserted below an item."""
+        """Find the rope that is inserted below an item, as `of` does."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
@@ -289,8 +301,9 @@ class _Parts:
 
 @dataclass(frozen=True)
 class _Strung:
-    """Pieces of a line, with heights of their lower ends [m]: `nominal` as in the file, `height`
-    from the lengths.
+    """Pieces of a line from the anchor up, with heights of their lower ends [m].
+
+    The height is `nominal` in the file, and `height` as it follows from the lengths.
     """
 
     items: list[model.ImportedPiece]
@@ -299,9 +312,7 @@ class _Strung:
 
 
 def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
-    """Return the pieces from the anchor up, with ropes inserted between them, and add them to the
-    design.
-    """
+    """Add the line to the design from the anchor up, with ropes inserted between pieces."""
     items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # lower ends; the last is for the next piece
     if not line[-1].is_anchor:
@@ -367,7 +378,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
 
 
 def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
-    """Clamp the instruments on the lines at their heights, or at the nearest end of a line."""
+    """Clamp the instruments on the cables at their heights, or at the nearest end of a cable."""
     lines = [i for i, one in enumerate(strung.items) if one.component.kind in FLEXIBLE_KINDS]
     if beside and not lines and not parts.reading.problems:
         parts.reading.refuse(("inline",), "has no line to clamp instruments on")

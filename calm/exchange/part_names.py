@@ -43,16 +43,16 @@ _LONGEST_PIECE = 20.0  # m of a rigid piece
 
 
 def is_called(name: str, *what: str) -> bool:
-    """Return whether a name matches one of the given kinds of parts.
+    """True if a name matches one of the given kinds of parts.
 
     The kinds are release, chain, connector (shackles, swivels, links), anchor, line (wires, ropes,
-    chains) and rigid (floats, instruments and fittings, and the names of their families).
+    chains) and rigid (floats, instruments and fittings, also by their product families).
     """
     return any(re.search(_NAMES[each], name, re.I) for each in what)
 
 
 def is_long(name: str, length: float, across: float) -> bool:
-    """Return whether a piece is a line, judging by its size alone.
+    """True if a piece must be a rope because it is long and thin.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
 
     Parameters
     ----------
-    name : its name in the other program
+    name : name of the piece in the other program
     buoyancy : net force in water, positive up [N]
     fastener : whether the other program marks it as a fastener; it may mark instruments and floats,
         too

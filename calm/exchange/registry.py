@@ -38,13 +38,13 @@ the last with a reader, because it accepts any text in columns.
 
 @dataclass(frozen=True)
 class Exported:
-    """A file for another program.
+    """Result of an export: a file for another program.
 
     Attributes
     ----------
     content : content of the file
     lost : features of the design that the format cannot represent
-    beside : content of further files, by their names in the same folder
+    beside : contents of further files in the same folder, by name
     """
 
     content: bytes
@@ -96,15 +96,15 @@ def register_format(
 
     Parameters
     ----------
-    name : for `--format` and `--to`; the name of the entry point, too
-    detect : recognises a file by its first bytes; without it, `--format` must name the format
-    read : makes a design of a file; None if the format is only written
-    write : makes a file of a design; None if the format is only read
-    program : that the format belongs to, for messages; by default `name`
+    name : name for `--format` and `--to`, which is also the name of the entry point
+    detect : function that recognises a file by its first bytes; without it, the user must name the
+        format by `--format`
+    read : function that reads a file as a design; None if CALM only writes the format
+    write : function that converts a design to a file; None if CALM only reads the format
+    program : name of the program to which the format belongs, for messages; by default `name`
     takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
-    writes_nets : whether `write` takes designs of several legs
-    suffixes : suffixes that the program expects of the files that `write` makes, such as ".mat";
-        by default any
+    writes_nets : whether `write` accepts designs with several legs
+    suffixes : file name suffixes that the program expects, such as ".mat"; by default any
     """
     if name in _registered:
         raise ValueError(f"there is a format `{name}` already")
@@ -116,8 +116,12 @@ def register_format(
 def file_format(name: str) -> FileFormat:
     """Return a format by name, importing its module if needed.
 
-    KeyError: there is no such format. CalmError: its module cannot be imported, or registers no
-    format of that name.
+    Raises
+    ------
+    KeyError
+        There is no such format.
+    CalmError
+        The module of the format cannot be imported, or registers no format of that name.
     """
     if name not in _registered:
         module = _OWN[name] if name in _OWN else _added()[name]
@@ -134,10 +138,14 @@ def file_format(name: str) -> FileFormat:
 
 
 def file_formats() -> tuple[FileFormat, ...]:
-    """Return all formats in the order in which they are tried: added formats before built-in
-    formats.
+    """Return all formats in the order in which they are tried.
 
-    CalmError: as in `file_format`.
+    Formats of other packages come first.
+
+    Raises
+    ------
+    CalmError
+        As in `file_format`.
     """
     for name in (*_added(), *_OWN):
         file_format(name)
@@ -146,7 +154,7 @@ def file_formats() -> tuple[FileFormat, ...]:
 
 
 def _added() -> dict[str, str]:
-    """Return the formats of other packages, with their modules."""
+    """Return the modules of the formats that other packages add, by name."""
     added = {entry.name: entry.module for entry in entry_points(group=ENTRY_POINTS)}
     if taken := sorted(added.keys() & _OWN.keys()):
         raise CalmError(

@@ -1,4 +1,4 @@
-"""Decide from a still-water solution whether the float of an imported design is at the surface."""
+"""Decide whether the float of an imported design is at the surface, by a still-water solution."""
 
 from pathlib import Path
 
@@ -9,11 +9,11 @@ from calm.exchange.design_writer import mooring_text
 
 
 def sink_what_stays_under_water(design: model.ImportedDesign, output: Path) -> None:
-    """Replace the upper float by the submerged float `sunken` if it is submerged in still water.
+    """Replace the uppermost float by `sunken` if it is submerged in still water.
 
-    A float that is under water only in a current remains a surface float, although one that is too
-    small. A line without an equilibrium is not changed. `output` is the path of the mooring file
-    that will be written.
+    A float that only a current submerges remains a surface float, although one that is too small. A
+    line without an equilibrium is not changed. `output` is the path of the mooring file that will
+    be written.
     """
     if design.sunken is None:
         return

@@ -1,5 +1,6 @@
-"""Read mooring files and catalogues: from text to validated models in SI units. No physics is
-computed here.
+"""Read mooring files and catalogues: from text to validated models in SI units.
+
+No physics is computed here.
 """
 
 from calm.files.catalogue import Assembly, Catalogue

@@ -40,7 +40,7 @@ _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.
 
 
 class Assembly(Definition):
-    """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
+    """Pieces that are always used together, as items like those in the `line` of a mooring."""
 
     kind: Literal["assembly"] = Field(description="kind of the component")
     parts: tuple[dict[str, Any], ...] = described(
@@ -54,18 +54,23 @@ Defined = Component | Assembly | Outline
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels, nearest first; a definition hides any with the same id in
-    later levels.
+    """Component definitions in levels, of which the first has priority.
+
+    A definition hides those with the same id in later levels.
     """
 
     levels: tuple[Level, ...]
 
     @classmethod
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
-        """Load the catalogue: given files take precedence over the user's own files, and these over
-        the shipped files.
+        """Load the catalogue.
 
-        InputError: a catalogue of the user cannot be read.
+        Given files take precedence over the user's own files, and these over the shipped files.
+
+        Raises
+        ------
+        InputError
+            A catalogue of the user cannot be read.
         """
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
@@ -88,17 +93,14 @@ class Catalogue:
         return cls((UnreadLevel(_shipped_files()),))
 
     def under(self, definitions: SourceMapping) -> Catalogue:
-        """Return a new catalogue in which the `components:` of a mooring file precede this
-        catalogue.
-        """
+        """Return this catalogue preceded by the `components:` of a mooring file."""
         entries = map(self._completed, entries_of(definitions, None))
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Merge an entry without `kind` with the definition of the same id in this catalogue; keys
-        without a value are dropped.
+        """Merge an entry without `kind` with the definition of the same id in this catalogue.
 
-        Assemblies have no values to complete.
+        Keys without a value are dropped. Assemblies have no values to complete.
         """
         below = self.entry(entry.id)
         given = {key: value for key, value in entry.section.data.items() if value is not None}
@@ -119,9 +121,7 @@ class Catalogue:
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the definition hidden by a nearer definition with the same id; None if there is
-        none.
-        """
+        """Return the definition of an id that the first definition hides; None if there is none."""
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
@@ -131,11 +131,11 @@ class Catalogue:
         return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
-        """Return the id most similar to a text."""
+        """Return the id that is most similar to a text."""
         return nearest(id, self.ids())
 
     def of_a_sort(self, word: str) -> list[str]:
-        """Return the first six ids of a family, role or kind; empty for any other word."""
+        """Return the first six ids of a family, role or kind; none for any other word."""
         sort = word.casefold().rstrip("s")
         return [
             id
@@ -165,9 +165,12 @@ class Catalogue:
         return definition
 
     def all(self) -> dict[str, Defined]:
-        """Return all definitions of the catalogue, validated.
+        """Validate all definitions of the catalogue, and return them by id.
 
-        InputError: definitions have mistakes; all mistakes are listed.
+        Raises
+        ------
+        InputError
+            Definitions have mistakes; all mistakes are listed.
         """
         problems: list[Problem] = []
         found = {
@@ -182,7 +185,7 @@ class Catalogue:
     def same_thing(self, id: str) -> list[str]:
         """Return the ids of all definitions of the same product, the preferred one first.
 
-        The product has several ids if definitions name the same preferred id under `prefer`.
+        Definitions of the same product name the same preferred id under `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -194,8 +197,9 @@ def _shipped_files() -> list[Path]:
 
 
 def user_folder() -> Path:
-    """Return the folder of the user's catalogue: `CALM_CATALOG_DIR`, by default `calm/catalog` in
-    the configuration folder.
+    """Return the folder of the user's catalogue.
+
+    This is `CALM_CATALOG_DIR` if set, else `calm/catalog` in the configuration folder.
     """
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
@@ -210,14 +214,16 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Validate an entry, or an entry with overrides; return its model, or None if it has mistakes.
+    """Validate a definition, with or without overrides, and return its model.
+
+    Return None if there are mistakes, which are recorded in the section.
 
     Parameters
     ----------
-    entry : CatalogueEntry
-    section : the section of the entry, or of its overrides
+    entry : entry of the definition
+    section : section of the entry, or of its overrides with the entry as base
     also_allowed : keys in the section that do not belong to the component
-    context : `IN_AIR` for a component used in air, or None
+    context : `IN_AIR` for a component used in air, else None
     """
     kind = section.data.get("kind")
     if kind is None:
@@ -253,7 +259,7 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Keys whose values replace those of the completed base definition."""
+        """Keys of this entry that replace values of the definition on which it is based."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})
@@ -271,9 +277,9 @@ Level = Mapping[str, CatalogueEntry]
 class UnreadLevel(Level):
     """Entries of catalogue files, each read on first use.
 
-    Only the ids are searched at first, in the lines that are not indented. All files are read
-    completely if one of these lines is not an id, or if an entry has a mistake. An id alone in a
-    line of a multi-line quoted text would be mistaken for a definition.
+    At first, only the ids are searched, in the lines without indentation. All files are read
+    completely if such a line is not an id, or if an entry has a mistake. A line of a quoted text
+    that looks like an id would be mistaken for a definition.
 
     Parameters
     ----------
@@ -282,7 +288,7 @@ class UnreadLevel(Level):
     Raises
     ------
     InputError
-        A file cannot be read, or has mistakes; those of all files are listed.
+        A file cannot be read or has mistakes; the mistakes of all files are listed.
     """
 
     def __init__(self, paths: Sequence[Path]) -> None:
@@ -322,7 +328,7 @@ class UnreadLevel(Level):
 
 
 def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    """Read the entries of files, in which an id may be defined only once."""
+    """Read the entries of several files; an id that is defined twice is recorded as a mistake."""
     level: dict[str, CatalogueEntry] = {}
     for path in paths:
         try:
@@ -340,8 +346,9 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 
 
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
-    """Return the entries in a mapping from ids to definitions; `family` is None in a mooring
-    file.
+    """Return the entries of a mapping from ids to definitions.
+
+    `family` is None for the `components:` of a mooring file.
     """
     entries = []
     for id, fields in definitions.data.items():
@@ -361,7 +368,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
     """Yield id and text of each definition; the id is None if it cannot be recognised.
 
-    Empty lines are put above the text, so that line numbers agree with the file.
+    Empty lines precede the text, so that its line numbers agree with the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0
@@ -375,7 +382,10 @@ _LOADED: FileCache[Catalogue] = FileCache()
 
 
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
-    """Build a component from values; return it, or None, and the mistakes in the values."""
+    """Build a component from values; return it with the mistakes in the values.
+
+    The component is None if there are mistakes.
+    """
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)
     definition = define(CatalogueEntry(id, None, section), section)

@@ -50,7 +50,7 @@ _SUGGESTED = 3
 
 @dataclass(frozen=True)
 class Listed:
-    """A component as an entry of the list."""
+    """A component in the list of the catalogue, with the texts by which it is found."""
 
     id: str
     name: str
@@ -79,7 +79,7 @@ class Listed:
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
-        """Diameter of the component, and sizes found in its name [m]."""
+        """Diameter of the component, and sizes that its name contains [m]."""
         named = tuple(
             _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
         )
@@ -87,8 +87,9 @@ class Listed:
 
 
 class WordIndex:
-    """The components available to a line, in catalogue order, with the file's own components
-    first. It knows no values: a search with a limit finds nothing.
+    """Index for searching components by words, with the file's own components first.
+
+    It has no values of components, so a search with a limit finds nothing.
     """
 
     def __init__(self, catalogue: Catalogue) -> None:
@@ -99,8 +100,9 @@ class WordIndex:
 
     @classmethod
     def of(cls, catalogue: Catalogue, text: str) -> Self:
-        """Build the index of a catalogue and of a mooring file's `components:`, as far as
-        readable.
+        """Build the index of a catalogue and of the `components:` of a mooring file.
+
+        Components that cannot be read are omitted.
         """
         try:
             document = compose("", text)
@@ -115,15 +117,16 @@ class WordIndex:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Return the values of a component by the keys of their columns; empty if unknown."""
+        """Return the values of a component by column key; none if they are unknown."""
         return {}
 
     def suggested(self, text: str, near: str | None) -> list[str]:
-        """Return up to three ids for a text that is not an id.
+        """Return up to three ids that may be meant by a text that is not an id.
 
-        `near`, the id with the most similar letters, is the only one if the text has a number, such
-        as a size, or if no component has every word of the text. Otherwise the components with
-        every word are returned, those used most in the shipped lines first.
+        `near` is the id with the most similar letters. It is the only suggestion if the text
+        contains a number, such as a size, or if no component contains every word of the text.
+        Otherwise the components that contain every word are suggested, those used most in the
+        shipped lines first.
         """
         if near and any(map(str.isdigit, text)):
             return [near]
@@ -139,18 +142,20 @@ class WordIndex:
         first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
-        """Find the components that contain all words of a text and meet all limits in the text,
-        such as ``breaking>50kN``.
+        """Find the components that contain all words of a text and meet all its limits.
 
-        Hyphens separate words like blanks, since spellings vary. A size such as ``8mm`` or ``17
-        in`` matches in either unit. Complete components precede outlines, and components that
-        contain the words themselves precede those with synonyms or a matching source. Equally good
-        matches are sorted by their use in the shipped lines.
+        A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
+        spellings vary. A size such as ``8mm`` or ``17 in`` matches in either unit. Complete
+        components precede outlines. Components that contain the words themselves precede those that
+        match by a synonym or by their source. Equally good matches are sorted by their use in the
+        shipped lines.
 
         Parameters
         ----------
-        first : ids, in their order, that precede all others except an exact match
-        by : key of a column to sort by: largest first, unknown values last
+        text : words and limits
+        kinds : kinds of components to search; by default all
+        first : ids that precede all others, in this order, except for an exact match
+        by : key of a column by which to sort: largest first, unknown values last
         """
         plain, limits = _parsed(text)
         terms = _terms(plain)
@@ -164,12 +169,12 @@ class WordIndex:
     def nearly(
         self, text: str, kinds: Iterable[str] | None = None, *, first: Sequence[str] = ()
     ) -> tuple[list[Listed], list[str]]:
-        """Find the components that contain most words of a text, and meet all limits in the text.
+        """Find the components that contain most of the words of a text and meet all its limits.
 
         Returns
         -------
-        found : components with the largest number of words, ordered as by `search`; empty if no
-            component has any of the words
+        found : components with the largest number of matching words, in the order of `search`;
+            empty if no component has any of the words
         unknown : words that no component contains
         """
         plain, limits = _parsed(text)
@@ -192,9 +197,7 @@ class WordIndex:
     def _ranked(
         self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
     ) -> list[Listed]:
-        """Sort components by `_rank` for the terms that they match; components whose ids are in
-        `first` come first.
-        """
+        """Sort components by `_rank`; those with ids in `first` come first."""
         places = {id: number for number, id in enumerate(first)}
 
         def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
@@ -209,9 +212,7 @@ class WordIndex:
         return sorted(hits, key=order)
 
     def spelt(self, text: str) -> str:
-        """Replace each word that no component contains by the most similar word that a component
-        contains.
-        """
+        """Correct the spelling of a text by the words that components contain."""
         every = " ".join(each.searched for each in self._listed.values())
         own = _SEPARATORS.split(" ".join(each.own_words for each in self._listed.values()))
         known = {word for word in own if word.isalpha() and len(word) >= _SHORT_WORD}
@@ -231,14 +232,14 @@ class WordIndex:
 
 @dataclass(frozen=True)
 class Term:
-    """A word of a search, or a size in one or several words with its value [m]."""
+    """A word of a search, or a size [m] written in one or more words."""
 
     text: str
     words: tuple[str, ...]
     size: float | None = None
 
     def matches(self, each: Listed) -> bool:
-        """Return whether a component has the size, or contains the words."""
+        """True if a component has the size or contains the words."""
         size = self.size
         if size is not None and any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes):
             return True
@@ -280,11 +281,11 @@ def _uses() -> Counter[str]:
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
-    """Return the rank of a match: exact id, start or end of the id, all words in the id, all words
-    in the entry's own text, or all words with synonyms included.
+    """Return the rank of a match; a smaller rank is a better match.
 
-    Among ids with all words, an id that begins with the first word ranks higher. `others` are the
-    words without sizes.
+    In order of rank: exact id; start or end of the id; all words in the id, of which the first
+    begins the id; all words in the id; all words in other own texts; a match by a synonym or the
+    source. `others` are the words without sizes.
     """
     if not words:
         return 0
@@ -357,7 +358,7 @@ _FOUND = tuple(
 
 @dataclass(frozen=True)
 class CatalogueColumn:
-    """A column of component values: key, heading, dimension, and displayed unit."""
+    """A column of component values: key, heading, dimension, unit of display, and format."""
 
     key: str
     heading: str
@@ -367,7 +368,6 @@ class CatalogueColumn:
     decimals: int = 0
 
     def shown(self, value: float | None) -> str:
-        """Return the formatted value; empty if unknown."""
         return "" if value is None else f"{value * self.scale:.{self.decimals}f}"
 
 
@@ -409,13 +409,13 @@ class Wanted:
     limit: float
 
     def holds(self, figures: Figures) -> bool:
-        """Return whether a value meets the limit; false if the value is unknown."""
+        """True if the value is known and meets the limit."""
         value = figures.get(self.key)
         return value is not None and bool(_RELATIONS[self.relation](value, self.limit))
 
 
 def wanted(word: str) -> Wanted | None:
-    """Parse a word of a search as a limit; None for a plain word.
+    """Parse a word of a search as a limit; return None for a plain word.
 
     A number without a unit has the unit of its column.
     """

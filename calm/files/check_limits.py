@@ -1,4 +1,4 @@
-"""The key `checks:` of a mooring file: limits of the design check, and accepted findings.
+"""Key `checks:` of a mooring file: limits of the design check, and accepted findings.
 
 Each limit has a default and the source of the default. Each accepted finding has a reason.
 """
@@ -32,12 +32,13 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotate a key of `checks:` with the source of its default.
+    """Annotation of a key of `checks:` with the source of its default.
 
     Attributes
     ----------
     source : source of the default; `THE_DESIGN` for a limit without a default
-    default : default [SI, degrees] of a key whose value in the model is None if it is not given
+    default : default [SI, degrees] that is used if the key is absent and its value in the model is
+        None
     """
 
     source: str = THIS_PROGRAM
@@ -186,10 +187,10 @@ class LimitKey:
     ----------
     name : name of the key, with dots
     dimension : dimension, as in `calm.units`
-    value : value in use [SI, degrees]; None if the limit is not checked
+    value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None if there is none
     source : source of the default
-    backed : whether the design gives the source of its own value
+    backed : whether the design gives a source for its own value
     share : whether the value is a share, which is shown in percent
     """
 
@@ -208,9 +209,9 @@ class LimitKey:
 
 
 def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
-    """Return all limits of `checks:`; limits that are not given have their defaults.
+    """Yield all limits of `checks:`; limits that are absent have their defaults.
 
-    `prefix` is put before the names, for a model that is the value of another key.
+    `prefix` is put before the names; it is used for a model that is the value of another key.
     """
     for name, field in type(checks).model_fields.items():
         value, quantity = getattr(checks, name), definition.quantity_of(field)
@@ -290,11 +291,11 @@ class Accept(AcceptKeys):
     line: int
 
     def covers(self, rule: str, component: str | None) -> bool:
-        """Return whether a finding of a rule about a component is accepted."""
+        """True if the acceptance applies to a finding of this rule about this component."""
         return self.rule == rule and (self.labels is None or component in self.labels)
 
     def counts_on(self, day: calendar_date) -> bool:
-        """Return whether the acceptance is valid on a given day."""
+        """True if the acceptance is valid on a given day."""
         begun = self.date is None or self.date <= day.isoformat()
         return begun and (self.until is None or day.isoformat() <= self.until)
 
@@ -302,10 +303,11 @@ class Accept(AcceptKeys):
 def read_accepts(
     keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: SourceMapping
 ) -> tuple[Accept, ...]:
-    """Return the findings that a mooring file accepts, the most specific first.
+    """Read the accepted findings of a mooring file, and sort them with the most specific first.
 
     Parameters
     ----------
+    keys : items of `checks: accept:`
     labels : labels of the line; None if the line has mistakes
     top : top level of the mooring file
     """
@@ -337,8 +339,8 @@ def _accept(
 def matching(component: str, labels: Iterable[str]) -> list[str]:
     """Return the labels that match a given label or pattern.
 
-    A text equal to a label matches only that label. In other texts ``*`` matches any characters,
-    ``?`` one character, and ``[ab]`` a or b; case matters.
+    A text that equals a label matches only that label. In other texts, ``*`` matches any
+    characters, ``?`` one character, and ``[ab]`` a or b. Case matters.
     """
     labels = list(labels)
     if component in labels:

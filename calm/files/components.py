@@ -1,9 +1,9 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
-Some values are alternatives: a body has its drag as `kn`, or as `drag_area` and `cd`; a net force
-is given, or is computed from mass and volume. An override with one alternative removes the others,
-and keeps all values that it does not contradict. Lengths, masses and forces of cables and chains
-are per metre.
+Some values are alternatives: the drag of a body is given as `kn`, or as `drag_area` and `cd`; a net
+force is given, or is computed from mass and volume. If an override gives one alternative, the
+others are removed from the definition; values that do not contradict the override are kept.
+Lengths, masses and forces of cables and chains are per metre.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Flexible(definition.Definition):
     )
 
     def strain_under(self, load: float) -> float:
-        """Return the strain under a load ≥ 0 [N], as in the solver; 0 without a stiffness."""
+        """Return the strain under a load ≥ 0 [N], as in the solver; 0 for unknown stiffness."""
         return load / self.stiffness if self.stiffness is not None else 0.0
 
 
@@ -110,8 +110,9 @@ class Cable(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net buoyancy per metre in water, positive up [N/m]; if only the mass is known, minus the
-        weight in air.
+        """Net buoyancy per metre in water, positive up [N/m].
+
+        If only the mass is known, the weight in air is used as the weight in water.
         """
         if self.buoyancy is not None:
             return self.buoyancy
@@ -213,7 +214,7 @@ class Anchor(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net buoyancy in water [N]: minus the submerged weight."""
+        """Net buoyancy in water [N], the negative submerged weight."""
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
@@ -227,7 +228,7 @@ class Anchor(definition.Definition):
 
     @property
     def material_density(self) -> float | None:
-        """Density as specified, else of the material [kg/m³]; None if unknown."""
+        """Density of the anchor [kg/m³]: as specified, else of its material; None if unknown."""
         return self.density or density_of(self.material)
 
     @property
@@ -278,8 +279,9 @@ _ESSENTIAL = {
 
 
 class Outline(definition.Definition):
-    """A product for which no source publishes some required values; the mooring file must supply
-    them.
+    """A product for which no source publishes some required values.
+
+    The mooring file that uses the product must supply them.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -306,7 +308,7 @@ class Outline(definition.Definition):
         return lacking(self.model_dump(exclude_none=True))
 
     def asks(self, id: str) -> str:
-        """Message about the values missing in the definition."""
+        """Return a message with the values that the mooring file must supply."""
         given = self.model_dump(exclude_none=True)
         also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
         keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
@@ -330,7 +332,7 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the definition keys that an override makes invalid.
+    """Return the keys of a definition that an override makes invalid.
 
     Parameters
     ----------
@@ -382,12 +384,12 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
 def odd_overrides(
     use: str, defined: Component, component: Component, given: Set[str]
 ) -> Iterator[str]:
-    """Yield messages about implausible overrides of a definition.
+    """Yield a message for each implausible override of a definition.
 
     Parameters
     ----------
     use : id of the definition
-    defined, component : the component before and after the overrides
+    defined, component : the definition, and the component after the overrides
     given : keys of the overrides
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:

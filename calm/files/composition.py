@@ -1,8 +1,8 @@
-"""Parse YAML text to a tree of nodes, each with its place in the text, from the events of PyYAML.
+"""Parse YAML text to a tree of nodes with their positions, from the events of PyYAML.
 
-libyaml, if PyYAML has it, is about thirty times as fast as the parser in Python. Both parsers must
-give the same result: text that they parse differently, and text that libyaml rejects, is parsed in
-Python.
+libyaml, if PyYAML includes it, is about thirty times as fast as the parser in Python. Both must
+give the same result. Text that they parse differently, and text that libyaml rejects, is therefore
+parsed in Python.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _PLAIN_TAGS = frozenset(
 
 
 class _Parser(yaml.SafeLoader):
-    """Parser in Python that reads tabs and question marks inside brackets as libyaml does."""
+    """Python parser that treats tabs and question marks inside brackets as libyaml does."""
 
     _within_plain = False
 
@@ -76,7 +76,7 @@ class _TooDeep(Exception):
 
 
 def compose(text: str) -> Composition:
-    """Return the nodes of a YAML text, with or without a byte-order mark."""
+    """Parse a YAML text, with or without a byte-order mark."""
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:
@@ -91,9 +91,7 @@ def compose(text: str) -> Composition:
 
 
 def _is_read_differently(text: str) -> bool:
-    """Return whether the parser in Python reads tabs, byte-order marks or tags of the text
-    differently.
-    """
+    """True if the Python parser may read tabs, byte-order marks or tags of the text differently."""
     return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
 
 
@@ -108,11 +106,11 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
 
 
 class _Reader:
-    """Convert the events of a text to nodes, and collect the refused parts.
+    """Converter of the events of a text to nodes, which also collects the refused parts.
 
     Parameters
     ----------
-    text : str
+    text : the whole text
     start : index in the text at which the parsed part begins
     next_event : returns the next event
     """
@@ -125,7 +123,7 @@ class _Reader:
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
-        """Return the nodes of the only document."""
+        """Read the nodes of the only document."""
         self._next()  # start of the stream
         if isinstance(self._next(), events.StreamEndEvent):
             return Composition(None)
@@ -139,7 +137,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: events.NodeEvent, depth: int) -> Node:
-        """Build the node that begins with an event, including all nodes below."""
+        """Build the node that begins with an event, including all nodes inside it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
@@ -179,16 +177,13 @@ class _Reader:
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 
     def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the items of a sequence, and the event that ends the sequence."""
         items = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             items.append(self._node(event, depth))
         return items, event
 
     def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the values of a mapping and the event that ends the mapping; the keys are appended
-        to `keys`.
-        """
+        """Return the values of a mapping, and the event that ends it; append the keys to `keys`."""
         lines: dict[str, int] = {}
         values = []
         while not isinstance(event := self._next(), CollectionEndEvent):
@@ -208,7 +203,7 @@ class _Reader:
                 key = Node("scalar", start, end, line, mark.column + 1, event.style or "", name)
                 value = self._node(self._next(), depth)
                 if value.data is None and value.start == value.end:
-                    # Its event is before whatever comes next.
+                    # The event of an empty value is placed at the next token, not at the key.
                     colon = _COLON.match(self._text, end)
                     if colon is None and _TWO_WORDS.match(name):
                         self._refusals.append(_refusal(event, without_colon(name)))
@@ -221,7 +216,7 @@ class _Reader:
         return values, event
 
     def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
-        """Skip a node without reporting problems inside; report `message` instead, if given."""
+        """Skip a node without reporting problems inside it; report `message` instead, if given."""
         before = len(self._refusals)
         node = self._node(event, depth)
         self._refusals[before:] = [_refusal(event, message)] if message else []
@@ -250,10 +245,12 @@ class Node(NamedTuple):
     Attributes
     ----------
     kind : "mapping", "sequence" or "scalar"
-    start, end : its text is ``text[start:end]``; an empty value follows its colon or dash
-    line, column : line and column of its start, counted from 1
-    style : `block` or `flow` for a collection; for a quoted or block scalar its first character
-    data : its content, with scalars as written; shared, must not be changed
+    start, end : the text of the node is ``text[start:end]``; an empty value follows its colon or
+        dash
+    line, column : line and column where the node starts, counted from 1
+    style : `block` or `flow` for a collection; first character of a quoted or block scalar, else
+        empty
+    data : content, with scalars as text; it is shared and must not be changed
     keys : keys of a mapping, in the order of the file
     children : the values of a mapping, or the items of a sequence
     """
@@ -269,8 +266,12 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
     def entry(self, step: str | int) -> tuple[Node | None, Node | None]:
-        """Return (key node, value node) of a mapping key, or (None, item) of a list index; (None,
-        None) if missing.
+        """Return the node at a key of a mapping, or at an index of a list.
+
+        Returns
+        -------
+        (key node, value node) for a mapping, (None, item) for a list, and (None, None) if there is
+        none.
         """
         if self.kind == "mapping":
             named = zip(self.keys, self.children, strict=True)
@@ -281,8 +282,9 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """Parsed nodes of a text and its rejected parts; `root` is None for an empty or invalid
-    text.
+    """Nodes of a parsed text, and its rejected parts.
+
+    `root` is None for an empty or invalid text.
     """
 
     root: Node | None

@@ -1,7 +1,7 @@
 """Keys that every component may have, and the conventions for their values.
 
-In a file a field is text with a unit; here it is an SI float, with angles in degrees, or None if it
-is not given. Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
+A quantity is text with a unit in a file. Here it is an SI float, with angles in degrees, or None if
+it is not given. Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
 """
 
 from __future__ import annotations
@@ -38,18 +38,17 @@ from calm.units import (
 
 
 class Model(BaseModel):
-    """Base of all models of files: immutable, and without unknown keys."""
+    """Base class of all models of files: immutable, unknown keys are rejected."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """Return only the fields that are not None."""
         return (each for each in super().__repr_args__() if each[1] is not None)
 
 
 @dataclass(frozen=True)
 class QuantityField(QuantityRange):
-    """Annotate a field that holds a quantity within limits."""
+    """Annotation of a field that holds a quantity within limits."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)
@@ -60,7 +59,7 @@ class QuantityField(QuantityRange):
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of the text, without the limits."""
+        """Return the JSON Schema of the quantity as text; the schema has no limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -80,7 +79,7 @@ class QuantityField(QuantityRange):
 
 
 class ColumnHeading(str):
-    """Annotate a value of a row with the heading of its column, for tables that are displayed."""
+    """Annotation of a value in a table row with the heading of its column, for display."""
 
     __slots__ = ()
 
@@ -122,15 +121,19 @@ Role = Annotated[
 
 
 def quantity_of(field: FieldInfo) -> QuantityField | None:
-    """Return the quantity of a field of a model; None if it has none."""
+    """Return the `QuantityField` of a field of a model; None for other fields."""
     return next((one for one in field.metadata if isinstance(one, QuantityField)), None)
 
 
 def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Convert an argument to SI (degrees, degC): text with its unit; a number is unchanged.
+    """Convert an argument to SI units (degrees, degC).
 
-    Raises UsageError, with the name of the argument, if the text is not a quantity of this
-    dimension.
+    Text must have a unit; a number is returned unchanged.
+
+    Raises
+    ------
+    UsageError
+        The text is not a quantity of this dimension; the message names the argument.
     """
     if not isinstance(value, str):
         return value
@@ -224,7 +227,7 @@ class EstimatedFigure(Model):
         return _estimated(info.data.get("quantity", "")).read(text)
 
     def bound(self, *, in_waves: bool) -> float:
-        """Return the lower bound for a line in waves or at rest."""
+        """Return the lower bound, for a line in waves or for steady loads."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
     @property
@@ -364,13 +367,14 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Return whether the definition being validated is for use in air."""
+    """True if the definition being validated is for use in air."""
     return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Compute the displaced volume [m³, or m³/m] from mass and net buoyancy; None if the mass is
-    unknown.
+    """Compute the displaced volume [m³ or m³/m] from mass and net buoyancy.
+
+    Return None if the mass is unknown.
     """
     if mass is None:
         return None

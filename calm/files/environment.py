@@ -1,6 +1,4 @@
-"""The environment of a mooring or tow: water or air, its depth, currents, wind, waves and
-seabed.
-"""
+"""Environment of a mooring or tow: water or air, depth, currents, wind, waves and seabed."""
 
 from __future__ import annotations
 
@@ -53,21 +51,20 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return this seabed with another reference point, at a given distance from the present one
-        [m].
+        """Return this seabed relative to another point.
+
+        The point is given in m east and north of the present reference point.
         """
         return self
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Depth increase per metre towards east and towards north [-]."""
+        """Increase in depth per metre to the east and to the north [-]."""
         azimuth, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
         return steep * math.sin(azimuth), steep * math.cos(azimuth)
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the depth increase [m] at positions east and north of the reference point [m];
-        shapes (n,) and (n, 2).
-        """
+        """Return the increase in depth (n,) at positions (n, 2) from the reference point [m]."""
         deeper: Floats = places @ np.array(self.plane)
         return deeper
 
@@ -91,26 +88,26 @@ SeabedGiven = Annotated[
 
 @dataclass(frozen=True)
 class Environment:
-    """The water or air around the line, and the loads that it causes.
+    """The water or air around a line, with currents, wind, waves and seabed.
 
     Attributes
     ----------
-    name : name of the variant or environment file in use
+    name : name of the variant or environment file in use; None for the default environment
     fluid : "water" or, in a tow only, "air"
-    depth : water depth [m]; None in a tow without one
+    depth : water depth [m]; None in a tow without a water depth
     density : density of the fluid [kg/m³], or temperature and salinity for it
     gravity : gravitational acceleration [m/s²]; None if not given
-    current : speeds by depth
+    current : current speeds and directions by depth
     wind : wind over the water
     position : position of the mooring; None if not given
     depth_range : water depth at low and at high water [m]
     fouling : marine growth on the line
-    maximum_speed : a faster current is reported as a mistake [m/s]; inf in a tow and in
-        air
+    maximum_speed : speed above which a current is reported as a mistake [m/s]; infinite in a tow
+        and in air
     seabed : slope of the seabed; level if not given
     waves : sea states as written
     seas : sea states as read from `waves`
-    doubts : sentences about values that are possible but probably mistakes
+    doubts : sentences about values that are possible but probably wrong
     """
 
     name: str | None
@@ -261,16 +258,16 @@ def read_environment(
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """Read the environment of a mapping; None if it has mistakes.
+    """Read an environment from a mapping; return None if it has mistakes.
 
     Parameters
     ----------
     section : the environment
-    name : name of the variant or environment file; None for the file's own environment
+    name : name of the variant or environment file; None for the default environment
     notices : list to which remarks are added
     towed : whether it is for a tow, which may be in air or have no water depth
     position : position that selects a column of a current file
-    open_files : whether current files are read; without them None is returned
+    open_files : whether current files are read; if one is needed and not read, None is returned
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:
@@ -323,8 +320,9 @@ STRONGEST_WIND = 75.0
 
 
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
-    """Return remarks about implausible currents in a table of the file; none for a current from a
-    record.
+    """Return remarks about implausible currents in a table of the file.
+
+    There are none for a current from a record, whose remarks are reported with it.
     """
     if current.record is not None:
         return []
@@ -358,7 +356,7 @@ def _seabed(
     section: SourceMapping,
     notices: list[str],
 ) -> Seabed | None:
-    """Read the seabed; a grid is read over the area that the mooring may reach.
+    """Return the seabed; a grid is read from its file over the area that the mooring may reach.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Compare two mooring files piece by piece, and their other keys.
+"""Compare the pieces and the other values of two mooring files.
 
 Parts of the two lines are matched by label, otherwise by content and order. A label is used only if
 it is unique in each line. Labels with a number added by `numbered` are not used, because a shackle
@@ -32,9 +32,10 @@ Value = float | str | None
 
 @dataclass(frozen=True)
 class ComparedValue:
-    """Value in a file [SI, degrees], or text, with its display form.
+    """A number [SI, degrees] or text in a file, with the text by which it is displayed.
 
-    `table` is the table that a text summarises, since two different tables may have the same text.
+    `table` is the table that a text summarises; it is compared as well, because two different
+    tables may have the same text.
     """
 
     value: Value
@@ -64,7 +65,7 @@ class Differences:
 
     Attributes
     ----------
-    changed : changed values: those outside the line, then those of the line from the top
+    changed : changed values: first those outside the line, then those of the line from the top
     moved : parts at another place in the line, each with the part above it
     removed, added : labels of removed and added pieces and clamps
     pairs : matched pieces and clamps, in the order of the first line
@@ -78,7 +79,7 @@ class Differences:
 
     @property
     def any(self) -> bool:
-        """Whether the files differ at all."""
+        """Whether the files differ in any way."""
         return bool(self.changed or self.moved or self.removed or self.added)
 
 
@@ -146,9 +147,10 @@ def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
 def _known_clamps(
     clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
 ) -> list[Known]:
-    """Return the known contents of clamps, which match only on matched pieces.
+    """Return the contents of clamps, which match only if their pieces are matched.
 
-    `partner` is the index of the matched piece in the other line; None in the first line.
+    `partner` gives the index of the matched piece in the other line; it is None for the clamps of
+    the second line.
     """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []
@@ -174,7 +176,7 @@ def _of_part(
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
-    """Return the values of a part set in the line, without its component definition."""
+    """Return the values that the line sets for a part, without its component definition."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -189,7 +191,8 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
 def _around(file: MooringFile) -> dict[str, ComparedValue]:
     """Return all values outside the line."""
     found = {name: _figure(name, getattr(file, name) or None) for name in ("name", "description")}
-    around = _figures(file.environment, frozenset({"position", "seas"}))  # they follow from others
+    # position and sea states follow from other values
+    around = _figures(file.environment, frozenset({"position", "seas"}))
     found |= {f"environment.{key}": one for key, one in around.items()}
     names = "position", "tow", "solver", "checks", "uncertainty", "document", "deployed"
     parts = {name: part for name in names if (part := getattr(file, name)) is not None}
@@ -206,7 +209,7 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 
 
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
-    """Return the fields of a model; fields of nested models have dotted names."""
+    """Return the values of a model by name; fields of nested models have dotted names."""
     found: dict[str, ComparedValue] = {}
     model = type(part).model_fields if isinstance(part, BaseModel) else {}
     for name, value in _fields(part).items():
@@ -283,9 +286,9 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """Content of a part, with its label as it was before `numbered` added a number.
+    """Content of a part for the comparison, with its label before `numbered` added a number.
 
-    `contents` are keys of decreasing strictness; parts with an equal key are alike.
+    `contents` are keys of decreasing strictness; parts with an equal key are considered equal.
     """
 
     label: str
@@ -299,7 +302,7 @@ class Alignment:
     Attributes
     ----------
     pairs : indices of matched parts, in the order of the first line
-    moved : those pairs whose order has changed
+    moved : the pairs whose order has changed
     removed, added : indices of parts that are in one line only
     """
 
@@ -310,7 +313,7 @@ class Alignment:
 
 
 def own_labels(labels: Sequence[str]) -> list[str]:
-    """Return the labels without their numbers, if the numbers run from 1 to n."""
+    """Remove the numbers from labels that are numbered from 1 to n."""
     numbers: dict[str, list[int]] = defaultdict(list)
     matches = [_NUMBERED.fullmatch(label) for label in labels]
     for match in filter(None, matches):
@@ -323,7 +326,7 @@ def own_labels(labels: Sequence[str]) -> list[str]:
 
 
 def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
-    """Pair the parts of two lines, each at most once."""
+    """Match the parts of two lines; each part is matched at most once."""
     there = _places(after)
     pairs = {i: there[label] for label, i in _places(before).items() if label in there}
     in_order = _longest_rise([pairs[i] for i in sorted(pairs)])
@@ -364,8 +367,10 @@ def _pair_between(
     way: int,
     pairs: dict[int, int],
 ) -> None:
-    """Pair, in order, the parts with equal keys between two known pairs, and remove them from the
-    lists.
+    """Match the parts with equal keys, in order, between two parts that are already matched.
+
+    Matched indices are added to `pairs`, and removed from `left` and `right`. `way` is the index of
+    the key.
     """
     if not left or not right:
         return

@@ -20,11 +20,11 @@ def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
 
 
 class Equipment(definition.Model):
-    """Keys for the individual equipment at a position of the line.
+    """Individual equipment at a position in the line: keys of an item or clamp.
 
-    `serial` is a text, or a list with one text for each of the item's `count`, and for each item of
-    a component with `items`; each piece gets its own. After reading, `planned_depth` also holds a
-    depth given in the label.
+    `serial` is a text, or a list with one text for each repetition by `count` and for each of the
+    `items` of a component; each piece gets its own. After reading, `planned_depth` also holds a
+    depth that is given in the label.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
@@ -53,8 +53,12 @@ class Equipment(definition.Model):
         return listed_serials(self.serial)
 
     def of(self, repeat: int, items: int) -> Equipment:
-        """Return the equipment of the piece number `repeat` (from 0) in a row with a count, with
-        `items` items per piece.
+        """Return the equipment of one piece of an item.
+
+        Parameters
+        ----------
+        repeat : number of the piece within `count`, from 0
+        items : number of items of each piece
         """
         if not isinstance(self.serial, tuple):
             return self
@@ -133,12 +137,13 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
-    """Check the number and uniqueness of serial numbers, and that only single pieces have a planned
-    depth.
+    """Check the serial numbers of an item, and that a planned depth belongs to a single piece.
 
     Parameters
     ----------
-    items : number of items of each piece, with a serial number each; None if unknown
+    item : the item
+    count : number of pieces
+    items : number of items of each piece, with one serial number each; None if unknown
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
@@ -157,8 +162,9 @@ def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
 
 
 def _numbers_twice(serials: Sequence[object]) -> str:
-    """Return the first serial number that occurs twice in a list, or ""; texts without digits, such
-    as question marks, may be repeated.
+    """Return the first serial number that occurs twice in a list, or "".
+
+    Texts without digits, such as question marks, may be repeated.
     """
     texts = [str(one) for one in serials]
     numbers = (one for one in texts if any(digit.isdigit() for digit in one))

@@ -99,7 +99,7 @@ FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
-    """Return the keys that define an end; a `free` end has none."""
+    """Return the keys of a leg end; `free` has none."""
     if value == "free":
         return {}
     if not isinstance(value, dict):
@@ -131,7 +131,7 @@ class LegKeys(Model):
 
 @dataclass(frozen=True)
 class FileLeg:
-    """A leg with its two ends: pieces from index `first` up to, but not including, index `end`.
+    """A leg and its two ends; its pieces have indices from `first` up to, but not including, `end`.
 
     An end without a key is free.
     """
@@ -143,7 +143,7 @@ class FileLeg:
     bottom: EndKeys
 
     def grown(self, index: int, more: int) -> FileLeg:
-        """Return the leg after insertion of pieces below the piece with a given index."""
+        """Return the leg after `more` pieces have been inserted below the piece at an index."""
         return replace(
             self,
             first=self.first + more * (self.first > index),
@@ -157,8 +157,9 @@ class FileLeg:
 
 
 def stand_in_anchor(index: int, item: int) -> Piece:
-    """Create a substitute anchor with a reserved id, without height and practically unlimited in
-    weight.
+    """Create a substitute anchor with a reserved id.
+
+    It has no height, and practically unlimited weight.
     """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
@@ -171,7 +172,7 @@ def read_legs(
 
     Parameters
     ----------
-    position : position of the origin of places
+    position : geographic position of the origin, for ends given by latitude and longitude
     """
     if "line" in top.data:
         message = "`line` and `legs` exclude each other; give the line as a leg"
@@ -198,7 +199,7 @@ def read_legs(
         before, first = len(top.problems), len(pieces)
         if isinstance(own.data.get("line"), list):
             read = reader.read(own, "line")
-            for piece in read:  # places count the items of the legs before
+            for piece in read:  # places also count the items of preceding legs
                 place = replace(piece.place, item=piece.place.item + items)
                 pieces.append(placed(piece, place))
             items += len(own.data["line"])
@@ -215,7 +216,7 @@ def read_legs(
 
 
 def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:
-    """Read the ends of a leg; the lower end is anchored if the last piece is an anchor."""
+    """Check and return the ends of a leg; an anchor as last piece makes the lower end anchored."""
 
     def refuse(place: tuple[str | int, ...], message: str) -> None:
         own.refuse(place, message, key=bool(place))
@@ -272,9 +273,7 @@ def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float 
 
 
 def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
-    """Check that legs join at every node, and that every leg is connected to an anchor or a held
-    end.
-    """
+    """Check that legs meet at every node, and that every leg is held."""
     section = top.child("legs")
     joins = [
         (leg, name, end.join)
@@ -304,7 +303,7 @@ def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
 
 
 def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
-    """Check that every leg is connected to an anchor or a held end.
+    """Check that every leg is connected to an anchor or a held end, directly or by other legs.
 
     Two anchors may share a position only if the file specifies the positions of both.
     """
@@ -336,6 +335,6 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
 
 
 def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:
-    """Number the nodes in the order of the legs; return the number of each name."""
+    """Number the nodes in the order of the legs; return the numbers by name."""
     names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
     return {name: number for number, name in enumerate(names)}

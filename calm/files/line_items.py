@@ -34,10 +34,10 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Expands line items to pieces; mistakes are added to the mistakes of the file, remarks to
-    `notices`.
+    """Reader that expands line items to pieces.
 
-    `towed` and `in_air` determine the keys and figures allowed.
+    Mistakes are added to the mistakes of the file, and remarks to `notices`. `towed` and `in_air`
+    determine which keys and values are allowed.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class LineReader:
         self._index: WordIndex | None = None
 
     def check(self, ids: Iterable[str]) -> None:
-        """Validate definitions, whether or not the line uses them."""
+        """Validate the definitions with the given ids, used by the line or not."""
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:
@@ -71,7 +71,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the list of items under a key; items with mistakes are skipped."""
+        """Read the list of items under a key; items with mistakes are recorded and skipped."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):
@@ -82,7 +82,7 @@ class LineReader:
         return tuple(pieces)
 
     def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
-        """Return the items of a list, which are all mappings."""
+        """Return the items of a list; items that are not mappings are recorded as mistakes."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             section.refuse((key,), f"`{key}` must be a list of items, as `{key}: [{{use: sbe37}}]`")
@@ -127,10 +127,11 @@ class LineReader:
         )
 
     def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
-        """Check the keys of an item with an unknown component.
+        """Check the keys of an item whose component is unknown or has mistakes.
 
-        The length is checked, and so are keys with the same dimension in all kinds of components.
-        Keys that no kind has are rejected. With `judged`, the keys are checked elsewhere.
+        The length is checked. Unless `judged`, other keys are checked, too: keys that no kind of
+        component has are rejected, and values are checked if the key has the same dimension in all
+        kinds.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -192,7 +193,7 @@ class LineReader:
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
-        """Return the unstretched length [m] of a cable measured under a load, and the load [N]."""
+        """Return the unstretched length [m] of a cable measured under a load, and this load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must be as `{example}`")
@@ -207,8 +208,9 @@ class LineReader:
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
-        """Return the depth to which a piece is cut to fit: depth of the top of the line or, in a
-        tow, of the lower end of the piece.
+        """Return the depth [m] that determines the length of a piece that is cut to fit.
+
+        It is the depth of the top of the line or, in a tow, of the lower end of the piece.
         """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
@@ -233,7 +235,7 @@ class LineReader:
             self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
-        """Read the clamps of an item; clamps beyond a known length are rejected."""
+        """Read the clamps of an item; clamps beyond the end of the piece are rejected."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -262,8 +264,9 @@ class LineReader:
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
     ) -> item_keys.Equipment:
-        """Read the individual-equipment keys; without `planned_depth`, the depth in the label is
-        used.
+        """Read the keys for individual equipment.
+
+        The default of `planned_depth` is the depth in the label.
         """
         equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):
@@ -273,7 +276,7 @@ class LineReader:
         return equipment if named is None else equipment.planned_for(named)
 
     def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
-        """Expand an assembly to pieces, all at the position of the item that uses the assembly."""
+        """Expand an assembly to pieces, all with the position of the item that uses it."""
         if entry.id in self._open:
             item.refuse(("use",), f"assembly `{entry.id}` contains itself")
             return ()
@@ -292,10 +295,11 @@ class LineReader:
     def _with_serials(
         self, pieces: tuple[Piece, ...], item: SourceMapping, count: int
     ) -> tuple[Piece, ...]:
-        """Assign the serial numbers of an item to the pieces of its assembly.
+        """Distribute the serial numbers of an item over the parts of its assembly.
 
-        Serial numbers belong to the instruments and releases of the assembly, or else to its
-        floats, in order: one number per item of a component, assembly by assembly.
+        The numbers are those of the instruments and releases of the assembly or, if it has none, of
+        its floats. They are listed in order, one for each item of a component, one assembly after
+        another.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:
@@ -338,7 +342,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Add the values of an assembly to those of its pieces that lack them."""
+        """Copy values of an assembly to those of its parts that lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -381,7 +385,7 @@ class LineReader:
         return entry
 
     def _suggested(self, use: str) -> list[str]:
-        """Return up to three ids that an unknown id may stand for."""
+        """Return up to three ids that may be meant by an unknown id."""
         from calm.files.catalogue_search import WordIndex
 
         if len(use) > LONGEST_TEXT:
@@ -393,7 +397,7 @@ class LineReader:
     def _definition(
         self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
-        """Return the definition that an item uses, with the item's overrides."""
+        """Return the definition that an item uses, with the overrides of the item."""
         if entry.id not in self._defined:
             own = entry.section.into(self._problems)
             self._defined[entry.id] = self._define(entry, own)
@@ -441,8 +445,9 @@ class LineReader:
         definition: Component | Outline,
         component: Component,
     ) -> None:
-        """Record the overrides of a line that allow a component more load, depth or buoyancy, or
-        less weight or drag.
+        """Record overrides that make the check more lenient.
+
+        They allow a component more load, depth or buoyancy, or give it less weight or drag.
         """
         loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
@@ -491,7 +496,7 @@ class LineReader:
             return None
 
     def _named(self, item: SourceMapping) -> str:
-        """Return the label that an item or a clamp gives, "" if none."""
+        """Return the label given for an item or a clamp, or ""."""
         return self._label(item) if "label" in item.data else ""
 
     def _label(self, item: SourceMapping) -> str:
@@ -502,7 +507,7 @@ class LineReader:
 
 
 def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
-    """Add a value to a piece of an assembly, or to clamps on the piece, if they lack the value."""
+    """Set a value of a piece, and of the clamps on it, if they lack the value and need it."""
 
     def filled(part: _Part) -> _Part:
         component: Component = part.component
@@ -517,7 +522,7 @@ def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Pi
 
 
 def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
-    """Return whether a component lacks a value needed at its position in the line."""
+    """True if a component lacks a value that it needs in its position."""
     if key in ("working_load", "breaking_load"):
         return not clamped and component.working_load is component.breaking_load is None
     if key == "grip":

@@ -1,4 +1,4 @@
-"""Mooring-file keys other than the design: document, display units, releases, deployment."""
+"""Keys of a mooring file besides the design: document, display units, releases, deployment."""
 
 from __future__ import annotations
 
@@ -59,13 +59,14 @@ class OutputUnits(definition.Model):
 
     @property
     def chosen(self) -> dict[str, str]:
-        """The chosen unit of each dimension."""
+        """Chosen units by dimension."""
         return self.model_dump(exclude_none=True)
 
 
 def nearest_unit(text: str) -> tuple[str, str] | None:
-    """Find the dimension and the display unit that a text such as `knots` means; None if there is
-    none.
+    """Find the dimension and display unit that a text such as `knots` means.
+
+    Return None if there is none.
     """
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):
@@ -117,7 +118,7 @@ class DocumentKeys(definition.Model):
     )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the specified keys as JSON data."""
+        """Return the keys that are set, as JSON data."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
@@ -190,14 +191,16 @@ class Deployed(definition.Model):
 def check_deployed(
     deployed: Deployed, labels: Sequence[str], cables: Sequence[str], top: SourceMapping
 ) -> None:
-    """Check that deployed items are parts of the line, occur once, and have a length only if they
-    are cables.
+    """Check the deployed items of a mooring file.
+
+    They must be parts of the line and occur once; only cables may have a length.
 
     Parameters
     ----------
+    deployed : the deployment
     labels : labels of pieces and clamps
     cables : labels of cables and chains, which are cut to length
-    top : the mooring file
+    top : top level of the mooring file
     """
     seen: set[str] = set()
     for number, item in enumerate(deployed.items):

@@ -1,4 +1,4 @@
-"""A validated mooring file: expanded line, environment and settings, in SI units and degrees."""
+"""Validated mooring file: expanded line, environment and settings, in SI units and degrees."""
 
 from __future__ import annotations
 
@@ -79,15 +79,15 @@ class Solver(Model):
 class MooringFile:
     """A mooring file in which all references are resolved.
 
-    `pieces` are listed from the top of a mooring to its anchor; in a tow, in which `tow` is not
-    None, from the ship to the towed body. In a net the pieces of the `legs` follow one another.
+    `pieces` are listed from the top of a mooring to its anchor, and in a tow (`tow` is not None)
+    from the ship to the towed body. If there are `legs`, their pieces are listed leg by leg.
 
-    `notices` are remarks for the user, such as a catalogue entry hidden by a nearer one or levels
-    left out of a measured current. `variants` are the unvalidated further environments by name.
-    `accepts` are the accepted findings of the design check, `uncertainty` applies to the inputs,
-    and `looser` are limits that the line sets less strictly than the definitions of its components.
-    `document` is the title block, `releases` are the codes of the releases, `deployed` is the
-    deployment, and `units` are the units of display.
+    `notices` are remarks for the user, for instance that a component of the user hides one of the
+    catalogue, or that levels of a measured current were discarded. `variants` are the named
+    environments, not validated. `accepts` are the accepted findings of the design check,
+    `uncertainty` is the uncertainty of the inputs, and `looser` are limits that the line sets less
+    strictly than the definitions of its components. `document` is the title block, `releases` are
+    the codes of the releases, `deployed` is the deployment, and `units` are the display units.
     """
 
     path: str
@@ -115,26 +115,28 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Index of the lowest release in the line, or None. Parts above the lowest release are
-        recovered.
+        """Index of the lowest release in the line; None if there is none.
+
+        Parts above it are recovered.
         """
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None
 
     @property
     def anchor(self) -> Anchor:
-        """Return the anchor, the last piece of a mooring's line."""
+        """Anchor of the mooring, the last piece of its line."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
 
     @property
     def anchor_friction(self) -> float:
-        """Friction coefficient between anchor and seabed: of the anchor, else from `checks:`.
+        """Friction coefficient with which the anchor would hold as well on a level seabed.
 
-        On a slope b, an anchor of weight w loaded by H down the slope holds if H cos b + w sin b <=
-        friction (w cos b - H sin b). This corresponds to a friction coefficient
-        tan(arctan(friction) - b) on a level seabed, for the least favourable direction.
+        It follows from the friction of the anchor, or else from that of `checks:`, and from the
+        slope b of the seabed. An anchor of weight w under a load H down the slope, the least
+        favourable direction, holds if H cos b + w sin b <= friction (w cos b - H sin b). On a level
+        seabed this corresponds to the friction coefficient tan(arctan(friction) - b).
         """
         own, seabed = self.anchor.friction, self.environment.seabed
         friction = self.checks.anchor_friction if own is None else own
@@ -145,7 +147,7 @@ class MooringFile:
     def leg_alone(self, leg: FileLeg) -> MooringFile:
         """Return a file with a single leg, whose pieces are counted from its upper end.
 
-        A leg without an anchor, in a net, gets a substitute with the id `STAND_IN`.
+        A leg without an anchor gets a substitute anchor with the id `STAND_IN`.
         """
         if not self.legs:
             return self
@@ -174,7 +176,7 @@ class MooringFile:
 def unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Return notes about entries under `releases` whose serial number belongs to no piece."""
+    """Return a note for each entry under `releases` whose serial number belongs to no piece."""
     parts = [part for part in parts_of(pieces) if part.component.role == "release"]
     given = {} if deployed is None else deployed.serials
     serials = {one for part in parts for one in (*part.serials, *given.get(part.label, ()))}
@@ -188,9 +190,7 @@ def unknown_releases(
 def check_fit(
     pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
 ) -> None:
-    """Check that the depth to be reached by a fitted piece is above the seabed, and below a towing
-    ship.
-    """
+    """Check the depth to which a piece is cut to fit: above the seabed, and below a towing ship."""
     for piece in pieces:
         here = piece.line, piece.column
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
@@ -217,7 +217,7 @@ def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
 
 
 def leg_numbers(file: MooringFile) -> list[int]:
-    """Leg number of each piece."""
+    """Return the number of the leg of each piece."""
     return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
@@ -234,8 +234,6 @@ def refuse_tow(file: MooringFile) -> None:
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError for tows and for files with legs, for functions that need a single
-    mooring.
-    """
+    """Raise UsageError for a tow or several legs, for functions that need a single mooring line."""
     refuse_several(file)
     refuse_tow(file)

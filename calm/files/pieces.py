@@ -21,10 +21,10 @@ STAND_IN = ""
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Position of a piece or clamp in the line, which identifies it after reading.
+    """Position of a piece or clamp in the file, which identifies it after reading.
 
-    Each item of the file has a place, independent of its `count`: `Place(3)` is the fourth item,
-    `Place(3, clamp=0)` its first clamp.
+    `Place(3)` is the fourth item of the line, whatever the `count` of items above it, and `Place(3,
+    clamp=0)` is the first clamp of the fourth item.
 
     Attributes
     ----------
@@ -45,9 +45,7 @@ class Place:
 
     @property
     def row(self) -> Place:
-        """Position of the corresponding row in the file; for a part of an assembly, the row of the
-        assembly.
-        """
+        """Place of the row in the file; for a part of an assembly, the item that uses it."""
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
@@ -65,12 +63,12 @@ class LinePart(Protocol):
 
 @dataclass(frozen=True)
 class Clamp:
-    """An instrument clamped on a piece, `at` metres of unstretched length below the upper end of
-    the piece.
+    """An instrument clamped on a piece.
 
-    A profiler moves over `travel`, the distances of its upper and lower stop from the piece's top;
-    inf is the lower end of the piece. Its position `at` is the position of the upper stop. `named`
-    is its label in the file, empty if there is none.
+    `at` is its distance below the upper end of the piece, in metres of unstretched length. A
+    profiler moves over `travel`, the distances of its upper and lower stop from the upper end of
+    the piece; inf is the lower end. Its `at` is the upper stop. `named` is the label in the file,
+    empty if there is none.
     """
 
     use: str
@@ -100,23 +98,24 @@ class Clamp:
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of the expanded line.
+    """A piece of a line, after the expansion of counts and assemblies.
 
     Attributes
     ----------
     index : position in the line, 0 at the top (in a tow, at the ship)
-    use, label : id of the component; the label is unique in the line
-    component : its definition with the overrides of the line
-    length : unstretched length [m]; None for the piece that is cut to fit
-    fit_top_depth : intended depth of the line's top in still water [m], for the piece cut to fit
+    use, label : id of the component, and label of the piece, which is unique in the line
+    component : definition of the component with the overrides of the line
+    length : unstretched length [m]; None for a piece that is cut to fit
+    fit_top_depth : intended depth of the top of the line in still water [m], for a piece that is
+        cut to fit
     clamps : the clamps on it
-    line, column : place of the item in the mooring file, counted from 1
-    place : its place in the line
-    fit_body_depth : intended depth of the piece's lower end at the tow's speed [m], for a piece
-        that is cut to fit
-    equipment : keys about the individual piece
-    measured_load : load under which its length was measured [N]; `length` is nevertheless that
-        without load
+    line, column : position of the item in the text of the mooring file, counted from 1
+    place : place of the piece in the file
+    fit_body_depth : intended depth of the lower end of the piece under tow [m], for a piece that is
+        cut to fit
+    equipment : serial number and other keys of the individual piece
+    measured_load : load under which the length was measured [N]; `length` is nevertheless the
+        length without load
     named : label in the file, empty if there is none
     """
 
@@ -137,7 +136,7 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this piece, or the numbers of its items as one text; None if unknown."""
+        """Serial number of this piece, or those of its items in one text; None if unknown."""
         return _serial(self.equipment)
 
     @property
@@ -151,19 +150,16 @@ class Piece:
         return self.equipment.planned_depth
 
     def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
-        """Return the piece with a function applied to each clamp, and with the given fields
-        replaced.
-        """
+        """Return the piece with a function applied to each clamp, and with other fields changed."""
         return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
 
 
 def holds_instrument(part: Piece | Clamp) -> bool:
-    """Return whether a part is an instrument or a release, or holds one, such as a float with an
-    ADCP.
+    """True if a part is an instrument or a release, or holds one, such as a float with an ADCP.
 
-    A part of another role holds an instrument if it has a limit of tilt, a calibration, a sampling
-    scheme or a battery. So does a float with a serial number; those of cables, chains, connecting
-    hardware and anchors identify the part itself.
+    A part with another role holds an instrument if it has a tilt limit, a calibration, a sampling
+    scheme or a battery. A float with a serial number holds an instrument, too; serial numbers of
+    cables, chains, connecting hardware and anchors identify the part itself.
     """
     component, own = part.component, part.equipment
     data = (component.max_tilt, component.warn_tilt, own.calibrated, own.sampling,
@@ -180,9 +176,7 @@ def _serial(equipment: Equipment) -> str | None:
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """Move a piece with its clamps to a position of the line, and assign the serial numbers of that
-    position.
-    """
+    """Move a piece with its clamps to a place in the file, and select its serial numbers."""
 
     def moved(clamp: Clamp) -> Clamp:
         own = replace(place, clamp=clamp.place.clamp)
@@ -193,7 +187,7 @@ def placed(piece: Piece, place: Place) -> Piece:
 
 
 def unplanned(piece: Piece) -> Piece:
-    """Return a piece and its clamps without planned depths."""
+    """Remove the planned depths of a piece and its clamps."""
 
     def without(clamp: Clamp) -> Clamp:
         return replace(clamp, equipment=clamp.equipment.planned_for(None))
@@ -239,9 +233,7 @@ def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
 
 
 def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
-    """Return the clamps of a line in the order of the file, which is also the order of the
-    solver.
-    """
+    """Return the clamps of a line in the order of the file and of the solver."""
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 

@@ -1,21 +1,26 @@
 """Planned depth of a piece or a clamp, found in its label.
 
-A label names a depth if it has exactly one number with the unit of a length (``meter 200 m``,
-``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650 ft``), a number after ``@``, or ends in four digits that
-a hyphen or an underscore joins to it and that begin with 0 (``CTD_0400``) or are a multiple of 50
-(``CTD_1500``): others, as in ``MC_1729``, may be a serial number. No depth is
+A label states a depth if it has exactly one number that
 
-- a serial number or another number with ``SN``, ``serial``, ``no.``, ``#`` or the like before it,
-  or the part's own serial number;
-- the depth rating of the component, unless ``@`` stands before it (``Aquadopp 6000 m``);
-- four digits that do not begin with 0 behind a model that has digits itself (``SBE37_1700``), which
-  mostly are a serial number;
-- any number of a label that names a length, a range or a height: of cable, wire, rope or chain,
-  ``range``, ``rated``, ``above``, ``below``, ``mab`` and the like;
-- a range such as ``50-1000 m``, or one of two numbers; nor ``1 200 m``, ``3x100 m`` or ``1.2e2 m``.
+- is followed by a unit of length (``meter 200 m``, ``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650
+  ft``),
+- or follows ``@``,
+- or consists of four digits at the end, after a hyphen or an underscore, and begins with 0
+  (``CTD_0400``) or is a multiple of 50 (``CTD_1500``): others, as in ``MC_1729``, may be serial
+  numbers.
 
-The label of a cable or chain names no plan, nor does that of a connector, a release, an anchor or a
-profiler, which travels. A float counts if its label names 10 m or more: smaller numbers are sizes.
+The following numbers are not depths:
+
+- a serial number, or another number after ``SN``, ``serial``, ``no.``, ``#`` or the like;
+- the depth rating of the component, unless it follows ``@`` (``Aquadopp 6000 m``);
+- four digits that do not begin with 0 after a model that has digits itself (``SBE37_1700``), which
+  are usually a serial number;
+- any number in a label that mentions a length, a range or a height, by words such as cable, wire,
+  rope, chain, ``range``, ``rated``, ``above``, ``below`` or ``mab``;
+- a range such as ``50-1000 m``, or one of its two numbers; ``1 200 m``, ``3x100 m`` or ``1.2e2 m``.
+
+Labels of cables, chains, connectors, releases and anchors state no planned depth, nor do those of
+profilers, which travel. In the label of a float, a number below 10 m is a size and not a depth.
 """
 
 from __future__ import annotations
@@ -82,9 +87,7 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Return the planned depth found in the label of a piece or a clamp [m]; None if there is
-    none.
-    """
+    """Return the planned depth in the label of a piece or a clamp [m]; None if there is none."""
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

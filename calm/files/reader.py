@@ -102,16 +102,19 @@ def read_mooring(
     text: str | None = None,
     stand_in: bool = False,
 ) -> MooringFile:
-    """Read a mooring file and all files that it refers to, in one environment.
+    """Read a mooring file and all files to which it refers, in one environment.
 
-    InputError: the file has mistakes; all are listed, each with its place.
+    Raises
+    ------
+    InputError
+        The file has mistakes; all are listed, each with its position.
     """
     reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in)
     return reader.in_environment(environment)
 
 
 class _ReadLine(NamedTuple):
-    """Pieces of the line and the keys that refer to them, with their mistakes."""
+    """Pieces of the line and the keys that refer to pieces, with notices and mistakes."""
 
     pieces: tuple[Piece, ...]
     legs: tuple[FileLeg, ...]
@@ -124,15 +127,19 @@ class _ReadLine(NamedTuple):
 class MooringReader:
     """Reader of a mooring file, which reads the line once for all environments.
 
-    InputError: the file or a catalogue cannot be read at all.
-
     Parameters
     ----------
-    catalogs : catalogue files with priority over the user's and the shipped ones, the last first
-    text : text used in place of the file, which need not exist; files that it refers to are
-        looked for beside it
+    catalogs : catalogue files, which take precedence over the user's and the shipped ones; later
+        files take precedence over earlier ones
+    text : text to read instead of the file, which then need not exist; files to which it refers are
+        looked up in the folder of `path`
     stand_in : whether a line without an anchor gets a substitute of unlimited weight, with the id
         `STAND_IN`
+
+    Raises
+    ------
+    InputError
+        The file or a catalogue cannot be read at all.
     """
 
     def __init__(
@@ -161,9 +168,12 @@ class MooringReader:
         self._catalogue = catalogue
 
     def in_environment(self, environment: str | Path | None = None) -> MooringFile:
-        """Read the file in a named variant, an environment file, or by default its own environment.
+        """Read the file in a named variant or environment file, or in its default environment.
 
-        InputError: the file has mistakes; all are listed, each with its place.
+        Raises
+        ------
+        InputError
+            The file has mistakes; all are listed, each with its position.
         """
         keys, problems = self._keys, [*self._problems]
         top = self._top.into(problems)
@@ -212,7 +222,7 @@ class MooringReader:
         )
 
     def _line(self, in_air: bool) -> _ReadLine:
-        """Read the line, for air or for water, and the keys that refer to pieces."""
+        """Read the line, for use in air or in water, and the keys that refer to pieces."""
         problems: list[Problem] = []
         notices: list[str] = []
         top, keys, towed = self._top.into(problems), self._keys, self._towed
@@ -250,7 +260,7 @@ def _child(section: SourceMapping, key: str) -> SourceMapping | None:
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Remove repeated problems, and sort: problems in the mooring file first, in file order."""
+    """Remove repeated problems and sort the others, with those in the mooring file first."""
     once = dict.fromkeys(problems)
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
@@ -291,10 +301,10 @@ def _check_slides(
     top: SourceMapping,
     depth: float | None,
 ) -> None:
-    """Check that no anchor slides down the slope, lies outside the depth grid, or is above the
-    water.
+    """Check the position of each anchor on the seabed.
 
-    `depth` is the water depth at the origin [m].
+    No anchor may slide down the slope, lie outside the depth grid, or be above the water. `depth`
+    is the water depth at the origin [m].
     """
     ends = {leg.end - 1: leg.bottom.anchor for leg in legs}
     for piece in pieces:
@@ -335,17 +345,18 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Select the environment of a file or a variant based on it; return the unvalidated section and
-    its name.
+    """Select an environment; return its section, not validated, and its name.
 
-    Variants that are not chosen are checked here, and so is the file's own environment if another
-    one is chosen, so that all mistakes are reported. Returns None if there is no environment.
+    A variant or environment file is based on the default environment of the file. Environments that
+    are not selected are checked here, so that all mistakes are reported. Return None if there is no
+    environment.
 
     Parameters
     ----------
     top : top level of the mooring file
-    chosen : a variant named in the file, or an environment file; None for the file's own
-    towed : whether it is a tow, which needs no environment and is then in deep, still sea water
+    chosen : name of a variant in the file, or path of an environment file; None for the default
+    towed : whether the file is a tow, which needs no environment and is then in deep, still sea
+        water
     """
     own = _child(top, "environment")
     if own is None:
@@ -387,8 +398,9 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check the keys of an environment that may have a base or serve as one, for any water
-    depth.
+    """Check an environment that may have a base or be one.
+
+    Its water depth may therefore be missing.
     """
     section = section.over(section.holding({"depth": "1 m"}))
     read_environment(section, None, [], open_files=False, towed=towed)

@@ -148,8 +148,9 @@ class Rigid(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net buoyancy in water, positive up [N]; if only the mass is known, minus the weight in
-        air.
+        """Net buoyancy in water, positive up [N].
+
+        If only the mass is known, the weight in air is used as the weight in water.
         """
         if self.buoyancy is not None:
             return self.buoyancy

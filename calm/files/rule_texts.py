@@ -14,13 +14,13 @@ class RuleText:
     Attributes
     ----------
     title : title for users
-    quantity : name in `calm.quantities` of its values and limits; "" for a rule without figures
+    quantity : name in `calm.quantities` of the values and limits; "" for a rule without values
     judges : the value that is checked
-    limit : its limit
+    limit : the limit of this value
     source : source of the rule and of its default limit
-    unseen : the reason, if the profiles of a batch cannot be checked
-    figures : figures of a component that the rule needs
-    has_ratio : whether its values and limits are demand and capacity
+    unseen : reason why the profiles of a batch cannot be checked; "" if they can
+    figures : keys of a component that the rule needs
+    has_ratio : whether value and limit are a demand and a capacity, whose ratio is meaningful
     """
 
     title: str

@@ -28,7 +28,7 @@ def mooring_schema() -> Schema:
     """Return the JSON Schema (draft 2020-12) of a mooring file."""
     models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
     models += [*KINDS.values(), ItemKeys, ClampKeys]
-    UniformCurrent.model_rebuild()  # a default is written by its model, which pydantic builds late
+    UniformCurrent.model_rebuild()  # pydantic builds models late, but needs this one for a default
     names, definitions = models_json_schema(
         [(model, "validation") for model in models], ref_template="#/$defs/{model}"
     )
@@ -89,8 +89,9 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Return the schema of all fields that can be overridden; a field that differs between kinds
-    allows all its forms.
+    """Return the schema of all fields that can be overridden.
+
+    A field that differs between kinds of components allows all its forms.
     """
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}

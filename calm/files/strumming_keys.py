@@ -102,7 +102,7 @@ def _forms_in(value: dict[str, object]) -> list[str]:
 
 
 def _written_out(value: object, info: ValidationInfo) -> object:
-    """Expand the name of a model to keys; check that a mapping is one of the forms."""
+    """Convert the name of a model to the model; check that a mapping is one of the forms."""
     if value is None:
         raise QuantityError("has no value")
     law = value.get("model") if isinstance(value, dict) else value
@@ -141,9 +141,7 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
 
 
 def _form(value: object) -> str:
-    """Return the name of the class for validation of a value; messages use this name to find the
-    keys.
-    """
+    """Return the name of the model class that validates a value; messages find the keys by it."""
     if isinstance(value, dict):
         return _FORMS[_forms_in(value)[0]].__name__
     return type(value).__name__

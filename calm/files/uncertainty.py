@@ -23,8 +23,8 @@ class Spread:
 
     Attributes
     ----------
-    deviation : standard deviation of a normal distribution; None with `between`
-    between : percentiles of 5 and 95 %
+    deviation : standard deviation of a normal distribution; None if `between` is set
+    between : 5th and 95th percentile
     """
 
     deviation: float | None = None
@@ -33,19 +33,19 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotate a key of `uncertainty:` with its range of values.
+    """Annotation of a key of `uncertainty:` with its range of values.
 
     Attributes
     ----------
-    one : the values of a standard deviation
-    end : the values of the percentiles of 5 and 95 %
+    one : allowed values of a standard deviation
+    end : allowed values of the 5th and 95th percentile
     """
 
     one: QuantityField
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Parse a text with a unit, or a list of two such texts."""
+        """Parse a standard deviation, as text with a unit, or a list of two percentiles."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:

@@ -87,11 +87,11 @@ warmer below its surface.
 def read_density(
     given: float | TableKeys | SeaWaterKeys, fluid: str, section: SourceMapping
 ) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
-    """Read the density of an environment; None if it has mistakes.
+    """Read the density of an environment; return None if it has mistakes.
 
     Parameters
     ----------
-    given : the value in the model
+    given : value of `density:` in the model
     fluid : "water" or "air"
     section : the environment
     """
@@ -119,12 +119,12 @@ def table_of(value: object) -> TableKeys | None:
 
 
 def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
-    """Build the table at a key of a mapping, with locations for messages.
+    """Build a table of quantities from the value of a key, with positions for messages.
 
     Parameters
     ----------
-    table : the value in the model
-    section, place : the mapping, and the keys of the table in it
+    table : value of the key in the model
+    section, place : the mapping, and the keys that lead to the table
     """
 
     def problem(at: Sequence[str | int], message: str) -> Problem:
@@ -145,9 +145,9 @@ heavier.
 def density_doubts(
     density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
 ) -> Iterator[str]:
-    """Yield notices, as sentences, about implausible densities of the water.
+    """Yield a sentence for each implausible density of the water.
 
-    The depth of the water [m] is None if unknown.
+    `depth` is the depth of the water [m]; None if unknown.
     """
     given: tuple[tuple[float, float], ...] = ()
     if isinstance(density, profile_tables.DepthTable):
@@ -213,7 +213,7 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
 
 
 def check_density(section: SourceMapping) -> None:
-    """Report mistakes in the tables of `density:`, also if another key of `density:` is wrong."""
+    """Report mistakes in the tables of `density:`, even if another of its keys is wrong."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)

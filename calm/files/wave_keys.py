@@ -1,6 +1,4 @@
-"""The key `waves:` of an environment: a design sea state, a table of sea states, or a measured
-spectrum.
-"""
+"""Key `waves:` of an environment: a design sea state, a table of sea states, or a spectrum."""
 
 from __future__ import annotations
 
@@ -90,14 +88,14 @@ class WaveKeys(Model):
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
     """Read the sea states of `waves:`; return an empty tuple if there are mistakes.
 
-    Sea states of a scatter table have their shares of the time; an additional single sea state has
-    a share of 0.
+    Sea states of a scatter table have their shares of time; an additional design sea state has a
+    share of 0.
 
     Parameters
     ----------
     section : the environment
-    open_files : whether its files, in the folder of the mooring file, are read; otherwise the
-        result is empty
+    open_files : whether files, in the folder of the mooring file, are read; if one is needed and
+        not read, the result is empty
     """
     before = len(section.problems)
     measured = keys.spectrum not in SPECTRA

@@ -1,7 +1,7 @@
-"""Parse YAML with the position of each value, and reject malicious files.
+"""Parse YAML files with the position of each value, and reject malicious files.
 
 Scalars are kept as text, because the meaning of `1000` depends on the field. Anchors, aliases and
-tags are refused, so that nothing can be expanded.
+tags are rejected, so that nothing can be expanded.
 
 Errors of pydantic are converted to messages of one line, with the place in the file.
 """
@@ -26,13 +26,13 @@ Location = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """Plain data of a YAML file, with its nodes if it was read from text.
+    """Plain data of a YAML file, with the nodes of its text.
 
     Attributes
     ----------
     path : path as shown in messages
     data : mappings, lists, text and None
-    root : the node with the places; None if the data are not from a text
+    root : top-level node, which has the positions; None if the data were not read from text
     """
 
     path: str
@@ -42,16 +42,17 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Build a problem at a value (or its key); if missing, at the nearest enclosing value.
+        """Build a problem at the position of a value, or of its key.
 
-        An empty value has the place of its key.
+        A missing value gets the position of the nearest enclosing value, an empty value that of its
+        key.
 
         Parameters
         ----------
         location : location of the value
         message : the message
         key : whether the problem is placed at the key
-        lacks : what is missing, if the file is incomplete but not wrong
+        lacks : the missing part, if the file is incomplete but not wrong
         """
         node = place = self.root
         for step in location:
@@ -66,15 +67,21 @@ class Document:
 def read_document(path: Path) -> Document:
     """Read a YAML file whose top level is a mapping.
 
-    InputError: the file cannot be read, is not text or valid YAML, or has duplicate keys.
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not text or valid YAML, or has duplicate keys.
     """
     return compose(str(path), read_text(path))
 
 
 def compose(name: str, text: str) -> Document:
-    """Parse a text to a document; `name` is shown as its path in messages.
+    """Parse a text to a document; `name` is its path in messages.
 
-    InputError: it is not valid YAML, or has duplicate keys.
+    Raises
+    ------
+    InputError
+        The text is not valid YAML, or has duplicate keys.
     """
     root, refusals = composition.compose(text.removeprefix("\ufeff"))
     if root is not None and root.kind != "mapping":
@@ -93,11 +100,12 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location : place of the mapping (not of its base); problems without a key are reported
-        there
-    data : the keys of the mapping and, if it lacks them, those of its base
+    document, location : position of the mapping itself, not of its base, at which problems without
+        a key are reported
+    data : keys and values of the mapping, completed by those of its base
     base : the base, or None
-    problems : mistakes found in it; all mistakes of a file are in one list
+    own : keys of the mapping itself
+    problems : list to which mistakes are added; all mappings of a file share it
     """
 
     document: Document
@@ -113,18 +121,16 @@ class SourceMapping:
         return cls(document, (), document.data, None, frozenset(document.data), problems)
 
     def holding(self, data: dict[str, Any]) -> SourceMapping:
-        """Return a mapping with other data at this position of the document."""
+        """Return a mapping with other data at the same position of the document."""
         own = frozenset(data)
         return SourceMapping(self.document, self.location, data, None, own, self.problems)
 
     def into(self, problems: list[Problem]) -> SourceMapping:
-        """Return this mapping with another list of mistakes."""
+        """Return this mapping with another list for its mistakes."""
         return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """Return this mapping with another mapping as its base, without the dropped keys of the
-        base.
-        """
+        """Return this mapping with another mapping as its base, except for keys in `dropping`."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return replace(self, data={**kept, **self.data}, base=base)
 
@@ -153,11 +159,11 @@ class SourceMapping:
     def refuse(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> None:
-        """Add a problem; parameters as in `problem`."""
+        """Record a problem; parameters are as in `problem`."""
         self.problems.append(self.problem(location, message, key=key, lacks=lacks))
 
     def refuse_at(self, line: int, column: int, message: str, *, lacks: str = "") -> None:
-        """Add a problem at a line and column of the file."""
+        """Record a problem at a line and column of the file."""
         self.problems.append(Problem(self.document.path, line, column, message, lacks))
 
 
@@ -188,7 +194,7 @@ def validate(
 
 
 def complaint(model: type[BaseModel], name: str, value: object) -> str:
-    """Explain why a value is invalid for a single key of a model; empty if it is valid."""
+    """Return the reason why a value of a single key of a model is invalid; "" if it is valid."""
     data = {name: value}
     try:
         model.model_validate(data)
@@ -245,8 +251,9 @@ def _explain(
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """Return the part of a pydantic location that exists in the data, without the tags of
-    unions.
+    """Return the part of a location that exists in the data, and the value there.
+
+    Locations of pydantic also contain tags of unions, which the result omits.
     """
     location: list[str | int] = []
     for part in loc:
@@ -345,7 +352,7 @@ def _flow(value: object) -> str:
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """Return the type at a pydantic location, which may contain tags of unions."""
+    """Return the type at a location of pydantic, which may contain tags of unions."""
     form: Any = model
     for part in loc:
         models = _models_in(form)

@@ -1,4 +1,4 @@
-"""Messages about invalid YAML that name the mistake of the writer instead of the parser state."""
+"""Messages about invalid YAML that explain the mistake, not the state of the parser."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def without_colon(text: str) -> str:
 
 
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
-    """Find the mistake behind a parser error; every tab in the indentation is reported.
+    """Explain an error of the parser; every tab in the indentation is reported.
 
-    An error of an unknown kind is reported in the words of the parser.
+    The message of the parser is used for an error of an unknown kind.
     """
     lines = text.splitlines()
     if "\\t" in str(error.problem):
@@ -88,8 +88,10 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
 
 
 def _colon(lines: list[str], mark: Mark) -> Mistake | None:
-    """Explain a misplaced colon: second on its line, after a line without a colon, or on a line
-    with too much indentation.
+    """Explain a misplaced colon.
+
+    It may be the second in its line, or in a line below one without a colon, or in a line with too
+    much indentation.
     """
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
@@ -110,7 +112,7 @@ def _without_colon(lines: list[str], number: int) -> Mistake:
 
 
 def _above(lines: list[str], number: int) -> int | None:
-    """Return the number of the next line above that is not empty; None if there is none."""
+    """Return the number of the nearest line above that is not empty; None if there is none."""
     return next((each for each in reversed(range(number)) if _content(lines[each])), None)
 
 

@@ -1,1 +1,1 @@
-"""Gridding: measurements at moving depths, interpolated to fixed levels with uncertainty."""
+"""Gridding: interpolation of measurements at moving depths to fixed levels, with uncertainty."""

@@ -4,10 +4,12 @@ The field is a mean profile plus an anomaly, both estimated from the record. The
 of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
 an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
 2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). Part of the variance is uncorrelated:
-scales below the sensor spacing, and sensor noise. Depth errors times the local gradient are added
-to the resulting deviation, because they may be common to the line for the whole record and do not
-average out. Half of their variance also counts as independent noise of each instrument, which gives
-more weight to instruments of well-known depth.
+scales below the sensor spacing, and sensor noise.
+
+An error in the depth of the instruments causes an error that equals the depth error times the local
+gradient. It is added to the standard deviation of the result without averaging over instruments,
+because it may be common to the line for the whole record. Half of its variance also counts as
+independent noise of each instrument, which gives more weight to instruments of well-known depth.
 """
 
 from __future__ import annotations
@@ -43,7 +45,10 @@ INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
 
 
 class Scales(NamedTuple):
-    """Correlation scales of the anomaly: depth [m], time [s], uncorrelated variance share."""
+    """Correlation scales of the anomaly in depth [m] and time [s], and uncorrelated variance.
+
+    The uncorrelated variance is given as a share of the whole.
+    """
 
     depth: float
     time: float
@@ -52,7 +57,7 @@ class Scales(NamedTuple):
 
 @dataclass(frozen=True)
 class RecordProfile:
-    """Mean and standard deviation of a record over depth, linear between nodes [m]."""
+    """Mean and standard deviation of a record against depth, linear between nodes [m]."""
 
     node: Floats
     mean: Floats
@@ -63,20 +68,20 @@ class RecordProfile:
         return np.interp(depth, self.node, self.mean)
 
     def deviation_at(self, depth: Floats) -> Floats:
-        """Return the standard deviation at some depths."""
+        """Interpolate the standard deviation to depths."""
         return np.interp(depth, self.node, self.deviation)
 
 
 @dataclass(frozen=True)
 class Widening:
-    """Factors on deviations, 1 at least: between sensors by depth [m], and beyond them."""
+    """Factors ≥ 1 on standard deviations: by depth [m] between the sensors, and one beyond them."""
 
     depth: Floats
     within: Floats
     beyond: float
 
     def at(self, level: Floats, between: NDArray[np.bool_]) -> Floats:
-        """Return the factors at levels, which lie between the sensors or beyond them."""
+        """Return the factors at levels [m]; the mask `between` marks levels between the sensors."""
         inside = np.interp(level, self.depth, self.within)
         return np.where(between, inside, np.maximum(inside, self.beyond))
 
@@ -86,14 +91,14 @@ NOT_WIDENED = Widening(np.zeros(1), np.ones(1), 1.0)
 
 @dataclass(frozen=True)
 class GriddedQuantity:
-    """A quantity with fitted correlation scales.
+    """Samples of a quantity, and its field with fitted correlation scales.
 
     Attributes
     ----------
     samples, profile, scales : samples, mean profile and correlation scales
-    noise : standard deviation of a sensor, in the unit of the quantity
+    noise : standard deviation of sensor noise, in the unit of the quantity
     in_time : whether neighbouring times are used
-    widened : factors on the deviations, from leaving out each sensor in turn
+    widened : factors on the standard deviations, found by withholding each sensor in turn
     """
 
     samples: Samples
@@ -105,7 +110,7 @@ class GriddedQuantity:
 
 
 class LevelPosterior(NamedTuple):
-    """Mean and standard deviation at some depths, and the share of the variance that remains."""
+    """Posterior mean and standard deviation at some depths, and remaining share of the variance."""
 
     mean: Floats
     deviation: Floats
@@ -113,7 +118,7 @@ class LevelPosterior(NamedTuple):
 
 
 class LevelValues(NamedTuple):
-    """Value, standard deviation and flag at each time and level: (n, k)."""
+    """Value, standard deviation and flag (n, k) at each time and level."""
 
     value: Floats
     deviation: Floats
@@ -121,12 +126,12 @@ class LevelValues(NamedTuple):
 
 
 def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> GriddedQuantity:
-    """Fit the field of a record with maximum-likelihood scales.
+    """Fit the field of a record, with the most likely correlation scales.
 
     Parameters
     ----------
-    samples : from two instruments at least
-    noise : standard deviation of a sensor
+    samples : samples from at least two instruments
+    noise : standard deviation of sensor noise, in the unit of the quantity
     in_time : whether neighbouring times are used
 
     Raises
@@ -150,8 +155,9 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 
 
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
-    """Return mean and standard deviation of a record over depth: local linear fits with Gaussian
-    weights as wide as the sensor spacing.
+    """Return mean and standard deviation of a record against depth.
+
+    They are local linear fits with Gaussian weights as wide as the sensor spacing.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
@@ -177,8 +183,9 @@ def spacing(samples: Samples) -> float:
 
 
 def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tuple[Floats, Floats]:
-    """Fit weighted lines over the last axis; return value and slope at 0, with zero slope if the
-    depths are too close.
+    """Fit weighted lines over the last axis, and return their value and slope at 0.
+
+    The slope is zero if the depths are too close to each other.
     """
     total = np.maximum(weight.sum(axis=-1), 1e-300)
     centre = (weight * off).sum(axis=-1) / total
@@ -190,7 +197,7 @@ def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tup
 
 
 class _Block(NamedTuple):
-    """Observations at and around each of several times: (n, m)."""
+    """Observations (n, m) around each of n times: at the time itself and its neighbours."""
 
     depth: Floats
     anomaly: Floats
@@ -230,13 +237,12 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Estimate (n, k) vertical gradients from the surrounding sensors, and the depth errors of
-    these sensors [m].
+    """Estimate (n, k) vertical gradients from the surrounding sensors, and their depth errors [m].
 
     Parameters
     ----------
-    times : (n,) indices
-    at : (n, k) depths; NaN gives 0
+    times : (n,) indices of the samples' times
+    at : (n, k) depths [m]; NaN is treated as 0
     """
     depth, value, error = (
         table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
@@ -253,7 +259,10 @@ def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Flo
 
 
 def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> Floats:
-    """Return (n, i, j) covariances at unit variance of depths a (n, i) at times s and b (n, j)."""
+    """Return correlations (n, i, j) of depths a (n, i) at times s (n, i) with b (n, j) at t (n, j).
+
+    They are multiplied by the correlated share of the variance.
+    """
     far = 3.0**0.5 / scales.depth * np.abs(a[:, :, None] - b[:, None, :])
     apart = np.abs(s[:, :, None] - t[:, None, :]) / scales.time
     whole: Floats = (1.0 - scales.share) * (1.0 + far) * np.exp(-far - apart)
@@ -261,12 +270,12 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior mean and deviation at levels: (n, k) each.
+    """Compute the posterior mean and standard deviation (n, k) at levels.
 
     Parameters
     ----------
     times : (n,) indices of the samples' times
-    levels : (k,), or (n, k) if they vary with time [m]
+    levels : (k,) depths of the levels [m], or (n, k) if they vary with time
     """
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
@@ -287,13 +296,13 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
 def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
     """Estimate values at fixed levels for some times.
 
-    Values between the sensors in use are flagged as interpolated. Values beyond them, or poorly
-    constrained by the record, are flagged as doubtful. Values that the record does not constrain at
-    all are missing.
+    Values between the sensors are flagged as interpolated. Values beyond the sensors, and values
+    that the record constrains poorly, are flagged as doubtful. Values to which both apply are
+    missing.
 
     Parameters
     ----------
-    levels : (k,) [m]
+    levels : (k,) depths of the levels [m]
     times : (n,) indices of the samples' times
     """
     known = np.isfinite(field.samples.value[times])
@@ -311,9 +320,9 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 
 
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
-    """Find the scales of maximum posterior probability for the samples at some times.
+    """Find the most likely correlation scales, from the samples at some times.
 
-    A weak prior applies to scales that the record does not constrain: a quarter of the line, six
+    A weak prior determines scales that the record does not constrain: a quarter of the line, six
     time steps, and 2 % uncorrelated variance, each within a factor of about five.
     """
     from scipy.optimize import minimize
@@ -346,12 +355,16 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Return the leave-one-out residual (n, s) of each sensor, measured minus predicted, and the
-    standard deviation of this residual.
+    """Predict each sensor from the others at n times.
 
-    The readings of the sensor at the neighbouring times are left out as well. The prediction
-    follows from the sensor's block of the inverse covariance matrix (Rasmussen and Williams,
-    eq. 5.12, extended to blocks). NaN if the sensor has no value.
+    The readings of the sensor at the neighbouring times are withheld as well. The prediction
+    follows from the sensor's block of the inverse covariance matrix (Rasmussen and Williams, eq.
+    5.12, extended to blocks).
+
+    Returns
+    -------
+    Measured minus predicted values (n, s), and their standard deviations (n, s); NaN if the sensor
+    or all others have no value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]
@@ -378,9 +391,7 @@ MIN_RESIDUALS = 20
 
 
 def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening:
-    """Find the factors by which bands must be widened to cover 95 % of each sensor, withheld in
-    turn.
-    """
+    """Find the factors on bands for which they cover 95 % of the readings of withheld sensors."""
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     enough = np.isfinite(residual).sum(axis=0) >= MIN_RESIDUALS

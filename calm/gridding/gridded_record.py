@@ -1,4 +1,4 @@
-"""Gridding of a recovered mooring: input, computation and result of ``calm grid``."""
+"""Computation of ``calm grid``: read the files of a recovered mooring and grid them."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ class GriddedRecord:
 
     Attributes
     ----------
-    fields : samples and correlation scales of each quantity
-    names : title of each quantity in the dataset
+    fields : samples and fitted field of each quantity
+    names : name of each quantity in the dataset
     levels : (k,) depths of the levels [m]
-    cards : summary card of each file
+    cards : summary of each file that was read
     notes : notes on the input, in sentences
-    layout : layout of the file
+    layout : layout of the gridded file
     """
 
     fields: Mapping[str, GriddedQuantity]
@@ -70,7 +70,7 @@ class GriddedRecord:
         output: str | Path,
         progress: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
     ) -> None:
-        """Compute the values and write them to a NetCDF file, like ``calm grid -o``.
+        """Compute the values and write them to a NetCDF file, as ``calm grid -o`` does.
 
         Parameters
         ----------
@@ -85,7 +85,7 @@ class GriddedRecord:
         write_grid(self.layout, self.fields, self.levels, self.names, Path(output), progress)
 
     def to_xarray(self) -> Dataset:
-        """Compute the values, standard deviations and flags, with labels and units."""
+        """Compute values, standard deviations and flags as a dataset with labels and units."""
         with TemporaryDirectory() as folder:
             output = Path(folder) / "gridded.nc"
             self.write(output)
@@ -95,11 +95,11 @@ class GriddedRecord:
     def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
         """Draw a section of a quantity over time and depth, and return the axes.
 
-        Lines are the depths of the instruments; doubtful values are pale. Needs matplotlib.
+        Lines show the depths of the instruments; doubtful values are pale. Requires matplotlib.
 
         Parameters
         ----------
-        quantity : such as `temperature`; by default the first
+        quantity : name such as `temperature`; by default the first quantity
         ax : axes of matplotlib; by default new ones
         """
         if ax is None:
@@ -117,7 +117,6 @@ class GriddedRecord:
         return ax
 
     def __repr__(self) -> str:
-        """Summarise the times, the levels and the scales of each quantity."""
         time = next(iter(self.fields.values())).samples.time
         span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}"
         lines = [f"{len(time)} times, {span}; {len(self.levels)} levels"]
@@ -137,7 +136,7 @@ def draw_section(
 ) -> Any:
     """Draw values (n, k) over time and depth, with the depths of the instruments.
 
-    Doubtful values are pale. The mesh is returned.
+    Doubtful values are pale. Return the mesh.
     """
     every = max(len(values) // MOST_DRAWN, 1)
     time = samples.time[::every].astype("datetime64[s]").astype(object)
@@ -161,20 +160,20 @@ def grid(
     method: str = METHODS[0],
     flags: Sequence[int] = (1, 2),
 ) -> GriddedRecord:
-    """Interpolate measurements at moving depths onto fixed levels, like ``calm grid``.
+    """Interpolate measurements at moving depths to fixed levels, as ``calm grid`` does.
 
     Parameters
     ----------
-    depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file of
-        ``calm motion``
+    depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file that
+        ``calm motion`` wrote
     values : records of the instruments: one or several, as paths or ``LABEL=PATH``, an
         `xarray.Dataset` with the contents of such a file, or a `pandas.DataFrame` of one instrument
         with an index of times and columns such as ``temperature[degC]``; or a mapping from labels
         to records of one instrument each
     levels : depths of the levels [m], or text such as ``0:20:1500``
     step : interval over which values are averaged [s]; by default the times of `depths`
-    variables : `temperature`, `salinity`, `u`, `v`; by default all in the records. Names in
-        capitals, such as `TEMP`, give a dataset with names in capitals
+    variables : names among `temperature`, `salinity`, `u` and `v`; by default all that the records
+        contain. Names in capitals, such as `TEMP`, give a dataset with names in capitals
     method : `depth-time`, or `depth` to treat each time separately
     flags : accepted quality flags of the values
 
@@ -220,11 +219,12 @@ def read_gridded(
     depths : result of ``calm motion``
     values : paths of files, ``LABEL=PATH``, or folders
     levels : (k,) depths of the levels [m]
-    step, averaged : averaging interval, and its text; None for the times of `depths`
+    step, averaged : averaging interval, and the text that specifies it; None for the times of
+        `depths`
     variables : names of quantities, separated by commas; None for all
     method : one of `METHODS`
     flags : accepted quality flags, separated by commas
-    report, show : receive each note and each card at once
+    report, show : functions that receive each note and each summary card as soon as it is known
 
     Raises
     ------
@@ -269,9 +269,12 @@ def fields_of(
     *,
     in_time: bool,
 ) -> dict[str, GriddedQuantity]:
-    """Fit the field of each quantity; quantities with too few instruments are omitted with a note.
+    """Fit the field of each quantity; a quantity with too few instruments is omitted with a note.
 
-    UsageError: no quantity remains, no times overlap, or no instrument belongs to the line.
+    Raises
+    ------
+    UsageError
+        No quantity remains, no times overlap, or no instrument belongs to the line.
     """
     matched = {name: points_of(each, places.places) for name, each in series.items() if each}
     for text in dict.fromkeys(text for _, texts in matched.values() for text in texts):
@@ -303,8 +306,8 @@ def sample_notes(
 ) -> Iterator[str]:
     """Yield notes on the samples of a quantity: exchanged files, excluded values, empty series.
 
-    Files look exchanged if pressures are those of another place, or if two mean values are in the
-    wrong order.
+    Two files seem to be exchanged if pressures do not suit the depth of the instrument, or if mean
+    values would be in the order of depth only after an exchange.
     """
     labels = places.places.label
     for i, at in points.items():

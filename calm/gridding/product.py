@@ -1,4 +1,4 @@
-"""Layout and writing of the gridded file: values, deviations and flags on levels."""
+"""Layout and writing of the gridded file: values, standard deviations and flags on levels."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -32,9 +32,12 @@ MOST_LEVELS = 5000
 
 
 def parse_levels(text: str) -> NDArray[np.float64]:
-    """Return the levels of a text: ``first:step:last``, or several separated by commas [m].
+    """Parse levels [m] from ``first:step:last``, or from several levels separated by commas.
 
-    UsageError: the text is neither, the levels do not increase, or are too many.
+    Raises
+    ------
+    UsageError
+        The text has neither form, the levels do not increase, or there are too many.
     """
     given, wanted = text[:40], "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
     by_step = text.count(":") == 2
@@ -53,9 +56,12 @@ def parse_levels(text: str) -> NDArray[np.float64]:
 
 
 def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return levels [m] as an array.
+    """Check levels [m] and return them as an array.
 
-    UsageError: they do not increase, or one is above the sea surface.
+    Raises
+    ------
+    UsageError
+        The levels do not increase, or one is above the sea surface.
     """
     levels = np.asarray(given, np.float64)
     if levels.ndim != 1 or not levels.size or not (np.diff(levels, prepend=-np.inf) > 0.0).all():
@@ -66,7 +72,7 @@ def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _metres(part: str) -> float:
-    """Parse a length in metres, with or without unit; raises QuantityError."""
+    """Parse a length [m] with or without unit; raise QuantityError if it is invalid."""
     plain = "" if delimited.NUMBER.fullmatch(part.strip()) is None else " m"
     return parse_quantity(f"{part}{plain}", "length", usual_unit="m")
 
@@ -86,11 +92,11 @@ def grid_layout(
     ----------
     fields : field of each quantity
     levels : depths of the levels [m]
-    depths : depths of the instruments
+    depths : depths of the line over time
     inputs : names of the input files, with their hashes
     names : name of each quantity in the file
-    averaged : averaging interval of the values; None for values at a time
-    cards : summary card of each file
+    averaged : text of the averaging interval; None if the values are not averaged
+    cards : summary of each file that was read
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
@@ -185,12 +191,12 @@ def write_grid(
     output: Path,
     shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
-    """Write a gridded file block by block, under its final name only on completion.
+    """Write a gridded file block by block; it gets its final name only when it is complete.
 
     Parameters
     ----------
     names : name of each quantity in the file
-    shown : wraps the iteration over blocks, to show progress
+    shown : wraps the iteration over blocks of times, to show progress
 
     Raises
     ------

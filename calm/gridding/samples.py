@@ -31,8 +31,8 @@ class MooringDepths:
 
     Attributes
     ----------
-    time : (n,) to the nanosecond, rising
-    places : the points, with their depths in the calmest hours (5th percentile)
+    time : (n,) increasing times, to the nanosecond
+    places : the points, with their shallowest depths (5th percentile)
     depth, deviation : (n, p) depths and standard deviations [m]
     place : latitude and longitude [degrees]; empty if unknown
     seabed : depth of the last piece, the anchor [m]; NaN if unknown
@@ -49,9 +49,12 @@ class MooringDepths:
 
 
 def read_depths(path: Path) -> MooringDepths:
-    """Return the depths of a result of `calm motion`.
+    """Read the depths of a result of `calm motion`.
 
-    InputError: it is not such a result, or has no time at which a depth is known.
+    Raises
+    ------
+    InputError
+        The dataset is not such a result, or has no time at which a depth is known.
     """
     with opened(path) as dataset:
         return _understood(dataset, path)
@@ -101,14 +104,14 @@ MOST = 5_000_000
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of one quantity from s instruments at n times, from the top down.
+    """Values of one quantity at n times, from s instruments in order from the top down.
 
     Attributes
     ----------
-    time : (n,) rising
+    time : (n,) increasing times
     label : (s,) labels of the instruments
-    depth, deviation : (n, s) depths of the instruments and standard deviations [m]
-    value : (n, s) in the unit of the quantity; NaN if not measured
+    depth, deviation : (n, s) depths of the instruments and their standard deviations [m]
+    value : (n, s) values in the unit of the quantity; NaN if not measured
     """
 
     time: Times
@@ -121,11 +124,14 @@ class Samples:
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Return the times of the field: the times of the depths, or equally spaced times.
+    """Choose the times of the field: those of the depths, or equal steps if a step is given.
 
     They cover the period in which both depths and values are known.
 
-    UsageError: depths and values do not overlap in time, or the step is longer than the overlap.
+    Raises
+    ------
+    UsageError
+        Depths and values do not overlap in time, or the step is longer than the overlap.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -157,17 +163,17 @@ def gather(
 ) -> Samples:
     """Average values, and the depths at which they were measured, around each time.
 
-    A value belongs to the nearest time, if that is within half a step.
+    A value counts for the nearest time, if that is within half a time step.
 
     Parameters
     ----------
-    points : point of each series in use, by index
-    time : (n,) see `common_times`
+    points : index of the point of the line, by index of the series
+    time : (n,) times from `common_times`
 
     Raises
     ------
     UsageError
-        Two series are of the same instrument.
+        Two series belong to the same instrument.
     """
     still = depths.places.still
     each = [(at, series[i].below) for i, at in points.items()]

@@ -20,19 +20,21 @@ from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
 ASTRAY = 0.02, 5.0
-"""Tolerance between nominal and still-water depth, as a share and in metres."""
+"""Difference between nominal and still-water depth above which it is reported: as a share of the
+depth, and in metres.
+"""
 _ITEMS = ("deployed", "items")
 
 
 @dataclass(frozen=True)
 class AssignedInstruments:
-    """A mooring file with the instruments of a list.
+    """A mooring file to which the instruments of a list have been assigned.
 
     Attributes
     ----------
-    text : text of the file
-    assigned : a sentence for each instrument that has a part
-    doubts : doubtful matches, and instruments without a part
+    text : new text of the file
+    assigned : one sentence for each instrument that was assigned to a part of the line
+    doubts : one sentence for each doubtful match and each instrument without a part
     """
 
     text: str
@@ -41,18 +43,18 @@ class AssignedInstruments:
 
 
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
-    """Return a mooring file whose `deployed` has the serial numbers and clock errors of a list.
+    """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    An instrument is matched by its name or serial number, or else by its nominal depth, in
-    their order down the line. The rest of the file is unchanged.
+    Instruments are matched to parts of the line by name or serial number. Those without a match are
+    assigned by nominal depth, in order down the line. The rest of the file is unchanged.
 
     Raises
     ------
     InputError
         A file has mistakes, or the list has an unknown format.
     UsageError
-        The mooring is a tow, or has several legs; the order of the instruments is ambiguous;
-        or the file is written in a way that does not allow the change.
+        The mooring is a tow, or has several legs; the order of the instruments is ambiguous; or the
+        YAML of the file cannot be edited automatically.
     """
     mooring = load(path)
     refuse_all_but_moorings(mooring.file)

@@ -1,7 +1,7 @@
 """Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
 
-The linear law of this module also weighs faults of sensors (slips, drifts and common steps) by the
-evidence of many times.
+The linear model in this module also serves to weigh sensor faults (slips, drifts and common steps)
+by the evidence of many times.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from calm.physics.line import Floats, Integers
 FURTHEST = 1.0
 """Limit on the logarithm of a factor."""
 REACH = 5.0
-"""Least distance between a sensor and the points that give the slope of the line there [m]."""
+"""Least distance from a sensor to the points between which its slope on the line is taken [m]."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class Common:
     ----------
     factors : names of the estimated factors and their values
     datum : correction added to the depths of the line [m]
-    offset : (s,) of the sensors [m]
-    covariance : (q, q)
+    offset : (s,) offset of each sensor [m]
+    covariance : (q, q) covariance of the unknowns
     worst : error of the line itself, as a share of the knockdown, after all other corrections
-    law : law of inferred currents; None for measured currents
+    law : prior distribution of the inferred current speeds; None if currents were measured
     """
 
     factors: Mapping[str, float]
@@ -58,7 +58,7 @@ class Common:
         return np.concatenate([logs, [self.datum], self.offset])
 
     def at(self, value: Floats) -> Common:
-        """Return a copy with new values (q,) of the unknowns."""
+        """Return a copy with new values (q,) of the unknowns; the factors are limited."""
         count = len(self.factors)
         factors = np.exp(np.clip(value[:count], -FURTHEST, FURTHEST)).tolist()
         return replace(
@@ -72,16 +72,14 @@ class Common:
 def common_beforehand(
     factors: Mapping[str, float], datum: float, sensors: int, mean: float = 0.0
 ) -> Common:
-    """Return the common unknowns before the fit, with all sensors at their places in the file.
-
-    The covariance is that of the prior.
+    """Return the prior of the common unknowns, with all sensor offsets zero.
 
     Parameters
     ----------
     factors : initial values of the factors, by name
-    datum : standard deviation of the correction to the depths of the line [m]
+    datum : prior standard deviation of the correction to the depths of the line [m]
     sensors : number of sensors
-    mean : mean of the correction to the depths of the line [m]
+    mean : prior mean of the correction to the depths of the line [m]
     """
     known = [FACTORS[name] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
@@ -89,19 +87,20 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Return (n, s, q) slopes for factors, datum and offsets, from (n, s, f) slopes for factors."""
+    """Append the derivatives by datum and offsets to the derivatives (n, s, f) by the factors."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
 
 
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
-    """Return (n, s) change in the depth of each sensor per metre of slip down the line.
+    """Return (n, s) increase in the depth of each sensor per metre that it slips down the line.
 
     Parameters
     ----------
-    depth, still : (n, p), (p,) of the points, at these times and in still water [m]
-    point : (s,) points of the sensors, from the file
+    depth : (n, p) depths of the points at these times [m]
+    still : (p,) depths of the points in still water [m]
+    point : (s,) index of the point of each sensor
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -120,7 +119,10 @@ LONGEST_MEMORY = 25
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times with a common error, from the autocorrelation."""
+    """Return the number of successive times that share an error.
+
+    It follows from the autocorrelation of `pull`.
+    """
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -137,21 +139,22 @@ FEWEST = 4
 
 
 ROBUST = 4.0
-"""Degrees of freedom of Student's law for the misfit of a time."""
+"""Degrees of freedom of Student's t distribution for the misfit at one time."""
 
 
 @dataclass(frozen=True)
 class LinearLaw:
-    """Linear model of n times for the unknowns of the whole record, with slopes at one state.
+    """Linear model of the readings at n times, for the unknowns of the whole record.
 
     Attributes
     ----------
-    time, share : (n,) times, and the elapsed share of the record
+    time, share : (n,) times, and the share of the record that has elapsed (0 to 1)
     known : (n, s) whether a reading exists
-    raw, left : (n, s) measured less computed depths, for zero unknowns and at the state [m]
+    raw, left : (n, s) measured less computed depths [m], with all unknowns zero, and with the
+        unknowns at the state about which the model is linearised
     expected : (n, s, s) covariance of `left`
-    fixed : (n, s, q) slopes for factors, datum and offsets
-    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
+    fixed : (n, s, q) derivatives of the readings by the factors, the datum and the offsets
+    fall : (n, s) increase in the depth of each sensor per metre that it slips down the line
     """
 
     time: NDArray[np.datetime64]
@@ -170,23 +173,32 @@ class LinearLaw:
 
     @cached_property
     def weight(self) -> Floats:
-        """Weight (n,) of each time by Student's law, lower for a large misfit."""
+        """Weight (n,) of each time under Student's t distribution.
+
+        A large misfit lowers the weight.
+        """
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
         weight: Floats = (ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit)
         return weight
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return (n, q) gradients of the log-likelihood of each time."""
+        """Return (n, q) gradients of the log-likelihood, one row for each time.
+
+        Parameters
+        ----------
+        seen : (n, s, q) derivatives of the readings by the unknowns
+        left : (n, s) residuals [m]
+        """
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
-        """Return (q, q) information matrix of all times."""
+        """Return the (q, q) information matrix of all times, for derivatives `seen` (n, s, q)."""
         heavy = self.weight[:, None, None] * self.inverse
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""Codes of drifts, in place of a time, with the share of the record over which they last."""
+"""Share of the record over which a drift lasts, by the code that `moved_by` takes."""
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
@@ -194,9 +206,10 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
     Parameters
     ----------
-    code : 0 for an offset throughout, the time of a slip, or a code of `RAMPS`
-    fall : (n,) change in its depth per metre of displacement along the line
-    share : (n,) elapsed share of the record at each time, 0 to 1
+    code : 0 for a constant offset, the index of the time at which a slip begins, or a code of
+        `RAMPS` for a drift
+    fall : (n,) increase in the depth of the sensor per metre that it slips down the line
+    share : (n,) share of the record that has elapsed, 0 to 1
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -206,7 +219,10 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 def chance_of(code: int, times: int) -> tuple[float, float]:
     """Return the log prior probability of a fault, and the prior deviation of its size [m].
 
-    `code` is that of `moved_by`, and `times` the number of times at which a clamp may slip.
+    Parameters
+    ----------
+    code : see `moved_by`
+    times : number of times at which a clamp may slip
     """
     if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
@@ -214,16 +230,17 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 
 
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
-    """Return the most likely time at which each of several changes in the readings begins.
+    """Find the most likely start of each of several candidate changes in the readings.
 
-    Each change lasts to the end, and is fitted jointly with the common unknowns. 0 stands for a
-    change that is likelier throughout, or with too few readings on either side of all times.
+    Each change lasts to the end of the record and is fitted jointly with the common unknowns.
+    Return the index of the time at which each change starts; 0 means that the change applies
+    throughout, or that no time has enough readings before and after it.
 
     Parameters
     ----------
-    law : linear law of the times
-    covariance : (q, q) prior of the unknowns, with zero mean
-    columns : (n, s) change in the readings per metre of its size, each
+    law : linear model of the readings
+    covariance : (q, q) prior covariance of the unknowns, whose prior mean is zero
+    columns : for each change, (n, s) change in the readings per metre of its size
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))
@@ -246,14 +263,14 @@ def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) ->
 
 
 NORMAL = 1.4826
-"""Standard deviation of a normal law over the median of its size."""
+"""Ratio of the standard deviation of a normal variable to its median absolute value."""
 FACTORS: Mapping[str, float] = {
     "cable_drag": 0.15, "rigid_drag": 0.15, "buoyancy": 0.02, "length": 0.003
 }  # fmt: skip
 """Factors that may be estimated for a whole record, and the prior deviation of their logarithms.
 
-They apply to the drag of cables and chains; the drag of rigid pieces and clamped instruments; the
-net force of all buoyant pieces; and the lengths of cables and chains.
+The factors multiply the drag of cables and chains; the drag of rigid pieces and clamped
+instruments; the net buoyancy of all buoyant pieces; and the lengths of cables and chains.
 """
 DATUM = 0.01
 """Prior deviation of the datum, an error common to all depths, as a share of the water depth."""

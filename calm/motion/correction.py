@@ -87,8 +87,9 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the times of the block that begins at `start`; append its extreme depths to
-    `extent` [m].
+    """Estimate the block of times that begins at `start`, ready to be written.
+
+    The smallest and largest depth of the block [m] are appended to `extent`.
     """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
@@ -102,10 +103,10 @@ def solve_times(
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
-    """Return the layout of the result: a batch result with the motion estimates, for archives.
+    """Return the layout of the result file: a batch result plus the estimates of motion.
 
-    The layout includes depth flags, serial numbers and archive attributes. Only SOURCE_DATE_EPOCH
-    sets its date, so equal inputs give equal bytes.
+    The layout includes depth flags, serial numbers and archive attributes. Its date is set only if
+    SOURCE_DATE_EPOCH is set, so equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -175,7 +176,7 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return depth flags: measured at points with a valid pressure, else estimated or missing."""
+    """Return flags of all depths: measured (points with a valid pressure), estimated or missing."""
     clamps = profiles.clamp_depth.shape[1]
     depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
@@ -188,12 +189,12 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Return (n, m) depths of several points and their deviations [m], without writing a file.
+    """Estimate (n, m) depths of m points and their standard deviations [m], without writing a file.
 
     Parameters
     ----------
-    task : task of the estimate
-    points : indices of the points of the line
+    task : input of the estimate
+    points : indices of the m points
     workers : number of threads
     """
     starts = range(0, len(task.measured.time), BLOCK)
@@ -215,10 +216,10 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """Input of the estimate; `measured` contains only the sensors that are used.
+    """Input of the estimate of depths. `measured` contains only the sensors in use.
 
     `smoother` is the solution for the whole record if currents were measured, else None. `faults`
-    are the diagnosed faults; None if they are still to be diagnosed.
+    are the diagnosed faults; None means that the diagnosis has not been made.
     """
 
     mooring: Design
@@ -228,12 +229,12 @@ class Task:
     faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Return the line in the most likely currents at several times, and the other estimates.
+        """Estimate the line at the times from `start` to `stop`, in the most likely currents.
 
         Returns
         -------
-        The profiles with the estimated depths, and a dictionary of `clamp_depth_sd`, `depth_sd`,
-        `residual`, and for measured currents `current_factor`, `current_doubt`, `plain_depth`.
+        The profiles with the estimated depths, and a dictionary with `clamp_depth_sd`, `depth_sd`,
+        `residual` and, for measured currents, `current_factor`, `current_doubt` and `plain_depth`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -297,7 +298,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Blank the times (n,) that are far from any current; their status depends on `false`."""
+    """Replace results by NaN at times that are too far from any current (mask `lost`, (n,)).
+
+    Their status becomes "implausible-current" where `false` is set, otherwise "no-current".
+    """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
         status = np.where(lost & false, STATUSES.index("implausible-current"), status)
@@ -310,7 +314,7 @@ def without_current(
 
 
 def plain(forward: Forward, one: MooringMeasurements) -> Floats:
-    """Return (n, p) depths of the points from the currents alone, without a fit [m]."""
+    """Compute (n, p) depths of the points [m] from the measured currents alone."""
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
         level = hung_levels(one, np.nan_to_num(depth))
@@ -325,9 +329,10 @@ APART = 1e-6
 
 
 def hung_levels(one: MooringMeasurements, depths: Floats) -> Floats:
-    """Return (n, k) depths of the levels, with those on the line at the points (n, p).
+    """Return (n, k) depths of the current levels [m], given the depths (n, p) of the points.
 
-    A current whose own sensor is used takes the measured depth of that sensor.
+    A level on the line takes the measured depth of its own sensor if that is in use, otherwise the
+    depth of its point. Other levels keep their fixed depth.
     """
     level = one.level_depth.copy()
     for k, (point, sensor) in enumerate(zip(one.level_point, one.level_sensor, strict=True)):
@@ -342,7 +347,7 @@ def hung_levels(one: MooringMeasurements, depths: Floats) -> Floats:
 
 
 class MeasuredRecord(Record):
-    """Measured currents in the form of a record, as input for a result."""
+    """Measured currents in the form of a `Record`, to write them to a result."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Interpreted currents, nearby depths of the line, and the prior law of unmeasured speeds."""
+"""Data types for currents, linearised depths of the line, and the prior of unmeasured speeds."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """One interpretation of the currents at several times, and the resulting depths of the line.
+    """Currents at n times and k levels, as used to solve the line.
 
     Attributes
     ----------
     level : (n, k) depths of the levels [m]
-    u, v : (n, k) [m/s]
+    u, v : (n, k) eastward and northward components [m/s]
     """
 
     level: Floats
@@ -26,11 +26,11 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Linearised depths of the points near a state of the currents.
+    """Depths of the points, linearised about a state of the currents.
 
     Attributes
     ----------
-    logs : (n, g) logarithms at the state
+    logs : (n, g) the state: logarithms of the factors on the currents
     depth : (n, p) depths at the state [m]
     slope : (n, p, g) derivatives of the depths by the state
     common : (n, p, f) derivatives of the depths by the logarithms of the common factors
@@ -42,7 +42,10 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the line at another state, with slopes updated by Broyden's method."""
+        """Return the model at another state with known depths.
+
+        The slopes are updated by Broyden's method.
+        """
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -53,12 +56,14 @@ class Linear:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Prior law of the current speeds, and the times from which it was learnt.
+    """Log-normal prior distribution of the current speeds at k knots.
 
     Attributes
     ----------
-    mean, covariance : (k,), (k, k) of the logarithms of the speeds [m/s]
-    kept : fits of the learning times, the first at the mean; states are relative to the mean
+    mean : (k,) mean of the logarithms of the speeds [m/s]
+    covariance : (k, k) covariance of these logarithms
+    kept : fits of the times from which the distribution was learnt, preceded by the line at the
+        mean speeds; their states are relative to `mean`
     """
 
     mean: Floats
@@ -66,6 +71,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return currents at levels (n, k) [m], with the same direction at all levels."""
+        """Return the mean speeds at levels (n, k) [m], all in the same direction."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

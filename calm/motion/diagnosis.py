@@ -1,9 +1,10 @@
 """Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
 
-Each fault is one more unknown, with its own prior, in the fit of the whole record. It is weighed by
-a Bayes factor (Kass and Raftery 1995): the likelihood of the pressures, with Student's law for the
-misfit of a time, and errors that persist from time to time counted once. The likeliest fault is
-accepted first, and the others are weighed again together with it, until none is likely.
+Each fault is an additional unknown, with its own prior, in the fit of the whole record. It is
+weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The misfit
+of each time follows Student's t distribution, and an error that lasts for several times counts
+once. The most likely fault is accepted, and the others are weighed again together with it, until no
+further fault is likely.
 """
 
 from collections.abc import Iterator, Sequence
@@ -32,7 +33,10 @@ from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.physics.line import Floats
 
 LIKELY_ALONE = 1000.0
-"""Odds above which a fault is reported without measured currents: the line may be wrong instead."""
+"""Odds above which a fault is reported if currents were not measured.
+
+They are higher because an error of the line may be the cause instead.
+"""
 MOST = 8
 """Maximum number of faults."""
 CLOCKS, FURTHEST = 0.01, 13.0
@@ -48,13 +52,13 @@ LEAST = {
 }  # fmt: skip
 """Smallest faults that are reported.
 
-Units: m; for clocks h, and as many steps of the record; for gains 1; m for offset, drift and slip;
-otherwise logarithms.
+Units: m for `moved`, `offset`, `drift` and `slip`; for `clock` hours, and also time steps of the
+record; 1 for `gain`; otherwise the logarithm of a factor.
 """
 RIVALS = 3
 """Maximum number of rival explanations reported."""
 FINEST = 0.02
-"""Finest resolution of a clock, as a share of the time step of the record."""
+"""Uncertainty added to the lag of a clock, as a share of the time step of the record."""
 FEWEST = 20
 """Least number of times for a diagnosis."""
 
@@ -66,9 +70,9 @@ class _Found:
     Attributes
     ----------
     log : logarithm of the likelihood
-    value, deviation : size of the last fault, and its deviation
+    value, deviation : size of the last fault, and its standard deviation
     left : (n, s) residuals [m]
-    pulls : (n,) gradient of the log-likelihood of each time by the size of the last fault
+    pulls : (n,) derivative of the log-likelihood of each time by the size of the last fault
     """
 
     log: float
@@ -82,7 +86,11 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the faults of the sensors, the currents and the line, the likeliest first."""
+    """Return the likely faults of the sensors, the currents and the line.
+
+    The most likely fault comes first, except that faults already stored in the task are returned as
+    they are. A record with too few times gives no faults.
+    """
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)
@@ -92,9 +100,10 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 
 
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
-    """Return the linear model of the sensors near the state of a task, and suspects of the line.
+    """Return the linear model of the readings, and possible faults of the line and its currents.
 
-    Each suspect includes its effect on the depths.
+    The model is linearised at the solution of the task. It is None if no time has measurements. The
+    list of faults is empty if the currents were inferred.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -124,7 +133,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Weighing of the faults of a record by its pressures."""
+    """Search for the faults of a record by the likelihood of its pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -151,7 +160,7 @@ class Diagnosis:
         return self._kept[steps]
 
     def _at(self, late: float) -> Floats:
-        """Return (n, s) readings of the sensors at times later by `late` hours [m].
+        """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
         Between the times of the record, the interpolation takes the slope and a quarter of the
         curvature. It neither amplifies nor smooths noise; either would by itself favour a clock
@@ -164,7 +173,7 @@ class Diagnosis:
         return there + np.nan_to_num(bent)
 
     def faults(self) -> tuple[Fault, ...]:
-        """Return the likely faults, each weighed together with all the others."""
+        """Find the likely faults; the odds of each are computed together with all others."""
         taken: list[Suspect] = []
         while len(taken) < MOST:
             likely = self.weighed(taken)
@@ -202,7 +211,6 @@ class Diagnosis:
         return tuple(found)
 
     def _bent(self, taken: list[Suspect], one: Suspect) -> Suspect:
-        """Return a suspect with the nonlinear effect of its size."""
         if one.ahead is None:
             return one
         size = one.fault.size
@@ -213,7 +221,7 @@ class Diagnosis:
         return one
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
-        """Return possible faults besides those in `taken`, with their log odds."""
+        """Return every possible fault other than those in `taken`, with its log odds."""
         begun = self.fitted(taken, None, 1.0)
         result = []
         for suspect in self._suspects(taken, begun):
@@ -240,10 +248,12 @@ class Diagnosis:
         return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Compute the likelihood of the pressures with given faults and an additional one.
+        """Compute the likelihood of the pressures with the faults `taken` and the fault `last`.
 
         Parameters
         ----------
+        taken : faults that are already accepted
+        last : additional fault; None for none
         alike : number of successive times with the same error
         """
         whole = taken if last is None else [*taken, last]
@@ -352,7 +362,6 @@ class Diagnosis:
             yield ALL, np.ones(len(self.label), bool)
 
     def _shift(self, late: float, mine: NDArray[np.bool_]) -> Floats:
-        """Return (n, s) the change in the depths of the late sensors [m]."""
         added: Floats = np.where(mine, np.nan_to_num(self._at(late) - self.depth), 0.0)
         return added
 
@@ -363,11 +372,11 @@ class Diagnosis:
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
     def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
-        """Return the clock fault of several sensors, with the most likely lag.
+        """Find the most likely clock error shared by the sensors in the mask `mine`.
 
         Parameters
         ----------
-        left : (n, s) residuals if their clocks are right [m]
+        left : (n, s) residuals [m] without any clock error
         """
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 

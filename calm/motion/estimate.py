@@ -1,6 +1,6 @@
 """Estimate of unmeasured currents from pressures, independently at each time.
 
-The line is linearised at a state of the currents; any reading may be a spike.
+The line is linearised about a state of the currents. Any single reading may be a spike.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
 NEGLIGIBLE = 0.02
-"""Weight, as a share of the weight of a good reading, below which a spike is not tried."""
+"""Weight of a spike relative to a good reading, below which the spike is not considered."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated depths of the line over a block of times.
+    """Estimated depths of the line at n times.
 
     Attributes
     ----------
-    depth, deviation : (n, p) of the points [m]
+    depth, deviation : (n, p) depths of the points and their standard deviations [m]
     sea : (n,) height of the sea surface above its mean [m]
     likely : the most likely currents
     """
@@ -44,12 +44,14 @@ def estimated(
     known: CurrentsState,
     neighbours: tuple[Floats, Floats] | None = None,
 ) -> Estimate:
-    """Return mean and deviation, averaged over the cases of no spike and of a spike in each sensor.
+    """Average the posterior depths over the cases of no spike and of a spike in each sensor.
 
     Parameters
     ----------
+    moments, common : line response at n times, and the common unknowns
     known : the best state of the currents
-    neighbours : see `calm.motion.measurements.by_neighbours`; None for isolated times
+    neighbours : result of `calm.motion.measurements.by_neighbours`; None to treat the times as
+        isolated
     """
     one, still, law = moments.measured, moments.forward.still, common.law
     assert law is not None
@@ -100,15 +102,16 @@ def _excuse(
     one: MooringMeasurements, common: Common, spike: Posterior, sensor: int, expected: Floats,
     deviation: Floats,
 ) -> Floats:  # fmt: skip
-    """Return (n,) corrections to the log-likelihood of a spike, from the adjacent readings.
+    """Return (n,) corrections, at most 0, to the log-likelihood of a spike in one sensor.
 
-    The interpolated neighbours are compared with the reading, and with the depth of the line
-    without the reading, because weather also moves the neighbours.
+    A reading that agrees with the readings before and after is unlikely to be a spike, unless the
+    rest of the line agrees with them as well: strong currents move the whole line.
 
     Parameters
     ----------
-    spike : posterior without the sensor
-    expected, deviation : (n,) depth interpolated from adjacent readings, and its deviation [m]
+    spike : posterior without the reading of the sensor
+    expected, deviation : (n,) depth interpolated between the adjacent readings, and its standard
+        deviation [m]
     """
     point = one.point[sensor]
     there = spike.depth[:, point] + common.offset[sensor]
@@ -126,10 +129,10 @@ class Posterior:
 
     Attributes
     ----------
-    logs : (n, g) of the factors on the currents
+    logs : (n, g) changes in the logarithms of the factors on the currents, from the prior mean
     sea : (n,) height of the sea surface above its mean [m]
-    depth, variance : (n, p) of the points [m], [m²]
-    evidence : (n,) logarithm of the density of the pressures
+    depth, variance : (n, p) depths of the points [m] and their variances [m²]
+    evidence : (n,) log probability density of the measured depths
     innovation : (n, s) measured depths less their predictions [m]
     expected : (n, s, s) covariance of the innovation
     """
@@ -152,14 +155,17 @@ def posterior(
     spike: int = -1,
     own: Floats | None = None,
 ) -> Posterior:
-    """Return the best state in the linear model, and the posterior of all depths.
+    """Return the posterior of the currents and of all depths in the linear model.
 
     Parameters
     ----------
-    spread : (g, g) prior covariance of the logarithms
+    one : measurements at n times
+    at : depths linearised about a state of the currents
+    spread : (g, g) prior covariance of the logarithms of the factors on the currents
+    common : common unknowns
     still : (p,) depths in still water [m]
-    spike : index of a sensor whose readings are treated as spikes
-    own : `own_errors` of the state, if already computed
+    spike : index of a sensor whose readings are treated as spikes; -1 for none
+    own : `own_errors` at the state, if already computed
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -217,7 +223,7 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """Currents, the line in these currents, and the posterior at this linearisation."""
+    """Currents at several times, with the linearised line and the posterior there."""
 
     read: ReadCurrents
     at: Linear

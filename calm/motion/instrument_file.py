@@ -1,4 +1,4 @@
-"""Depths added to copies of the user's files, each with one or several instruments."""
+"""Copies of users' instrument files to which the estimated depths are added."""
 
 from __future__ import annotations
 
@@ -45,7 +45,10 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SEVERAL = ("depth", "depth_sd", "depth_qc")
-"""Variables added to a file of several instruments, with upper-case names for a single one."""
+"""Variables added to a file of several instruments.
+
+For a single instrument, the names are in upper case.
+"""
 ONE = tuple(name.upper() for name in SEVERAL)
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"
@@ -57,14 +60,15 @@ _OF_MOTION = ("title", "keywords", "references")
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of instruments to which depths are added.
+    """A file with one or several instruments, to which depths are added.
 
     Attributes
     ----------
     path : path of the file
-    clock, along : time variable, with dimension `dimension`; dimension of the instruments, None for
-        a single instrument
-    time : (n,)
+    clock : name of the time variable
+    dimension : name of the time dimension
+    along : name of the dimension of the instruments; None for a single instrument
+    time : (n,) times
     who : the instruments
     point : point of the line for each instrument; None if it has no point
     """
@@ -84,7 +88,7 @@ class Instruments:
 
 
 def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
-    """Read the instruments of a file or folder, with notes on their identification.
+    """Read the instruments of a file or folder and match them to points of the line, with notes.
 
     Parameters
     ----------
@@ -96,8 +100,8 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     InputError
         A file is not NetCDF, has groups or no times, or does not identify its instruments.
     UsageError
-        A file already has depths, or a dimension with their name; no instrument is a part of
-        the line.
+        A file already has depths, or a dimension with their name; no instrument is a part of the
+        line.
     """
     seabed = float(line.still[-1])
     found = [_read(path, seabed) for _, path in files_given([str(given)])]
@@ -175,15 +179,19 @@ def write_depths(
     output: Path,
     inputs: Sequence[str] = (),
 ) -> list[str]:
-    """Write a copy with depths, deviations and flags; return the instruments without depths.
+    """Write a copy with depths, standard deviations and flags added.
 
     Parameters
     ----------
-    instruments : file to copy
+    instruments : file to copy, and its instruments
     result : dataset of `calm motion`
     gap : longest gap over which depths are interpolated
     output : path of the copy
     inputs : names and hashes of the source files of the depths
+
+    Returns
+    -------
+    Names of the instruments without depths, because they have no point of the line.
 
     Raises
     ------
@@ -248,14 +256,16 @@ def write_depths(
 def at_own_times(
     result: Dataset, point: int, time: NDArray[np.datetime64], gap: np.timedelta64
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Return depth, deviation and flag of a point at other times.
+    """Interpolate depth, standard deviation and flag of a point to the times of an instrument.
 
-    The flag is "measured" if a pressure of the instrument itself was used, else "interpolated".
+    The flag is "measured" if the pressure of the instrument itself was used, "interpolated" for
+    other estimated depths, and "missing" if there is no depth.
 
     Parameters
     ----------
-    point : see `calm.motion.matching`
-    time : (n,)
+    result : dataset of `calm motion`
+    point : index of the point, see `calm.motion.line_response.Forward`
+    time : (n,) times of the instrument
     gap : longest gap over which depths are interpolated
     """
     known = result["time"].values
@@ -286,7 +296,7 @@ def _drop_references(copy: Dataset) -> None:
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
-    """Return a dataset with the nominal depth of its single instrument renamed."""
+    """Remove old depth variables from a file of one instrument; rename its nominal depth."""
     if instruments.along is not None:
         return copy
     nominal = None
@@ -304,7 +314,6 @@ def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
 
 
 def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.float64]) -> None:
-    """Add salinity from conductivity and temperature, if the file lacks it."""
     import xarray as xr
 
     salinity = QUANTITIES_MEASURED["salinity"]
@@ -329,7 +338,6 @@ def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.flo
 
 
 def _archived(copy: Dataset, instruments: Instruments, result: Dataset) -> None:
-    """Add station, position and attributes for archives to the dataset of a text file."""
     import xarray as xr
 
     stations, where = station(_mooring(result), _place(copy, result), "the anchor")
@@ -373,12 +381,11 @@ def _at_depths(copy: Dataset, depth: str, instruments: Instruments) -> None:
 def _describe(
     copy: Dataset, instruments: Instruments, inputs: Sequence[str], result: Dataset
 ) -> None:
-    """Add global attributes that follow from the depths and from the mooring, and a line in the
-    history.
+    """Add global attributes on depths and mooring, and a line in the history.
 
-    Attributes of the original are kept, except for the range of depths. Attributes that begin with
-    the same word, such as those of the creator, belong together: all are those of the original if
-    it has any.
+    Attributes of the original file are kept, except for the range of depths. Attributes that begin
+    with the same word, such as `creator_name` and `creator_email`, are treated as a group: if the
+    original has one of them, none of the group is added.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)
@@ -403,7 +410,10 @@ def _describe(
 
 
 def _place(copy: Dataset, result: Dataset) -> list[float]:
-    """Return latitude and longitude of a file, else of the mooring; empty if unknown [degrees]."""
+    """Return latitude and longitude [degrees] from the file, or else from the mooring.
+
+    The result is empty if they are unknown.
+    """
     found = []
     for axis in ("latitude", "longitude"):
         own = [one for one in copy.variables.values() if one.attrs.get("standard_name") == axis]

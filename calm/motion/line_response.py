@@ -1,4 +1,4 @@
-"""Depths of the line at each time of a block, and their derivatives by the unknowns.
+"""Depths of the line at each time of a block, and their derivatives with respect to the unknowns.
 
 The unknowns are the logarithms of factors on the current, one for each group of levels, and the
 unknowns common to the record.
@@ -28,7 +28,7 @@ UNMEASURED = 1e4
 
 
 class LineResponse:
-    """The times of a block, and the mooring for its solutions."""
+    """Computes the depths of a mooring, and their derivatives, at the times of a block."""
 
     def __init__(
         self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward],
@@ -39,19 +39,19 @@ class LineResponse:
         self.groups = int(self.group.max()) + 1 if len(self.group) else 0
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """Return (n, p) depths of the points in currents that are multiplied by factors.
+        """Return (n, p) depths of the points [m] in the given currents times their factors.
 
         Parameters
         ----------
-        read : interpretation of the currents
+        read : the currents
         logs : (n, g) logarithms of the factors on the currents
-        forward : mooring to use; by default that of the block
+        forward : mooring to solve; by default that of the block
         """
         factor = np.exp(logs[:, self.group])
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return depths and slopes for factors of the currents, given as logarithms (n, g)."""
+        """Linearise the depths about factors on the currents, given as logarithms (n, g)."""
         there = self.depths(read, logs)
         own = [self.depths(read, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(read, logs, forward) for forward in self.shifted.values()]
@@ -59,13 +59,13 @@ class LineResponse:
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
-    """Return (n, p, m) slopes, from depths (n, p) and depths a step ahead in each direction [m]."""
+    """Return (n, p, m) derivatives from the depths (n, p) after a step in each of m unknowns."""
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
-    """Return a line with factors on its drag, the net force of its floats, and its lengths."""
+    """Return a copy of a line with factors on its drag, its net buoyancy and its cable lengths."""
     cable, rigid, lift, length = (factors.get(name, 1.0) for name in FACTORS)
     drag = np.where(line.flexible, cable, rigid)
     cut = np.where(line.flexible, length, 1.0)
@@ -84,10 +84,10 @@ def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
 
 
 class Forward:
-    """A mooring with functions for its depths in many currents.
+    """A mooring, with factors on its line, that can be solved in many currents.
 
-    A point is a clamped instrument or the upper end of a component: the clamps down the line
-    precede the components, which are in the order of the file.
+    The points of the line are its clamped instruments, in order down the line, followed by the
+    upper end of each component, in the order of the file.
     """
 
     def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:
@@ -103,12 +103,12 @@ class Forward:
         return depths
 
     def solve(self, depth: Floats, u: Floats, v: Floats) -> Profiles:
-        """Return the mooring in many currents, solved on one thread.
+        """Solve the mooring in n current profiles, on one thread.
 
         Parameters
         ----------
         depth : (n, k) of the levels [m]
-        u, v : (n, k) to the east and to the north [m/s]
+        u, v : (n, k) eastward and northward current [m/s]
         """
         return self._batch.solve(u, v, depth, workers=1)
 
@@ -123,7 +123,7 @@ class Forward:
 
 
 def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """Return the mooring at the common factors, and with a step in each factor."""
+    """Return the mooring with the common factors, and for each factor a copy with a step in it."""
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
         for name, value in common.factors.items()
@@ -132,7 +132,7 @@ def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, For
 
 
 def points(profiles: Profiles) -> Floats:
-    """Return (n, p) depths of all points [m]."""
+    """Return (n, p) depths of all points [m]; `Forward` defines the points."""
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
 
 
@@ -143,8 +143,9 @@ def labels_of(mooring: Design) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Design) -> list[int]:
-    """Return the indices of possible instruments: clamps other than floats, and pieces with the
-    role of an instrument.
+    """Return the indices of the points that may be instruments.
+
+    These are clamped items other than floats, and pieces with the role of an instrument.
     """
     pieces = mooring.file.pieces
     clamps = clamps_down(pieces)
@@ -154,23 +155,26 @@ def instruments_of(mooring: Design) -> list[int]:
 
 
 SPAN, LOCAL = 0.25, 0.3
-"""Correlation length of the knockdown error as a share of the line, and the local error of a point,
-caused by bends at floats and clamps.
+"""Correlation length of the error in knockdown as a share of the line, and the local error of a
+point as a share of its knockdown; bends at floats and clamps cause local errors.
 """
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
-    """Return (n, p, p) error covariance of the line at its points, for an error share of 1 [m²].
+    """Return (n, p, p) error covariance of the computed depths, for an error share of 1 [m²].
 
-    While the law of the currents is unknown, the error at a point is a share of its own knockdown,
-    correlated over a quarter of the line. A learnt law absorbs such errors. In that case, the
-    knockdown of each stretch is wrong by a share, and a point has the summed error of the stretches
-    below, which is smooth between two sensors, and a smaller share of its own knockdown.
+    The error is a share of the knockdown. Unless the distribution of the currents was learnt, the
+    error at a point is a share of its own knockdown, correlated over a quarter of the line. A
+    learnt distribution absorbs such errors. In that case, the error of each stretch of the line is
+    a share of its own contribution to the knockdown. The error at a point is the sum over the
+    stretches below, which is smooth between two sensors, plus a smaller share of the knockdown of
+    the point.
 
     Parameters
     ----------
-    depth, still : (n, p), (p,) depths of the points, and in still water [m]; NaN gives zero errors
-    learnt : whether the law of the currents is learnt
+    depth : (n, p) depths of the points [m]; NaN gives zero errors
+    still : (p,) depths in still water [m]
+    learnt : whether the distribution of the currents was learnt
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)
@@ -191,14 +195,14 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
 
 
 def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
-    """Fill unknown values (n, k) at levels (n, k) by linear interpolation in depth.
+    """Fill unknown values by linear interpolation in depth, separately at each time.
 
     Values are constant beyond the first and the last known level, and NaN if no level is known.
 
     Parameters
     ----------
     depth : (n, k) of the levels [m]
-    value : (n, k) values at these depths
+    value : (n, k) values at the levels
     known : (n, k) mask of valid values
     """
     result = np.where(known, value, np.nan)

@@ -20,12 +20,13 @@ from calm.records.instrument_series import Identity, who_along
 
 @dataclass(frozen=True)
 class LinePlaces:
-    """The p points of a line with a possible instrument.
+    """The p points of a line to which instruments may be matched.
 
     Attributes
     ----------
     name : path of the mooring file
-    label, serial : (p,) of clamps and pieces; empty serials if unknown
+    label, serial : (p,) labels and serial numbers of clamps and pieces; the serial number is empty
+        if unknown
     clamps : number of clamps, which precede the other points
     still : (p,) depths in calm water [m]
     """
@@ -56,7 +57,7 @@ def serials_of(mooring: Design) -> tuple[str, ...]:
 
 
 def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
-    """Return the measurements without several sensors, which are removed throughout."""
+    """Return the measurements without the sensors that have the given labels."""
     kept = [i for i, label in enumerate(measured.label) if label not in labels]
     return replace(
         measured,
@@ -68,14 +69,12 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
 
 @dataclass(frozen=True)
 class Clock:
-    """Clock error of an instrument, which grows linearly from zero.
-
-    Positive if the clock is behind.
+    """Clock error of an instrument; it grows linearly from zero.
 
     Attributes
     ----------
-    since, checked : times at which the clock was set, and compared
-    late : lag of the clock at that time [s]
+    since, checked : time at which the clock was set, and time of the comparison
+    late : lag of the clock at the comparison [s]; positive if the clock was behind
     """
 
     since: np.datetime64
@@ -83,7 +82,7 @@ class Clock:
     late: float
 
     def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
-        """Return the true times of readings (n,) by this clock."""
+        """Correct the times (n,) of readings for the error of this clock."""
         share = (time - self.since) / (self.checked - self.since)
         late = np.round(self.late * 1e9 * np.maximum(share, 0.0)).astype("m8[ns]")
         true: NDArray[np.datetime64] = time + late
@@ -91,7 +90,7 @@ class Clock:
 
     @property
     def sentence(self) -> str:
-        """Description of the clock error in a sentence."""
+        """The clock error in words."""
         way = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
         return f"its clock was {abs(self.late):g} s {way} at {when}; its times were corrected"
@@ -102,7 +101,7 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
 
     Parameters
     ----------
-    first : time of a record, from which the lag grows if the deployment has no date
+    first : start of the record; the lag grows from this time if the deployment has no date
 
     Raises
     ------
@@ -130,8 +129,9 @@ def hung_currents(
 ) -> tuple[CurrentMeasurements, list[str]]:
     """Match the instruments of a current file to the line by serial number or nominal depth.
 
-    Also return notes on the matches. Matched instruments move with the line. Levels with labels are
-    unchanged, and so are levels without an instrument name: a profiler has fixed depths.
+    Levels of matched instruments move with the line. Levels that already have a label are
+    unchanged, and so are levels without an identified instrument: the bins of a profiler have fixed
+    depths. The second value are notes on the matches.
     """
     if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
         return one, []
@@ -171,13 +171,26 @@ CERTAIN = 2.0
 def matched_by_place(
     given: Sequence[Identity], line: LinePlaces, places: Sequence[int]
 ) -> tuple[dict[int, int], list[str]]:
-    """Match sensors to instruments by nominal depth, in order down the line, with notes.
+    """Match sensors to instruments by nominal depth, in order down the line.
 
-    The match minimises the differences in depth among all matches that preserve the order. `places`
-    are the points with instruments.
+    Among all matches that preserve the order, the match has the smallest sum of differences in
+    depth.
 
-    UsageError: a sensor has no nominal place, there are more sensors than instruments, or the best
-    match is not unique.
+    Parameters
+    ----------
+    given : the sensors
+    line : points of the line
+    places : indices of the points that are instruments
+
+    Returns
+    -------
+    Index of the point for each matched index in `given`, and notes in sentences.
+
+    Raises
+    ------
+    UsageError
+        A sensor has no nominal place, there are more sensors than instruments, or the best match is
+        not unique.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
     if lacking:
@@ -201,12 +214,19 @@ CLEAR = 10.0
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
-    """Match series to points, with notes on matched and unmatched series.
+    """Match series to points by label or serial number.
 
-    Labels and serial numbers come first. Series without a label are matched by nominal depth, in
-    order down the line.
+    Series with neither are matched by nominal depth, in order down the line.
 
-    UsageError: no series matches a point, or their order is not unique.
+    Returns
+    -------
+    Index of the point for each matched index in `series`, and notes on matched and unmatched
+    series.
+
+    Raises
+    ------
+    UsageError
+        No series matches a point, or the order of the series is ambiguous.
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
@@ -242,9 +262,9 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:
-    """Return the only point with the label of an instrument, else with its serial number.
+    """Return the one point with the label of an instrument, or else the one with its serial number.
 
-    None if no point or several points match.
+    Return None if no point matches, or if several do.
     """
     at = _index(one.label, line.label)
     if at is None:
@@ -261,7 +281,7 @@ def _index(text: str, among: Sequence[str]) -> int | None:
 
 
 def nowhere(one: Identity, line: LinePlaces) -> str:
-    """Return the message for an instrument that matches no point."""
+    """Return a message that an instrument matches no point of the line."""
     name = one.label or one.serial
     if not name:
         return f"{one.named}: neither label, serial number nor nominal depth is known"
@@ -276,19 +296,23 @@ def in_order(
 ) -> tuple[dict[int, int], list[int]]:  # fmt: skip
     """Match series to points by nominal depth, in order down the line.
 
-    Also return the unmatched series, if these outnumber the points.
-
     Parameters
     ----------
     points : candidate points
-    depths, spacings : cost per metre of a difference in depth, and in the spacing of neighbours:
-        nominal depths of a whole line often share an error
-    clear : least excess cost of the second-best order [m]
+    depths : cost per metre of difference between nominal depth and depth of the point
+    spacings : cost per metre of difference in the distance between neighbours; nominal depths of a
+        whole line often share an error, which leaves this distance unchanged
+    clear : smallest excess cost of the second-best match at which the best is accepted [m]
+
+    Returns
+    -------
+    Index of the point for each matched index in `series`, and the unmatched indices: if the series
+    outnumber the points, some remain.
 
     Raises
     ------
     UsageError
-        The order is ambiguous.
+        The match is ambiguous.
     """
     down = sorted(points, key=lambda at: line.still[at])
     rows = sorted(range(len(series)), key=lambda i: series[i].nominal)
@@ -316,12 +340,15 @@ def in_order(
 def aligned(
     few: Floats, many: Floats, depths: float, spacings: float
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
-    """Find the two cheapest alignments of few depths with many, in order.
+    """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
+
+    Matches preserve the order. Each alignment is its cost and the index in `many` for each of
+    `few`. The second is None if there is only one alignment.
 
     Parameters
     ----------
-    few, many : rising [m]
-    depths, spacings : cost per metre of a difference in depth, and in the spacing of neighbours
+    few, many : depths, increasing [m]
+    depths, spacings : costs, see `in_order`
     """
     places = len(many)
 

@@ -1,12 +1,13 @@
 """Smoother for records with measured currents, to estimate currents, line, sensors and tide.
 
-The unknowns at each time are the current vector at knots in depth, the share by which the knockdown
-of each stretch of the line is wrong, and the tide. The unknowns of the whole record are factors on
-the drag, the datum and the offset of each sensor; datum and offsets rarely step. All priors are
-normal; the states decay with time or persist. Errors of meters and sensors follow Student's law, as
-weights. Expectation and maximisation (Dempster, Laird and Rubin 1977) estimates the meter error for
-each quality flag, and the error of the line. Gauss-Newton steps over the whole record use depths
-and slopes from the march.
+The unknowns at each time are the current at several depths (knots), the relative error in the
+knockdown of each stretch of the line, and the tide. The unknowns of the whole record are factors on
+the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. All
+priors are normal, and states either decay with time or persist. Errors of meters and sensors follow
+Student's t distribution, represented by weights of the readings. The meter error for each quality
+flag and the error of the line are estimated by expectation and maximisation (Dempster, Laird and
+Rubin 1977). Gauss-Newton steps over the whole record use depths and derivatives from solutions of
+the line.
 """
 
 from __future__ import annotations
@@ -52,17 +53,18 @@ distance from the lowest level to the seabed for a knot half-way [m].
 METER = 0.02, 0.10
 """Error of a current meter: constant part [m/s], and share of the speed.
 
-A factor for the quality flag multiplies both.
+Both are multiplied by a factor that depends on the quality flag.
 """
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 """Default factors on the meter error, by quality flag."""
 FLAG_RANGE, FEWEST = (0.6, 15.0), 20
 """Limits of the estimated factor on the meter error, and the least number of readings.
 
-The current at a meter differs from that on the line around it, however good the meter is.
+The lower limit is above zero because the current at even a perfect meter differs from the current
+on the line around it.
 """
 STUDENT = 4.0
-"""Degrees of freedom of Student's law for readings."""
+"""Degrees of freedom of Student's t distribution of the readings."""
 ALIKE_HOURS = 1.0
 """Time over which the error of a meter persists [h]."""
 LEAST_SPREAD = 0.02
@@ -72,9 +74,9 @@ CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 HOURS = (4.0, 16.0)
 """Limits of the estimated correlation time of the current [h]; a longer time would damp tides."""
 WIDER = 2.0
-"""Factor on the prior deviation of the currents from which the drag is estimated.
+"""Factor on the prior deviation of the currents for the estimate of the drag.
 
-Smoothing by the prior of the depths would damp the strongest currents, and raise the drag.
+With the unchanged prior, smoothing would damp the strongest currents, and so raise the drag.
 """
 METERS_ALIKE = 0.02
 """Error common to all meters of a record, as a share of the speed."""
@@ -90,8 +92,8 @@ TIDE_HOURS = 2.4
 STEP = 0.02
 """Typical hourly step of the datum and offsets [m].
 
-Student's law with one degree of freedom applies to these steps and to the initial values, to allow
-steps many times as large.
+These steps and the initial values have Student's t distribution with one degree of freedom, which
+allows rare steps that are many times as large.
 """
 SETTLED = 6
 """Number of steps before the line error is estimated, as it would absorb sensor steps."""
@@ -103,13 +105,14 @@ FURTHEST = 0.7
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths at which the current is unknown, with interpolation from knots to levels.
+    """Depths at which the current is estimated, and interpolation from these knots to the levels.
 
     Attributes
     ----------
     depth : (K,) depths in still water, rising [m]
-    level : (k, K) weights of the knots in the current of a level
-    measured : levels that are knots, and the indices of these knots
+    level : (k, K) weights of the knots in the current of each level
+    measured : indices of the levels that coincide with a knot, and of these knots
+    seabed : depth of the water [m]
     """
 
     depth: Floats
@@ -118,7 +121,7 @@ class Knots:
     seabed: float
 
     def at(self, levels: Floats) -> Floats:
-        """Return (n, K) depths of the knots for levels (n, k), interpolated between levels."""
+        """Return (n, K) depths of the knots, which move with the levels at depths (n, k) [m]."""
         level, knot = self.measured
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
@@ -132,7 +135,10 @@ class Knots:
 
 
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
-    """Return the knots of levels.
+    """Choose the knots for levels of measured current.
+
+    Each level is a knot if there are few. A knot may be added above the top of the line and below
+    the lowest level.
 
     Parameters
     ----------
@@ -179,23 +185,23 @@ class Columns:
 
     @property
     def count(self) -> int:
-        """Number of unknowns."""
         return int(self.offset.stop)
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant but for steps: the datum and the offsets."""
+        """Columns of the unknowns that persist between rare steps: the datum and the offsets."""
         return slice(self.datum.start, self.offset.stop)
 
 
 @dataclass(frozen=True)
 class ErrorScales:
-    """Error scales estimated from the record.
+    """Sizes and correlation time of the errors, estimated from the record.
 
     Attributes
     ----------
-    flag : factor on the errors of a meter by its flag
+    flag : factor on the error of a current meter, by quality flag
     share : error of the line, as a share of the knockdown of each stretch
+    tide : standard deviation of the tide [m]
     hours : correlation time of the current [h]
     """
 
@@ -206,7 +212,7 @@ class ErrorScales:
 
 
 class CurrentSmoother:
-    """Estimate of a whole record with measured currents."""
+    """Estimate of currents, line, sensors and tide over a whole record with measured currents."""
 
     def __init__(
         self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
@@ -271,18 +277,24 @@ class CurrentSmoother:
     # --- the line
 
     def currents(self, state: Floats) -> tuple[Floats, Floats]:
-        """Return (n, K) u and v at the knots."""
         count = len(self.knots.depth)
         whole = self.mean + state
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return (n, p) depths of the points at currents (n, 2 K), logarithms of factors (f,)."""
+        """Return (n, p) depths of the points [m].
+
+        Parameters
+        ----------
+        state : (n, 2 K) currents at the knots less their mean [m/s]
+        factor : (f,) logarithms of the factors
+        times : times of the record to which the rows of `state` belong
+        """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring for logarithms of the factors; the latest moorings are cached."""
+        """Return the mooring for logarithms of the factors (f,), from a small cache if possible."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -292,7 +304,10 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths at the state, and renew the slopes at times with a large change."""
+        """Return (n, p) depths at the present state [m].
+
+        The slopes are renewed where the state has changed.
+        """
         now, factor = self.state[:, self.columns.current], self.factor
         there = self.depths(now, factor, slice(None))
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
@@ -308,7 +323,7 @@ class CurrentSmoother:
     def _slopes(
         self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> Floats:
-        """Return (n, p, 2 K + f) derivatives of depths by currents and logarithms of factors."""
+        """Return derivatives (n, p, 2 K + f) of the depths by currents and log factors."""
         n, flows = state.shape
         ahead = (state[:, None] + SLOPE_STEP * np.eye(flows)).reshape(-1, flows)
         by_flow = self.depths(ahead, factor, np.repeat(times, flows)).reshape(n, flows, -1)
@@ -319,9 +334,10 @@ class CurrentSmoother:
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
-        """Limits of the stretches, the stretch of each point, and the correlation of the shares.
+        """Limits of the stretches, stretch of each point, and correlation between the stretches.
 
-        The limits are depths in still water, from the seabed up.
+        The limits are depths in still water [m], from the seabed up. The correlation applies to the
+        relative errors in knockdown.
         """
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
@@ -330,7 +346,7 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return (n, p, z) derivatives of the depths by the error shares of the stretches."""
+        """Return (n, p, z) derivatives of the depths by the relative errors of the z stretches."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -351,7 +367,10 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return the linear law of the currents at the knots, read by the meters alone."""
+        """Return the state-space model of the currents at the knots.
+
+        Its only readings are those of the meters.
+        """
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)
@@ -366,7 +385,7 @@ class CurrentSmoother:
         return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
-        """Return the linear law about the state, and (n, p, q) slopes of all points."""
+        """Return the state-space model about the present state, and slopes (n, p, q)."""
         one, at, own = self.measured, self.columns, self.meter_law()
         n, flows = own.fade.shape
         steady = np.zeros((at.count, at.count))
@@ -418,7 +437,6 @@ class CurrentSmoother:
 
     @property
     def at_levels(self) -> tuple[Floats, Floats]:
-        """Estimated currents (n, k), u and v, at the levels [m/s]."""
         u, v = self.currents(self.state[:, self.columns.current])
         return u @ self.knots.level.T, v @ self.knots.level.T
 
@@ -429,8 +447,9 @@ class CurrentSmoother:
 
         Parameters
         ----------
-        slips : sensor, time and size [m] of steps to begin with; of two or three sensors, the
-            iterations may otherwise end with an offset of one and a step of another
+        slips : index of the sensor, index of the time and size [m] of steps with which to begin;
+            without them, the iterations for two or three sensors may attribute the step of one
+            sensor to an offset of another
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
@@ -454,16 +473,17 @@ class CurrentSmoother:
 
     @property
     def _steps(self) -> Floats:
-        """Differences (n, s) of datum plus offsets from their medians at each time [m]."""
+        """Sum of datum and offset (n, s), less its median over the record [m]."""
         stay = self.state[:, self.columns.stays]
         gone = stay - np.median(stay, axis=0)
         return np.asarray(gone[:, :1] + gone[:, 1:])
 
     def _place(self) -> None:
-        """Take a Gauss-Newton step of the factors, datum and offsets, given the metered currents.
+        """Update the factors by a Gauss-Newton step, with currents estimated from the meters alone.
 
-        With currents that fit the pressures, the currents would shrink and the drag grow. Times
-        with a common error have a reduced weight, and steps of datum and offsets are subtracted.
+        Currents that also fit the pressures would become too small, and the drag too large. The
+        weight of successive times with a common error is reduced, and steps of the datum and the
+        offsets are subtracted first.
         """
         times = chosen_times(self.measured)
         if not self.names or not len(times):
@@ -485,10 +505,10 @@ class CurrentSmoother:
         self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
     def _grown(self, step: float) -> float:
-        """Return the error share of the line after a step of its logarithm.
+        """Return the relative error of the line after a step of its logarithm.
 
-        Steps of expectation and maximisation are short if the pressures constrain the share poorly.
-        They are lengthened while they have the same sign.
+        Steps of expectation and maximisation are short if the pressures constrain the error poorly.
+        They are lengthened as long as they have the same sign.
         """
         same = step * self._last > 0.0
         self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
@@ -497,7 +517,10 @@ class CurrentSmoother:
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return initial variances by Student's law, from the expected squares."""
+        """Return variances of the initial datum and offsets under Student's t distribution.
+
+        `square` are the expected squares of these values [m²].
+        """
         return np.asarray(np.maximum(self.begin, 0.5 * (self.begin + square)), np.float64)
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
@@ -580,7 +603,7 @@ class CurrentSmoother:
     # --- results
 
     def common(self) -> Common:
-        """Return the common unknowns, with the medians over time of datum and offsets."""
+        """Return the common unknowns; datum and offsets are their medians over time."""
         at = self.columns
         stay = np.median(self.state[:, at.stays], axis=0)
         factors = np.exp(self.factor).tolist()
@@ -589,7 +612,6 @@ class CurrentSmoother:
 
     @cached_property
     def best(self) -> Forward:
-        """Mooring with the estimated factors."""
         return self.forward(self.factor)
 
     def read(self, times: slice) -> ReadCurrents:
@@ -604,7 +626,7 @@ class CurrentSmoother:
 
     @property
     def surface(self) -> Floats:
-        """Change (n,) in all depths of the line: datum, tide and steps [m]."""
+        """Common change (n,) in all depths: datum, tide, and movement of the whole mooring [m]."""
         at = self.columns
         return self.state[:, at.datum.start] + self.state[:, at.tide.start] + self.measured.surface
 
@@ -618,7 +640,7 @@ class CurrentSmoother:
 
     @property
     def current_factor(self) -> Floats:
-        """Ratio (n,) of the estimated currents to the measured currents."""
+        """Ratio (n,) of estimated to measured currents, by least squares over the levels."""
         one = self.measured
         u, v = self.at_levels
         along, own = u * one.u + v * one.v, one.u**2 + one.v**2
@@ -627,10 +649,10 @@ class CurrentSmoother:
 
     @property
     def doubt(self) -> Floats:
-        """Probability (n, k) that the reading of a level is unrelated to its current.
+        """Probability (n, k) that the reading of a level is unrelated to the current there.
 
-        It follows from the prior odds and two normal laws: the meter error alone, and the meter
-        error plus the variability of the current.
+        It follows from the prior odds and the ratio of two normal densities of the reading: with
+        the meter error alone, and with the meter error plus the variability of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
@@ -643,10 +665,12 @@ class CurrentSmoother:
         return doubt
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
-        """Return the linear law of the pressures at several times, given the meters alone.
+        """Linearise the pressures about the currents that are estimated from the meters alone.
 
-        The law is linearised at the smoothed currents of the meters. Also return these currents at
-        the knots, and the line response.
+        Returns
+        -------
+        The linear model of the pressures at these times, the currents at the knots, and the line
+        response.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

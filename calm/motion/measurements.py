@@ -1,6 +1,6 @@
 """Measurements on common times: currents at levels or on the line, and depths of sensors.
 
-The times of the currents are used; sensor readings are interpolated over short gaps.
+Sensor readings are interpolated to the times of the currents over short gaps.
 """
 
 from __future__ import annotations
@@ -38,16 +38,18 @@ class MooringMeasurements:
 
     Attributes
     ----------
-    time : (n,) to the nanosecond, rising
-    label : (s,) of the used sensors
-    point : (s,) point of each sensor, see `calm.motion.line_response`
-    depth : (n, s) below the surface by their pressures [m]; NaN if missing or rejected by a flag
-    level_depth : (n, k) [m]; NaN for levels on the line
-    level_point : (k,) point of each level on the line; `FREE` for fixed levels
-    u, v : (n, k) current [m/s]; NaN if missing
-    flag : (n, k) quality flags of the current; 0 without flags
+    time : (n,) increasing times, to the nanosecond
+    label : (s,) labels of the sensors
+    point : (s,) index of the point of each sensor, see `calm.motion.line_response.Forward`
+    depth : (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected by a
+        flag
+    level_depth : (n, k) depths of the levels [m]; NaN for levels on the line
+    level_point : (k,) index of the point of each level on the line; `FREE` for fixed levels
+    u, v : (n, k) eastward and northward current [m/s]; NaN if missing
+    flag : (n, k) quality flags of the current; 0 if the file has no flags
     tide : (n,) height of the sea surface above its mean [m]; None if unknown
-    false : (n,) whether an impossible current was removed; None if none was removed
+    false : (n,) whether an impossible current was removed at this time; None if no current was
+        removed
     sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
     """
 
@@ -77,7 +79,7 @@ class MooringMeasurements:
 
     @property
     def level_sensor(self) -> Integers:
-        """Index (k,) of the used sensor at the place of a level; `FREE` without a sensor."""
+        """Index (k,) of the pressure sensor at the point of each level; `FREE` without a sensor."""
         used = self.point.tolist()
         found = [used.index(at) if at in used else FREE for at in self.level_point.tolist()]
         return np.array(found, np.int64)
@@ -88,20 +90,23 @@ class MooringMeasurements:
         return TIDE if self.tide is None else RESIDUAL_TIDE
 
     def elapsed(self, time: Times) -> Floats:
-        """Return the elapsed share (m,) of the record at times (m,)."""
+        """Return the share (m,) of the record, 0 to 1, that has elapsed at times (m,)."""
         first, last = self.time[[0, -1]]
         share: Floats = (time - first) / max(last - first, np.timedelta64(1, "ns"))
         return share
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
-        """Return the measurements at several times."""
+        """Return the measurements at selected times."""
         columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false", "sunk")
         known = {name: getattr(self, name) for name in columns}
         return replace(self, **{name: one[times] for name, one in known.items() if one is not None})
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Return evenly spread times with a current and a pressure, or if `alone` with a pressure."""
+    """Choose up to `MOST_TIMES` times with a current and a pressure, evenly spread over the record.
+
+    If `alone`, a pressure is enough.
+    """
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
@@ -110,7 +115,7 @@ def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers
 
 
 def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
-    """Return the name of each level of the currents: its part of the line, or its mean depth."""
+    """Return the name of each current level: the label of its part of the line, or its depth."""
     names = []
     for k, point in enumerate(measured.level_point.tolist()):
         depth = measured.level_depth[:, k]
@@ -121,7 +126,7 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time, the earlier in a tie.
+    """Return the index (n,) of the time nearest to each wanted time; the earlier one in a tie.
 
     Parameters
     ----------
@@ -137,11 +142,11 @@ def nearest(time: Times, wanted: Times) -> Integers:
 def common_times(
     currents: Sequence[CurrentMeasurements], sensors: Sequence[InstrumentSeries]
 ) -> Times:
-    """Return the times of the first current, or of the first sensor if there are no currents.
+    """Choose the common times: those of the first current record, or of the first sensor.
 
-    Times of the other currents, and then of the sensors, are added if they are more than half the
-    median step away from all times so far. Only the first of several readings within a quarter of
-    the step (a burst) is used.
+    The times of the other currents, and then of the sensors, are added if they are more than half
+    the median time step away from all times so far. Of several added readings within a quarter of
+    the step (a burst), only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -153,7 +158,6 @@ def common_times(
 
 
 def _sparse(times: Times, step: np.timedelta64) -> Times:
-    """Thin rising times to steps longer than `step`."""
     taken: list[np.datetime64] = []
     at = 0
     while at < len(times):
@@ -163,15 +167,14 @@ def _sparse(times: Times, step: np.timedelta64) -> Times:
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Return values (n,) at other times, linear between known neighbours no further apart than the
-    gap.
+    """Interpolate values linearly to other times (n,); NaN within gaps longer than `gap`.
 
     Parameters
     ----------
-    time : (m,) rising
-    value : (m,) values at these times
+    time : (m,) increasing times
+    value : (m,) values at these times; NaN if unknown
     wanted : (n,) other times
-    gap : longest gap over which values are interpolated
+    gap : longest time between two known values over which to interpolate
     """
     known = np.isfinite(value)
     if not known.any():
@@ -188,7 +191,7 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 
 def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate depths to other times, except a reading at that time, even a missing one."""
+    """Interpolate depths to other times; a reading at exactly that time is used even if missing."""
     result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
@@ -196,15 +199,15 @@ def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> F
 
 
 def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
-    """Return (n, s) depths interpolated between the adjacent readings, and their deviation [m].
+    """Interpolate each reading from the readings before and after it.
 
-    The interpolation is linear in time. The deviation combines a robust value for the whole record
-    with a quarter of the difference between the two readings. It is infinite if either reading is
-    missing or distant.
+    Return (n, s) depths, linear in time, and their standard deviations [m]. The standard deviation
+    combines a robust value for the whole record with a quarter of the difference between the two
+    readings. It is infinite if either reading is missing or too far away in time.
 
     Parameters
     ----------
-    time : (n,) rising
+    time : (n,) increasing times
     depth : (n, s) measured depths; NaN if missing [m]
     """
     expected, deviation = np.full_like(depth, np.nan), np.full_like(depth, np.inf)
@@ -245,12 +248,14 @@ def joined(
     points : point of each sensor
     labels : labels of all points
     still : (p,) depths of all points in still water [m]
-    sea_level : times, and height of the sea surface above its mean [m]
+    gap : longest gap over which values are interpolated
+    sea_level : times, and height of the sea surface above any datum [m]
 
     Raises
     ------
     UsageError
-        A current has a label without a part; no time has both a current and a pressure.
+        A current has a label that no part of the line has; the sea level covers none of the times;
+        or no time has both a current and a pressure.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -323,14 +328,15 @@ class CurrentMeasurements:
 
     Attributes
     ----------
-    time : (n,) to the nanosecond, rising
-    depth : (n, k) of the levels [m]; NaN for levels on the line
-    label : (k,) part of the line at each level; empty for fixed depths
-    u, v : (n, k) [m/s]
-    flag : (n, k) quality flags; 0 without flags
+    time : (n,) increasing times, to the nanosecond
+    depth : (n, k) depths of the levels [m]; NaN for levels on the line
+    label : (k,) label of the part of the line at each level; empty for levels at fixed depths
+    u, v : (n, k) eastward and northward current [m/s]
+    flag : (n, k) quality flags; 0 if the file has no flags
     source : name of the file
     notes : remarks on the file
-    false : (n,) whether an impossible speed was removed
+    false : (n,) whether an impossible current was removed at this time; None if no current was
+        removed
     """
 
     time: NDArray[np.datetime64]
@@ -354,14 +360,14 @@ def read_currents(
 ) -> list[CurrentMeasurements]:
     """Read the currents of several files.
 
-    Each file is given by its path, or if it has one level also as ``LABEL=PATH``.
+    Each file is given by its path. A file with a single level may be given as ``LABEL=PATH``.
 
     Parameters
     ----------
     seabed : depth of the water [m]
     place : latitude and longitude of the mooring [degrees], if known
     declination : see `calm.records.current_terms.Terms`
-    maximum_speed : speed above which a current is removed, with a note [m/s]
+    maximum_speed : speed above which a current is removed and noted [m/s]
 
     Raises
     ------
@@ -396,7 +402,6 @@ def read_currents(
 
 
 def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasurements:
-    """Replace impossible currents by gaps."""
     depth = np.where([bool(label) for label in one.label], 0.0, one.depth)
     false = implausible(depth, one.u, one.v, None, maximum_speed)
     if not false.any():

@@ -1,4 +1,4 @@
-"""Estimation of the motion from sensor files: input and computation of ``calm motion``."""
+"""Computation of ``calm motion``: read sensor files and estimate the motion of a mooring."""
 
 from __future__ import annotations
 
@@ -50,13 +50,16 @@ GAP = np.timedelta64(2, "h")
 
 
 RARE = 0.1
-"""Share of times with two sensors below which a note is added."""
+"""A note is added if the share of times with two sensors is below this value."""
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
-    """Return a note if few times have two sensors.
+    """Return a note if only few times have pressures from two sensors or more.
 
-    UsageError: no time has two sensors, and no current was measured.
+    Raises
+    ------
+    UsageError
+        No time has pressures from two sensors, and no current was measured.
     """
     if len(measured.label) < 2:
         return []
@@ -79,12 +82,16 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 
 
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
-    """Return the factors to estimate: the defaults, and the requested factors.
+    """Return the names of the factors to estimate: the defaults and the requested factors.
 
-    By default these are the drag factors. Without currents, a factor on all drag is equivalent to
-    one on the currents. In that case the defaults are the drag of rigid pieces and the length.
+    The defaults are the two drag factors. Without measured currents, a factor on all drag cannot be
+    distinguished from a factor on the currents; the defaults are then the drag of rigid pieces and
+    the length.
 
-    UsageError: a requested factor cannot be estimated.
+    Raises
+    ------
+    UsageError
+        A requested factor cannot be estimated.
     """
     for name in requested:
         if name not in FACTORS:
@@ -95,24 +102,29 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 
 @dataclass
 class RecoveredMooring:
-    """A recovered mooring: read, correct, estimate and judge its record, in this order.
+    """A recovered mooring with its records.
+
+    Creating the object reads and corrects the measurements. `estimate` then estimates the motion,
+    and `study` compares the result with the measurements.
 
     Attributes
     ----------
     mooring : mooring with a position
     pressures, currents : files, as paths or ``LABEL=PATH``
-    match : method of matching: by `label`, or by nominal `height` or `depth`
+    match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
     fit : factors to estimate in addition to the drag
-    hold_out : labels of sensors that are hidden, to judge the result
-    cross_validate : whether to hide each used sensor in turn
-    correct : members of `CORRECTABLE` to correct, if no other fault is as likely
+    hold_out : labels of sensors that are withheld to test the result
+    cross_validate : whether to withhold each sensor in turn
+    correct : members of `CORRECTABLE`; such a fault is corrected if no other fault is as likely
     sea_level : path of the sea-surface heights
     flags : accepted quality flags of the pressures, separated by commas
     gap : longest gap over which values are interpolated
     declination : added to the directions of the currents [degrees]
     without : labels of sensors to ignore
-    moved : common step in the depths of all sensors, if currents were not measured
-    measured, notes, source : measurements, notes on them and the source files
+    moved : common step in the depths of all sensors, if there is one and currents were not measured
+    measured : the measurements
+    notes : notes on the measurements, in sentences
+    source : names and hashes of the source files
 
     Raises
     ------
@@ -138,7 +150,6 @@ class RecoveredMooring:
     _faults: tuple[Fault, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
-        """Read the files."""
         for kind in self.correct:
             if kind not in CORRECTABLE:
                 what = f"--correct: `{kind}` cannot be corrected"
@@ -150,7 +161,7 @@ class RecoveredMooring:
             several(self.measured, self.hidden)
 
     def _read(self) -> None:
-        """Read the measurements at common times, corrected for known faults."""
+        """Read the measurements, correct them for known faults, and interpolate to common times."""
         mooring, position = self.mooring, self.mooring.file.position
         if self.match not in _MATCHES:
             raise UsageError(not_among("--match", self.match, _MATCHES))
@@ -236,7 +247,13 @@ class RecoveredMooring:
             self.source["corrected"] = "taken off: " + "; ".join(off)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors in use. Labels to ignore must exist."""
+        """Return the points of the sensors that are not ignored.
+
+        Raises
+        ------
+        UsageError
+            A label of `without` or `hold_out` belongs to no sensor.
+        """
         known = [labels[at] for at in points.values()]
         for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in given:
@@ -256,11 +273,12 @@ class RecoveredMooring:
         progress: Callable[[Progress], None] | None = None,
         tell: Callable[[str], None] = lambda _: None,
     ) -> dict[str, int]:
-        """Estimate the common unknowns, correct faults, and write the result for every time.
+        """Estimate the common unknowns, correct the requested faults, and write the result.
 
         Parameters
         ----------
-        output, workers, progress, tell : see `calm.batch.run.run_batch`, also for the return value
+        output, workers, progress, tell : see `calm.batch.run.run_batch`, which also describes the
+            return value
         """
         task = self._prepared(tell)
         if self.correct:
@@ -335,7 +353,7 @@ def estimate_motion(
     without: Sequence[str] = (),
     workers: int | None = None,
 ) -> MotionEstimate:
-    """Estimate the depth of every part of a mooring at every time, like ``calm motion``.
+    """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
 
     Parameters
     ----------
@@ -345,10 +363,10 @@ def estimate_motion(
         `pandas.DataFrame` with an index of times and columns such as ``LABEL[dbar]``
     currents : records of currents, in the same forms; if empty, CALM infers the currents from the
         pressures
-    match : method of matching sensors: by `label`, or by nominal `height` or `depth`
+    match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
     fit : factors to estimate for the whole record besides the drag: `buoyancy`, `length`
-    hold_out : labels of sensors that are hidden, to judge the result
-    cross_validate : hide each used sensor in turn, and judge the result
+    hold_out : labels of sensors that are withheld to test the result
+    cross_validate : whether to withhold each sensor in turn to test the result
     sea_level : path of the sea-surface heights over time
     flags : accepted quality flags of the pressures
     gap : longest gap over which values are interpolated [s]; two hours by default

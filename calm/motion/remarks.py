@@ -23,16 +23,16 @@ OF_LINE = ("currents", "speed", "slows", "buoyancy", "length", "drag", "fouling"
 LIKELY = 20.0
 """Odds above which a fault is reported."""
 FAR_OFFSET = 2.5
-"""Reported offset of all sensors, in prior standard deviations."""
+"""Offset of all sensors above which it is reported, in prior standard deviations."""
 FAR_DATUM = 10.0
-"""Maximum threshold for a reported offset of all sensors [m]."""
+"""Offset of all sensors that is always reported [m]."""
 FAR_LENGTH = 5.0
-"""Reported deviation of the length without measured currents, in prior deviations.
+"""Error in length above which it is reported if currents were not measured, in prior deviations.
 
 Inferred currents absorb much of an error in length.
 """
 FAR_FACTOR = 3.0
-"""Deviations from 1 above which a drag factor does not represent drag."""
+"""Distance of a drag factor from 1, in prior deviations, above which it absorbs another error."""
 WORST = 0.3
 """Share of the knockdown above which the error of the line is reported."""
 
@@ -45,14 +45,15 @@ class Fault:
     ----------
     label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : size and the ends of its 95 % interval: clock lag [h]; gain; excess depth,
-        its final value, or the displacement down the line [m]; 0 for exchanged labels; for
-        `OF_LINE`, a factor on the value in the file or of the meter
-    odds : odds of this fault against all alternatives, including no fault
+    value, low, high : size and limits of its 95 % interval. `clock`: lag [h]; `gain`: the gain;
+        `offset`, `moved`: excess depth [m]; `drift`: excess depth at its end [m]; `slip`: distance
+        moved down the line [m]; `exchanged`: 0; `OF_LINE`: factor on the value in the file, or on
+        the reading of the meter
+    odds : odds in favour of this fault against all alternatives, including no fault
     since : start of the slip or drift, else NaT
     until : end of the drift, else NaT
-    other : label of the other sensor of an exchange; empty otherwise
-    rival : alternative explanation that is nearly as likely; empty otherwise
+    other : label of the second sensor of exchanged labels; otherwise empty
+    rival : alternative explanations that are nearly as likely; empty if there are none
     corrected : whether the fault has been corrected
     """
 
@@ -70,13 +71,13 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Estimated size of the fault, 0 for no fault."""
+        """Deviation of `value` from no fault; a logarithm for faults of the line."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
 
     def sized(self, size: float, deviation: float) -> Fault:
-        """Return a copy with another size and deviation."""
+        """Return a copy with another size, and its 95 % interval from a standard deviation."""
         three = [size, size - BAND * deviation, size + BAND * deviation]
         if self.kind in OF_LINE:
             three = [float(np.exp(one)) for one in three]
@@ -84,16 +85,16 @@ class Fault:
         return replace(self, value=value, low=low, high=high)
 
     def same(self, other: Fault) -> bool:
-        """Return whether two faults have the same kind and sensor, regardless of size."""
+        """True if the faults have the same kind and sensors, whatever their sizes."""
         return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
 
     def alike(self, other: Fault) -> bool:
-        """Return whether faults are the same, or both concern the line or its currents."""
+        """True if the faults are the same, or if both concern the whole line or all currents."""
         both = {self.label, other.label} <= {LINE, CURRENTS}
         return both or self.same(other)
 
     def taken_off(self, time: Times, depth: Floats) -> tuple[Times, Floats]:
-        """Return times and depths (n,) corrected for the fault [m]."""
+        """Return times (n,) and depths (n,) [m] corrected for the fault."""
         if self.kind == "clock":
             return time - np.timedelta64(round(self.value * 3.6e12), "ns"), depth
         if self.kind == "gain":
@@ -107,11 +108,11 @@ class Fault:
 
     @property
     def certain(self) -> bool:
-        """Whether the odds exclude other explanations."""
+        """Whether the odds are high enough to exclude other explanations."""
         return self.odds >= LIKELY
 
     def sentence(self, rival: bool = True) -> str:
-        """Describe the fault in a sentence, with its rival explanations only if `rival`."""
+        """Describe the fault in a sentence, with the alternative explanations in `rival`."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
         way = "late" if self.value > 0.0 else "early"
@@ -181,7 +182,13 @@ def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dic
 
 
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
-    """Return a remark on each level with false currents, out of the given number of times."""
+    """Return a remark for each level with false currents.
+
+    Parameters
+    ----------
+    false : result of `false_current_times`
+    count : number of times of the record
+    """
     return [
         f"current at {name}: its direction or speed is probably wrong at {len(when)} of {count} "
         f"times, first at {np.datetime_as_string(when[0], 'm')}"
@@ -190,13 +197,13 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def no_drag(name: str, value: float) -> bool:
-    """Return whether a drag factor is implausible by its prior."""
+    """True if a drag factor is so far from 1 that it must absorb another error."""
     far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name]
     return name.endswith("drag") and far
 
 
 def alone_remarks(common: Common) -> list[str]:
-    """Return a remark if a line with unknown currents is inconsistent with its pressures.
+    """Return a remark if the line is inconsistent with its pressures, for unmeasured currents.
 
     The pressures cannot identify the cause, because currents exist that agree with most lines.
     """
@@ -213,7 +220,13 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a remark if all sensors have a large common offset for the seabed depth [m]."""
+    """Return a remark if all sensors share a large offset.
+
+    Parameters
+    ----------
+    common : common unknowns
+    seabed : depth of the water [m]
+    """
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
@@ -225,7 +238,7 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
 CALM = 0.1
 """Share of times that count as calm, with the smallest knockdown."""
 BAND = 1.96
-"""Half-width of the 95 % interval of a normal law, in standard deviations."""
+"""Half-width of the 95 % interval of a normal distribution, in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -236,8 +249,8 @@ class Agreement:
     ----------
     count : number of times with both depths
     bias : mean of computed less measured depth [m]
-    rms : root of the mean square of that difference less its mean over the calm times [m]
-    r : correlation of computed and measured
+    rms : root mean square of this difference, less its mean over the calm times [m]
+    r : correlation of computed and measured depths
     slope : regression slope of computed on measured depths
     """
 
@@ -249,7 +262,13 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the times with the smallest knockdown [m]: a tenth, at least one time."""
+    """Return a mask of the tenth of the times with the smallest knockdown, but at least one time.
+
+    Parameters
+    ----------
+    down : (n,) knockdown [m]
+    among : (n,) mask of the times to choose from
+    """
     known = among & np.isfinite(down)
     chosen = np.zeros_like(known)
     count = int(known.sum())
@@ -263,7 +282,9 @@ def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def difference(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Floats:
-    """Return (n,) computed less measured, less its mean over the calm times; NaN elsewhere [m].
+    """Return (n,) computed less measured depth, less the mean of this difference at calm times [m].
+
+    Times that are not compared are NaN.
 
     Parameters
     ----------
@@ -311,16 +332,17 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Return the share of differences within the 95 % interval; NaN if there are no differences."""
+    """Return the share of differences within their 95 % interval; NaN if there are none."""
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")
 
 
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """Return (n,) depths at a point [m], interpolated linearly between the nearest sensors.
+    """Interpolate depths (n,) of a point [m] linearly between the nearest sensors.
 
-    Extrapolation uses the two nearest sensors; a single sensor shifts all points equally.
+    Beyond the outermost sensors, the two nearest are extrapolated. With a single sensor, all points
+    are displaced equally.
 
     Parameters
     ----------
@@ -340,7 +362,7 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
 
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """Return (n,) depths at a point [m], by PCHIP interpolation of the knockdown.
+    """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, by PCHIP.
 
     The method is that of Fritsch and Carlson (1980). The coordinate is the height in still water
     above the lowest point of the line, which is fixed.

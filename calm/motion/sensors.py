@@ -40,14 +40,14 @@ def read_sensors(
 ) -> list[InstrumentSeries]:
     """Read the depths measured by the sensors of several files [m].
 
-    Each file is given by its path, or if it has one sensor also as ``LABEL=PATH``. Pressures are
-    converted to depths by TEOS-10.
+    Each file is given by its path. A file with a single sensor may be given as ``LABEL=PATH``.
+    Pressures are converted to depths by TEOS-10.
 
     Parameters
     ----------
     flags : accepted quality flags, for files with flags
-    latitude : [degrees]
-    seabed : depth of the water [m], for nominal heights above it
+    latitude : latitude of the mooring [degrees]
+    seabed : depth of the water [m], to convert nominal heights above the seabed
 
     Raises
     ------
@@ -78,14 +78,16 @@ def read_sensors(
 
 
 def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
-    """Add doubts about the sequence of readings to the note of a sensor."""
     doubts = series_doubts(sensor.value[:, np.newaxis, np.newaxis], sensor.time)
     notes = (sensor.note, *(f"{sensor.named}: {doubt}" for doubt in doubts))
     return replace(sensor, note="; ".join(filter(None, notes)))
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Convert pressures above atmospheric [dbar] to depths [m] by TEOS-10; infinite gives NaN."""
+    """Convert pressures [dbar], relative to the atmosphere, to depths [m] by TEOS-10.
+
+    Infinite pressures give NaN.
+    """
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
@@ -165,7 +167,10 @@ def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
 def parse_flags(text: str) -> frozenset[int]:
     """Parse a list of flags such as ``1,2``.
 
-    UsageError: the text is not a list of flags, or includes 8, the flag of interpolated values.
+    Raises
+    ------
+    UsageError
+        The text is not a list of flags from 0 to 8, or includes 8, the flag of interpolated values.
     """
     try:
         flags = frozenset(int(part) for part in text.split(","))
@@ -179,7 +184,7 @@ def parse_flags(text: str) -> frozenset[int]:
 
 
 FURTHEST = 20.0
-"""Maximum distance of a sea-surface height from the median [m], over twice any real tide."""
+"""Maximum distance of a sea-surface height from the median [m]: more than twice any real tide."""
 
 _STANDARD = (
     "sea_surface_height_above_mean_sea_level",
@@ -191,9 +196,12 @@ _STANDARD = (
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Return increasing times and the height of the sea surface above a datum [m].
+    """Read increasing times and the height of the sea surface above a datum [m].
 
-    InputError: the file is unreadable, has no height with a unit, or has an impossible height.
+    Raises
+    ------
+    InputError
+        The file is unreadable, has no height with a unit, or has an impossible height.
     """
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
@@ -249,9 +257,11 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Implausible readings lie far above the sensor's place in still water (on deck, a fill value) or
-    far below the seabed, or repeat a time. If most readings are implausible, the sensor itself is
-    wrong, and all are left unchanged: see `unusable`.
+    Readings are implausible if they lie far above the depth of the sensor in still water (read on
+    deck, or a fill value) or far below the seabed, or if the sensor is stuck. Only the first of
+    several readings at the same time is kept. Depths are corrected if the readings on deck show
+    that the pressures are absolute. If most readings are too shallow or too deep, the sensor itself
+    is wrong and none is removed: see `unusable`.
 
     Parameters
     ----------
@@ -261,7 +271,7 @@ def plausible(
     Raises
     ------
     UsageError
-        A third of its times or more occur twice, with different depths.
+        A third or more of its times occur twice with different depths.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -314,7 +324,7 @@ STUCK, FEWEST_STUCK = 0.1, 24
 
 
 def _stuck(value: Floats) -> NDArray[np.bool_]:
-    """Return (n,) a mask of long runs of equal readings in a series that varies otherwise."""
+    """Return a mask (n,) of long runs of equal readings, in a series that otherwise varies."""
     same = np.zeros(len(value), bool)
     change = np.flatnonzero(np.diff(value) != 0.0)  # also on either side of a gap
     ends = np.concatenate([[-1], change, [len(value) - 1]])
@@ -334,10 +344,15 @@ NEAR_AIR, ON_DECK = 2.5, 0.6
 
 
 def air_notes(depth: Floats, place: Floats) -> list[str]:
-    """Return a remark if all depths (n, s) include the pressure of the air; see `unusable`.
+    """Return a remark if all depths seem to include atmospheric pressure.
 
-    Their excess equals this pressure in calm water, and is larger in a current. The sensor with the
-    smallest excess decides.
+    In calm water the excess of all depths equals that of atmospheric pressure; currents increase
+    it. The sensor with the smallest excess decides.
+
+    Parameters
+    ----------
+    depth : (n, s) measured depths [m]
+    place : (s,) depths of the sensors in still water [m]
     """
     off = np.array([_least(column) for column in depth.T]) - place
     alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
@@ -351,19 +366,19 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
 
 
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
-    """Return the reasons why sensors are unusable, by label.
+    """Return the labels of unusable sensors, each with the reason.
 
     Parameters
     ----------
-    labels : (s,) of the sensors
+    labels : (s,) labels of the sensors
     depth : (n, s) measured depths [m]
     place : (s,) depths of the sensors in still water [m]
 
     Raises
     ------
     UsageError
-        Half of the sensors or more are far from their places on the line, so that a unit or the
-        line is wrong; or two labels are exchanged.
+        Half or more of the sensors are far from their places on the line, so a unit or the line
+        must be wrong; or two labels are exchanged.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}
@@ -398,7 +413,7 @@ def _least(depth: Floats) -> float:
 
 
 def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]:
-    """Return remarks on pairs of sensors with exchanged depths."""
+    """Return a remark for each pair of sensors that appear in the reverse order of depth."""
     return [
         f"`{labels[i]}` is at {least[i]:.1f} m at its least and `{labels[j]}` at {least[j]:.1f} m, "
         f"where the line has them at {place[i]:.1f} m and {place[j]:.1f} m: their labels are "
@@ -411,7 +426,7 @@ def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]
 
 
 def _other_unit(least: Floats, place: Floats) -> str:
-    """Return the confused unit that explains the ratio of all depths to their places, if any."""
+    """Return a likely confusion of units ("psi for dbar?") if it explains all depths, else ""."""
     known = np.isfinite(least)
     for unit, ratio in UNITS.items():
         meant = ratio * place[known]

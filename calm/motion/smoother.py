@@ -1,10 +1,10 @@
 """Kalman filter and fixed-interval smoother, with one forward and one backward pass.
 
-The state follows x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, with
-independent errors. The backward recursion is from Durbin and Koopman (2012, Time Series Analysis by
-State Space Methods, section 4.4) and needs no inverse of a state covariance. The filter is stored
-at the start of each block of times and repeated within the block, so that memory does not grow with
-the squared state size at every time.
+The model is x(t+1) = f x(t) + e for the state, with diagonal f, and y = H x + noise for the
+readings, with independent errors. The backward recursion is from Durbin and Koopman (2012, Time
+Series Analysis by State Space Methods, section 4.4) and needs no inverse of a state covariance. To
+save memory, the forward pass stores the filter only at the start of each block of times; the
+backward pass repeats the filter within each block.
 """
 
 from __future__ import annotations
@@ -27,12 +27,11 @@ class StateSpace:
     Attributes
     ----------
     fade : (n, q) decay factor of each state since the previous time; the first row is not used
-    gained : (n, q) growth of the steady variances since the previous time, as a share of `steady`
-    steady : (q, q) covariance of states that decay
-    stepped : (n, q) noise variances of persistent states since the previous time
+    steady : (q, q) stationary covariance of the states that decay
+    stepped : (n, q) variance added to each persistent state since the previous time
     first : (q, q) covariance at the first time; the mean is 0 throughout
-    seen : (n, m, q) slopes of the readings
-    read, noise : (n, m) readings, NaN if missing, and their variances
+    seen : (n, m, q) derivatives of the readings by the states
+    read, noise : (n, m) readings, NaN if missing, and the variances of their errors
     """
 
     fade: Floats
@@ -44,7 +43,7 @@ class StateSpace:
     noise: Floats
 
     def added(self, time: int) -> Floats:
-        """Return (q, q) covariance of the state noise since the previous time."""
+        """Return the (q, q) covariance of the state noise between the previous time and this."""
         fade = self.fade[time]
         result = self.steady * (1.0 - np.outer(fade, fade))
         result[np.diag_indices_from(result)] += self.stepped[time]
@@ -53,7 +52,7 @@ class StateSpace:
 
 @dataclass(frozen=True)
 class _Filtered:
-    """Filter result at one time: the prediction, and its innovation."""
+    """Filter result at one time: the predicted state, and the innovation of the readings."""
 
     mean: Floats
     spread: Floats
@@ -69,10 +68,10 @@ class Smoothed:
 
     Attributes
     ----------
-    times : the times
-    mean, covariance : (b, q), (b, q, q) of the states
-    pull, hold : (b, q), (b, q, q) r and N of the state noise before each time: from its prior
-        covariance Q, all readings give the mean Q r and the covariance Q - Q N Q
+    times : slice of the times
+    mean, covariance : (b, q) mean and (b, q, q) covariance of the states
+    pull, hold : (b, q) r and (b, q, q) N of Durbin and Koopman: the state noise before each time,
+        with prior covariance Q, has mean Q r and covariance Q - Q N Q given all readings
     """
 
     times: slice
@@ -85,7 +84,7 @@ class Smoothed:
 def _filter(
     law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
 ) -> Iterator[_Filtered]:
-    """Yield the filter results from `start`, given the predicted mean and covariance there."""
+    """Yield the filter result at each time, from the predicted mean and covariance at `start`."""
     for time in range(start, stop):
         if time > start:
             fade = law.fade[time]
@@ -106,7 +105,7 @@ def _filter(
 
 
 def smoothed(law: StateSpace) -> Iterator[Smoothed]:
-    """Yield the smoothed states of blocks of times, from the last block to the first."""
+    """Yield the smoothed states block by block, from the last block of times to the first."""
     count = len(law.read)
     starts = range(0, count, BLOCK)
     begun = [(np.zeros(len(law.first)), law.first)]

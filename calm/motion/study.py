@@ -1,4 +1,4 @@
-"""Preparation of the motion estimate, and its comparison with the measurements."""
+"""Preparation of the motion estimate, and comparison of the result with the measurements."""
 
 from __future__ import annotations
 
@@ -45,15 +45,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A hidden sensor, and the accuracy of the estimated depths there.
+    """A withheld sensor, and the errors of the depths estimated without it.
 
     Attributes
     ----------
-    count : number of times with good pressures of this sensor and the used sensors
-    bias : mean of estimated less measured [m]
-    rms, linear_rms, pchip_rms : RMS difference less its mean over the calm times [m]: estimated,
-        and interpolated between the used sensors, by `linear` and `pchip` of `calm.motion.remarks`
-    coverage : share of those differences within the 95 % band
+    count : number of times with good pressures of this sensor and of all sensors in use
+    bias : mean of estimated less measured depth [m]
+    rms : RMS of this difference, less its mean over the calm times [m]
+    linear_rms, pchip_rms : the same for depths interpolated between the sensors in use, by `linear`
+        and `pchip` of `calm.motion.remarks` [m]
+    coverage : share of the differences within the 95 % interval of the estimate
     """
 
     label: str
@@ -71,13 +72,14 @@ class MotionEstimate:
 
     Attributes
     ----------
-    task : task with the common unknowns of the record
+    task : input of the estimate, with the common unknowns of the record
     dataset : the result of `calm motion`
-    factors : each factor of the whole record with its 95 % interval
-    sensors, plain : agreement of each used sensor with the estimate, and with the currents alone
-    held_out : errors of the estimated depths of each hidden sensor
+    factors : value and 95 % interval of each factor of the whole record, by name
+    sensors, plain : agreement of each sensor in use with the estimate, and with the depths computed
+        from the currents alone
+    held_out : errors of the estimated depths of each withheld sensor
     diagnosis : faults of sensors, line and currents, with sizes and odds
-    fits : whether the line is consistent with its pressures in these currents
+    fits : whether the line is consistent with the pressures in these currents
     remarks : doubts about the data, in sentences
     false : times at which the current of a level is probably false, by level name
     notes : notes on the input, in sentences
@@ -96,7 +98,7 @@ class MotionEstimate:
     notes: tuple[str, ...] = ()
 
     def faults(self, *, of_line: bool) -> list[Fault]:
-        """Return the faults of the line and its currents, or those of the sensors."""
+        """Return the faults of the line and its currents if `of_line`, else those of sensors."""
         return [one for one in self.diagnosis if (one.kind in OF_LINE) == of_line]
 
     def to_xarray(self) -> Dataset:
@@ -106,7 +108,7 @@ class MotionEstimate:
     def plot(self, ax: Any = None) -> Any:
         """Draw the depths of the sensors over time, with their 95 % bands, and return the axes.
 
-        Measured depths are dots. Needs matplotlib.
+        Measured depths are drawn as dots. Requires matplotlib.
 
         Parameters
         ----------
@@ -132,7 +134,6 @@ class MotionEstimate:
         return ax
 
     def __repr__(self) -> str:
-        """Summarise the times, the factors and the agreement in at most ten lines."""
         time = self.task.measured.time
         name = self.task.mooring.file.name or "mooring"
         span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}"
@@ -158,20 +159,21 @@ def prepare(
     hidden: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
 ) -> Task:
-    """Estimate the common unknowns of the record from the sensors in use.
+    """Estimate the common unknowns of the record, without the withheld sensors.
 
     Parameters
     ----------
     mooring : mooring as in its file
-    measured : measurements, including the sensors that are hidden
+    measured : measurements, including the withheld sensors
     names : names of the factors to estimate
-    hidden : labels of sensors that are not used
+    hidden : labels of the withheld sensors
     tell : receives progress messages
 
     Raises
     ------
     UsageError
-        A hidden sensor does not exist, no sensor is left, or a single one without a current.
+        A withheld sensor does not exist; no sensor is left; or the line has no equilibrium that
+        fits the pressures.
     """
     for label in hidden:
         if label not in measured.label:
@@ -214,7 +216,7 @@ def judged(
 
     Parameters
     ----------
-    measured : measurements, including the hidden sensors
+    measured : measurements, including the withheld sensors
     result : dataset of `calm motion`
     diagnosis : faults found
     """
@@ -257,7 +259,10 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return (n,) knockdown of the highest sensor with a pressure, from its minimum depth [m]."""
+    """Return the knockdown (n,) of the highest sensor that has a pressure [m].
+
+    This is the increase of the sensor's depth above its minimum.
+    """
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -274,14 +279,14 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """Compare the estimate and two interpolations with a hidden sensor.
+    """Compare the estimate, and two interpolations, with a withheld sensor.
 
     Parameters
     ----------
     measured : measurements of all sensors
-    used : measurements of the used sensors
-    label : label of the hidden sensor
-    depth, spread : (n,) estimated depth of the sensor, and its deviation [m]
+    used : measurements of the sensors in use
+    label : label of the withheld sensor
+    depth, spread : (n,) estimated depth of the sensor, and its standard deviation [m]
     still : (p,) depths in still water [m]
     """
     column = measured.label.index(label)
@@ -296,9 +301,12 @@ def judge_hidden(
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
-    """Return the sensors that a cross-validation withholds in turn.
+    """Return the labels of the sensors that a cross-validation withholds in turn.
 
-    UsageError: only one sensor is available.
+    Raises
+    ------
+    UsageError
+        Only one sensor is available.
     """
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
@@ -314,7 +322,7 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Withhold each used sensor in turn, besides the hidden ones, and judge the estimate.
+    """Withhold each sensor in turn, in addition to `hidden`, and compare the estimate with it.
 
     Parameters
     ----------
@@ -340,13 +348,16 @@ def cross_validated(
 
 @dataclass(frozen=True)
 class SensorSeries:
-    """Depths of one sensor over time.
+    """Depths of one sensor or instrument over time.
 
     Attributes
     ----------
-    hidden : whether the sensor was hidden from the estimate, or has no pressure
-    time, measured, estimated, spread : (n,) depths and standard deviation [m]; NaN if not measured
-    plain : (n,) depths from the currents alone; None for a hidden sensor
+    hidden : whether the sensor was withheld from the estimate, or has no pressure
+    time : (n,) times
+    measured : (n,) measured depths [m]; NaN if not measured
+    estimated, spread : (n,) estimated depths and their standard deviations [m]
+    plain : (n,) depths computed from the currents alone [m]; None if `hidden`, or if currents were
+        not measured
     """
 
     label: str
@@ -368,9 +379,9 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 
 
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
-    """Return the depths of all sensors from the top down, then of the other instruments.
+    """Return the depths of all sensors from the top down, then those of the other instruments.
 
-    `measured` includes the hidden sensors.
+    `measured` includes the withheld sensors.
     """
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     labels, columns = (

@@ -1,9 +1,10 @@
 """Suspects: possible faults of a record, with their effects on the depths.
 
-Faults of the line and its currents: all currents or those of one level read too low or too high, or
-a rotor slows; floats are missing; cables are longer or shorter; the drag is wrong, or increases by
-fouling. Some have nearly the same effect on the depths: their odds show if the record distinguishes
-them. Fault of the readings: two sensors are farther apart than the line between them is long.
+Faults of the line and its currents are: currents of all levels or of one level that read too low or
+too high, a rotor that slows, missing floats, wrong cable lengths, wrong drag, and drag that
+increases by fouling. Some of these have nearly the same effect on the depths; their odds then show
+that the record cannot distinguish them. The module also finds readings of two sensors that are
+farther apart than the length of the line between them.
 """
 
 from __future__ import annotations
@@ -34,25 +35,27 @@ CAUSES: Mapping[str, tuple[float, float]] = {
     "speed": (0.3, 0.001),
     "slows": (0.5, 0.01),
 }
-"""Prior deviation of the logarithm of each fault, beyond the common priors, and its probability.
+"""Prior standard deviation of the logarithm of each fault, and its prior probability.
 
-The levels share the probability of a fault in one level.
+The probability of a fault in a single level is divided equally among the levels.
 """
 
 
 @dataclass(frozen=True)
 class Suspect:
-    """Effect of one fault on n times of s sensors.
+    """Effect of one possible fault on n times of s sensors.
 
     Attributes
     ----------
     fault : the fault
-    column : (n, s) change in the measured depths per unit of its size
-    wide : prior deviation of its size; 0 for a fixed size
-    log : logarithm of its prior probability
-    shift : (n, s) fixed change in the depths [m]; 0 if the size is fitted
-    ahead : (n, s) change in the depths for a size that applies throughout [m]; None if linear
-    share : (n, 1) share of the size at each time; None if it is constant
+    column : (n, s) change in the measured depths per unit of the size of the fault
+    wide : prior standard deviation of the size; 0 if the size is fixed
+    log : logarithm of the prior probability of the fault
+    shift : (n, s) change in the depths for a fixed size [m]; 0 if the size is fitted
+    ahead : function that gives the (n, s) change in the depths [m] for a size that applies
+        throughout; None if the effect is linear
+    share : (n, 1) share of the size that has been reached at each time; None if the size is
+        constant
     """
 
     fault: Fault
@@ -64,10 +67,10 @@ class Suspect:
     share: Floats | None = None
 
     def at(self, size: float) -> Suspect:
-        """Return a copy with the nonlinear effect of a fault of the given size.
+        """Return a copy whose effect is that of the given size, if the effect is nonlinear.
 
-        The effect is a parabola in the share: it has the linear slope at zero, and passes through
-        the effect of the full size.
+        The effect is a parabola in `share`. It has the linear slope at zero and passes through the
+        effect of the full size.
         """
         if self.ahead is None or self.share is None or not size:
             return self
@@ -85,8 +88,9 @@ def line_suspects(
 
     Parameters
     ----------
+    task : input of the estimate
     moments : line response at several times
-    read, at : currents at these times, and the line in them
+    read, at : currents at these times, and depths linearised there
     """
     one, factors = moments.measured, task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -126,7 +130,7 @@ def line_suspects(
     drag = columns["cable_drag"] + columns["rigid_drag"]
     yield suspect(LINE, "drag", drag)
     yield suspect(LINE, "fouling", share * drag, 1, dragged, share)
-    slope = seen(at.slope)  # a meter that reads low: the line is deeper than computed
+    slope = seen(at.slope)  # negative below: if a meter reads low, the line is deeper than computed
     yield suspect(CURRENTS, "currents", -slope.sum(axis=2))
     levels = level_names(task.measured, line_response.labels_of(task.mooring))
     if len(levels) == moments.groups > 1:
@@ -147,10 +151,12 @@ which a meter is reported.
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each meter that is rotated, mirrored or in another unit.
 
-    The evidence is agreement between the two nearest meters, by the complex correlation of the
-    currents over the whole record. Its phase is the mean angle between two currents (Kundu 1976, J.
-    Phys. Oceanogr. 6, 238-242), with a deviation of sqrt((1 - r²) / 2 r² n) for n independent
-    times. Exchanged east and north components are found from the correlation with a mirror image.
+    A meter is reported if it disagrees with its two nearest meters while these agree with each
+    other. Agreement is measured by the complex correlation of the currents over the whole record.
+    The phase of this correlation is the mean angle between the two currents (Kundu 1976, J. Phys.
+    Oceanogr. 6, 238-242); its standard deviation is sqrt((1 - r²) / (2 r² n)) for n independent
+    times. Exchanged east and north components are found from the correlation with the mirrored
+    current.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -197,11 +203,11 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
 
 
 STRETCHED, AMISS = 1.25, 20.0
-"""Maximum ratio of a line's length to its cut length, and tolerance for pressures [m]."""
+"""Maximum ratio of stretched to unstretched length, and tolerance for depths [m]."""
 
 
 def distances_of(mooring: Design) -> Floats:
-    """Return distances (p,) of clamps and pieces from the top, along the unstretched line [m]."""
+    """Return distances (p,) of clamps and pieces from the top along the unstretched line [m]."""
     pieces = mooring.file.pieces
     tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
     clamps = [
@@ -215,15 +221,17 @@ def distances_of(mooring: Design) -> Floats:
 def torn(
     measured: MooringMeasurements, distance: Floats, hidden: Collection[str] = ()
 ) -> tuple[MooringMeasurements, list[str]]:
-    """Remove depths farther apart than the line between two sensors, with notes on the removal.
+    """Remove depths of two sensors that are farther apart than the line between them is long.
 
-    The sensor farther from its median is wrong. Nothing is removed from a sensor if half of its
-    depths or more would be.
+    The reading that is farther from the median of its sensor is removed. If this would remove half
+    or more of the readings of a sensor, none of them is removed. Return the measurements, and notes
+    on the removal.
 
     Parameters
     ----------
-    distance : (p,) distances of the points along the line [m]
-    hidden : labels of sensors that neither judge others nor are judged
+    measured : the measurements
+    distance : (p,) distances of the points from the top, along the line [m]
+    hidden : labels of sensors that are neither tested nor used to test others
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]
@@ -246,17 +254,18 @@ def torn(
 
 
 EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
-"""Times on either side of a step; ratio of the lowest sensor's step to its usual change; least size
-of a step [m].
+"""Number of times averaged on either side of a step, least ratio of the step of the lowest sensor
+to its usual change, and least size of a step [m].
 """
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
-    """Find a common step in the depths of all sensors.
+    """Find a step that is common to the depths of all sensors; None if there is none.
 
-    It applies to records without measured currents, as strong currents would otherwise explain a
-    step. Currents move the lowest sensor slightly, and less than the highest; a mooring that moves
-    carries all sensors down equally.
+    Such a step means that the whole mooring has moved to another depth. The search is for records
+    without measured currents, because inferred currents would otherwise explain the step. A current
+    moves the lowest sensor less than the highest; a mooring that moves carries all sensors down
+    equally.
 
     Parameters
     ----------

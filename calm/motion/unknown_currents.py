@@ -1,15 +1,16 @@
 """Estimation of unmeasured currents from the pressures of a record.
 
-The speed is unknown at a few knots in depth at each time. All knots share one direction, which has
-no effect on the depths. The logarithms of the speeds are normal. Their mean and covariance are
-learnt from the record by expectation and maximisation (Dempster, Laird and Rubin 1977). Each time
-is fitted by Gauss-Newton under the current law; the law is then updated to the mean and covariance
-of the fits, including their uncertainty. The prior law persists if the pressures do not constrain
-it. The line also has a smooth error along its length, a share of the knockdown; the pressures
-choose the most likely of several shares.
+The unknowns at each time are the speeds at a few depths (knots). All knots share one direction,
+which has no effect on the depths. The logarithms of the speeds have a normal distribution, whose
+mean and covariance are learnt from the record by expectation and maximisation (Dempster, Laird and
+Rubin 1977): each time is fitted by Gauss-Newton steps under the present distribution, which is then
+updated to the mean and covariance of the fits, including their uncertainty. If the pressures do not
+constrain the distribution, it stays at its prior. The line itself also has an error that varies
+smoothly along its length. It is a share of the knockdown, estimated from the pressures as an
+average over several trial values.
 
-The fits of the learning times are stored. Every other time starts from the stored fit with the
-nearest depths, with the slopes of that fit.
+The fits of the times used for learning are stored. At every other time, the estimate starts from
+the stored fit with the nearest depths.
 """
 
 from collections.abc import Callable, Sequence
@@ -48,13 +49,15 @@ ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 share of the knots over which these are correlated.
 """
 PRIOR = 20.0
-"""Weight of the prior law, in times of the record."""
+"""Weight of the prior distribution, as a number of times of the record."""
 MOST_TIMES, TURNS, FIRST = 240, 12, 2
-"""Number of learning times, all iterations, and iterations before the law changes."""
+"""Number of times from which the distribution is learnt, number of iterations, and number of first
+iterations that leave the distribution unchanged.
+"""
 STRONGER = 0.5
-"""Share of the learning times used for the law.
+"""Share of the learning times from which the distribution is updated: those of largest knockdown.
 
-They have the largest knockdown, as the tide blurs the others.
+At the other times, the tide hides the effect of the currents.
 """
 LONGEST = 1.0
 """Maximum step of a logarithm."""
@@ -65,21 +68,21 @@ USUAL, WITHIN = 0.07, 0.7
 SEABED = 0.0005
 """Prior deviation of the datum, as a share of the water depth.
 
-If pressures alone place a line, a wrong length represents larger errors.
+It is small because, without measured currents, the factor on the length absorbs larger errors.
 """
 LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
-"""Percentile that defines the shallowest depth of a sensor, height above its place in still water
-that makes the place doubtful [m], and relative uncertainty of that height.
+"""Percentile taken as the shallowest depth of a sensor, height above its still-water depth from
+which that depth is in doubt [m], and relative uncertainty of this height.
 """
 AGAIN = 3
-"""Number of steps from a stored fit to the fit of another time."""
+"""Number of iterations at a time, starting from a stored fit."""
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
-    """Return the measurements with the knots as levels of unknown current.
+    """Return the measurements with knots of unknown current as their levels.
 
-    The uppermost knot is at the depth of the top in strong currents, from the uppermost sensor:
-    pressures contain no information on the current above it.
+    The uppermost knot is where the top of the line is in strong currents, because pressures contain
+    no information on the current above it. This depth comes from the uppermost sensor.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -99,7 +102,7 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
 
 
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
-    """Return (k,), (k, k) prior mean and covariance of the logarithms of the speeds."""
+    """Return prior mean (k,) and covariance (k, k) of the logarithms of the speeds [m/s]."""
     knots = measured.level_depth[0]
     mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
@@ -113,7 +116,7 @@ def learn_currents(
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
 ) -> Common:
-    """Learn the law of the speeds jointly with the common unknowns.
+    """Learn the distribution of the speeds jointly with the common unknowns.
 
     Parameters
     ----------
@@ -121,6 +124,11 @@ def learn_currents(
     measured : measurements with the knots as levels
     names : names of the factors to estimate
     tell : receives progress messages
+
+    Raises
+    ------
+    UsageError
+        The line has no equilibrium that fits the pressures.
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -172,10 +180,11 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return the common depth of the sensors less that in still water, at most 0 [m].
+    """Return the difference between measured and still-water depths if a sensor is too high [m].
 
-    Currents cannot raise a line. If the shallowest readings of a sensor are above its place, the
-    water depth, a length or the place in the file is wrong.
+    Currents cannot raise a line. If even the shallowest readings of a sensor are above its place in
+    still water, the water depth, a length or the place in the file is wrong. The result is the
+    largest such difference, negative, or 0 if all are small.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]
@@ -188,7 +197,7 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Fit of the learning times under a law."""
+    """Posterior of the learning times under one distribution of the speeds."""
 
     moments: LineResponse
     common: Common
@@ -199,15 +208,13 @@ class _Fit:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
-        """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.read, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
-        """Return the line at new speeds with the old slopes, for small changes in law and line."""
+        """Return the line at new speeds with the old slopes, valid for small changes."""
         return replace(at, logs=logs, depth=self.moments.depths(self.read, logs))
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
-        """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
         return posterior(one, at, self.law.covariance, common or self.common, still)
 
@@ -235,7 +242,6 @@ def _either(first: NDArray[np.bool_], one: Linear, other: Linear) -> Linear:
 
 
 def _with_mean(fit: _Fit, at: Linear | None) -> Linear:
-    """Return the fits of several times, preceded by a fit at the mean."""
     assert at is not None
     moments, one = fit.moments, fit.moments.measured.at(slice(0, 1))
     alone = LineResponse(one, moments.forward, moments.shifted)
@@ -256,7 +262,7 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Estimate the error share of the line: root mean square, weighted by likelihood.
+    """Estimate the relative error of the line: RMS of the trial values, weighted by likelihood.
 
     Successive times with the same error count as one.
     """
@@ -287,7 +293,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Return the best state of each time, starting from the nearest stored fit."""
+    """Find the most likely currents at each time, starting from the nearest stored fit."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

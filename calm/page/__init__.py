@@ -1,5 +1,5 @@
-"""The line builder in a web page: Python in a Web Worker (Pyodide), the screen in xterm.js.
+"""The line builder in a web page: Python in a Web Worker (Pyodide), with its screen in xterm.js.
 
-`folder` writes the page. `driver`, `builder` and `documents` run inside it, and under CPython in
-the tests.
+`folder` writes the page. `driver`, `builder` and `documents` run in the page, and in the tests
+under CPython.
 """

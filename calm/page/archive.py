@@ -1,6 +1,6 @@
-"""Archive of CALM and its libraries for the page, from the installed packages.
+"""Archive of CALM and its libraries for the page, made from the installed packages.
 
-It contains only Python modules and data. Compiled libraries come with the runtime of the page.
+It contains only Python modules and data, because compiled libraries come with the runtime.
 """
 
 import importlib.metadata
@@ -31,12 +31,12 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """Create the ZIP archive of modules. Equal files give equal bytes.
+    """Create the ZIP archive and return its content. Equal files give equal bytes.
 
     Parameters
     ----------
-    python : version of the runtime's Python, such as "3.13"; if this Python has the same version,
-        the archive also contains compiled modules, with which the page starts sooner
+    python : version of Python in the runtime, such as "3.13"; if it is also the version that runs
+        now, the archive contains compiled modules, with which the page starts sooner
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()
@@ -72,7 +72,7 @@ def _compiled(path: Path, name: str) -> bytes | None:
 
 
 def _files() -> Iterator[tuple[str, Path]]:
-    """Yield the name in the archive and the path of every file."""
+    """Yield every file as its name in the archive and its path."""
     package = Path(__file__).parents[1]
     roots = {f"calm/_shipped/{name}": shipped_folder(name) for name in ("catalog", "lines")}
     for root, folder in {"calm": package, **roots}.items():

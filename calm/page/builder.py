@@ -1,4 +1,4 @@
-"""Line builder in a web page: receives messages from the page, and sends files and documents."""
+"""Line builder in a web page: it receives messages from the page, and sends files and documents."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Post = Callable[[str, str, bytes | None], object]
 
 
 class Button(NamedTuple):
-    """A button for a common action: its title and the name of the action."""
+    """A button of the page: its title and the name of its action."""
 
     title: str
     action: str
@@ -55,7 +55,7 @@ NEW = "mooring.yaml"
 
 
 class PageBuilder(BuildApp):
-    """Line builder that passes every saved file to the page."""
+    """Line builder that sends every saved file to the page."""
 
     def __init__(self, session: Session, kept: KeptWork | None, page: WebPage) -> None:
         super().__init__(session, kept=kept)
@@ -66,24 +66,24 @@ class PageBuilder(BuildApp):
         self._page = page
 
     def copy_to_clipboard(self, text: str) -> None:
-        """Copy a text, also to the clipboard of the browser."""
+        """Copy a text to the clipboard of the builder and of the browser."""
         super().copy_to_clipboard(text)
         self._page.copy(text)
 
     def get_driver_class(self) -> type[driver.PageDriver]:
-        """Driver of the page; Textual's own drivers need a terminal."""
+        """Return the driver of the page, because Textual's own drivers need a terminal."""
         return driver.PageDriver
 
 
 class WebPage:
-    """A page, with a folder of files in memory and the builder for one of these files.
+    """The page as seen from Python: a folder in memory, and the builder that edits a file.
 
     Parameters
     ----------
-    post : sends a message: `write` (text for the terminal), `open` (name of the edited file),
-        `saved` and `document` (name and content of a file), `copied` (text for the clipboard),
-        `told` and `failed` (a sentence)
-    folder : folder of its files
+    post : function that sends a message of one of these kinds to the page: `write` (text for the
+        terminal), `open` (name of the edited file), `saved` and `document` (name and content of a
+        file), `copied` (text for the clipboard), `told` and `failed` (a sentence)
+    folder : folder of the files
     columns, rows : size of the terminal
     """
 
@@ -115,12 +115,12 @@ class WebPage:
     # the builder
 
     async def run(self) -> None:
-        """Edit one file after another in an endless loop."""
+        """Run the builder for one file after another, without end."""
         while True:
             await self.build()
 
     async def build(self) -> None:
-        """Edit the file opened last, until the user opens another file or leaves."""
+        """Run the builder for the file opened last, until the user opens another file or quits."""
         reason = ""
         try:
             session, kept = open_session(self._path)
@@ -136,15 +136,16 @@ class WebPage:
 
     @property
     def app(self) -> PageBuilder | None:
-        """Running builder, if any."""
+        """Builder that is running; None if there is none."""
         return self._app
 
     def receive(self, message: Mapping[str, Any]) -> None:
         """Handle a message from the page.
 
-        Kinds: `key` (in Textual's notation), `type` and `paste` (text), `mouse` (see
+        The kinds are `key` (in Textual's notation), `type` and `paste` (text), `mouse` (see
         `PageDriver.move_mouse`), `resize` (columns, rows), `act` (action of `BAR`), `open` (names
-        and contents of files), `example` (name of a file in `lines`), `new`, `document` (kind).
+        and contents of files), `example` (name of a file in `lines`), `new`, and `document` (kind
+        of document).
         """
         kind, app, given = message["kind"], self._app, self.terminal.driver
         if kind == "key" and given is not None:
@@ -176,7 +177,7 @@ class WebPage:
             self._make(message["text"])
 
     def _act(self, app: PageBuilder, name: str) -> None:
-        """Run the action of a button; actions on the line are run by simulating their key."""
+        """Run the action of a button; an action on the line is run by simulating its key."""
         if name.startswith("app."):
             app.call_later(app.run_action, name)
         elif app.screen is not app.builder:
@@ -214,7 +215,7 @@ class WebPage:
             self._app.exit(0)
 
     def _make(self, kind: str) -> None:
-        """Create a document after the current text has been solved."""
+        """Create a document as soon as the current text has been solved."""
         app = self._app
         if app is None:
             return

@@ -1,4 +1,4 @@
-"""Documents to download from a page: report, diagram, bill of material and deck lists."""
+"""Documents to download from the page: report, diagram, bill of material and deck lists."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Download:
-    """A kind of file to download.
+    """A kind of document to download.
 
     Attributes
     ----------
-    kind : kind in the messages of the page
+    kind : name of the kind in the messages of the page
     title : title of its button
-    suffix : suffix after the name of the mooring file
-    content : makes the file from the mooring in each of its environments
+    suffix : text appended to the name of the mooring file
+    content : function that makes the document from the mooring in each of its environments
     """
 
     kind: str

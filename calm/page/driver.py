@@ -1,4 +1,4 @@
-"""Textual's driver for a terminal in a page."""
+"""Driver that connects Textual to a terminal in a web page."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class PageTerminal:
 
     Attributes
     ----------
-    write : writes a text to the terminal
+    write : function that writes a text to the terminal
     columns, rows : size of the terminal
     driver : driver of the running application
     """
@@ -45,7 +45,6 @@ class PageTerminal:
     driver: PageDriver | None = None
 
     def resize(self, columns: int, rows: int) -> None:
-        """Set the size."""
         self.columns, self.rows = columns, rows
         if self.driver is not None:
             self.driver.show_size()
@@ -56,7 +55,7 @@ terminal: PageTerminal | None = None
 
 
 class PageDriver(Driver):
-    """Textual driver for `terminal`."""
+    """Textual driver that writes to `terminal` and receives its input from the page."""
 
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)
@@ -67,7 +66,7 @@ class PageDriver(Driver):
 
     @property
     def is_web(self) -> bool:
-        """True, so that Textual does not wait for replies of a terminal."""
+        """True, so that Textual does not wait for replies from a terminal."""
         return True
 
     def write(self, data: str) -> None:
@@ -91,7 +90,7 @@ class PageDriver(Driver):
         self.send_message(events.Resize(size, size))
 
     def press(self, key: str) -> None:
-        """Send a key that types no text, in Textual's notation, such as "ctrl+s"."""
+        """Send a key such as "ctrl+s", in Textual's notation."""
         self.process_message(events.Key(key, None))
 
     def type(self, text: str) -> None:
@@ -101,17 +100,16 @@ class PageDriver(Driver):
                 self.process_message(events.Key(name, character))
 
     def paste(self, text: str) -> None:
-        """Send pasted text."""
         self.process_message(events.Paste(text))
 
     def move_mouse(self, kind: str, x: int, y: int, button: int, held: Mapping[str, bool]) -> None:
-        """Send an event of the mouse.
+        """Send a mouse event to the application.
 
         Parameters
         ----------
         kind : `down`, `up`, `move`, `scroll up` or `scroll down`
         x, y : column and row, from 0
-        button : pressed button, from 1; 0 for none
+        button : number of the button, from 1; 0 for none
         held : whether `shift`, `alt` and `ctrl` are pressed
         """
         change = x - self._mouse_at[0], y - self._mouse_at[1]
@@ -120,12 +118,12 @@ class PageDriver(Driver):
         self.process_message(_MOUSE_EVENTS[kind](None, x, y, *change, button, *keys, x, y))
 
     def send_message(self, message: Message) -> None:
-        """Post a message to the application; a page has only one thread."""
+        """Post a message to the application directly, since a page has only one thread."""
         self._application.post_message(message)
 
 
 def _key_name(character: str) -> str | None:
-    """Return Textual's name of the key that types a character; None for other control codes."""
+    """Return Textual's name of the key for a character; None for a control code without a key."""
     if character.isalnum():
         return character
     if not character.isprintable():

@@ -1,4 +1,4 @@
-"""Writer of the folder of a page, which any web server can serve."""
+"""Write the page to a folder, which any web server can serve."""
 
 import hashlib
 import json
@@ -31,12 +31,12 @@ _SCREEN = ("xterm.js", "xterm.css")
 
 
 def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
-    """Write the page into a folder, which is created if needed; other files in the folder are kept.
+    """Write the page to a folder, which is created if needed; other files in the folder are kept.
 
     Parameters
     ----------
-    runtime : folder with a release of Pyodide and xterm.js, possibly in subfolders, which are
-        copied into the page; without it the page loads them from `PYODIDE` and `TERMINAL`
+    runtime : folder with releases of Pyodide and xterm.js, possibly in subfolders, which are copied
+        to the page; by default the page loads them from `PYODIDE` and `TERMINAL`
 
     Returns
     -------
@@ -88,7 +88,7 @@ def _settings(own: dict[str, bytes], found: dict[str, Path]) -> dict[str, Any]:
 
 
 def _examples() -> list[dict[str, str]]:
-    """Return file and title of the moorings shipped with CALM."""
+    """Return the file name and the title of each mooring shipped with CALM."""
     found = []
     for path in sorted(shipped_folder("lines").glob("*.yaml")):
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -103,7 +103,7 @@ def _lock(path: Path) -> dict[str, Any]:
 
 
 def _runtime_files(runtime: Path) -> dict[str, Path]:
-    """Return the required files of a runtime, by name."""
+    """Return the required files of a runtime as paths by name."""
     if not runtime.is_dir():
         raise UsageError(f"--runtime: there is no folder {runtime}")
     there: dict[str, Path] = {}
@@ -114,7 +114,7 @@ def _runtime_files(runtime: Path) -> dict[str, Path]:
     if "pyodide-lock.json" in there:
         packages = _lock(there["pyodide-lock.json"])["packages"]
         names = list(IN_RUNTIME)
-        for name in names:  # which grows
+        for name in names:  # the loop appends the packages that a package needs
             if name in packages:
                 needed = map(normal_name, packages[name]["depends"])
                 names += [each for each in needed if each not in names]

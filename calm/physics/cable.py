@@ -1,4 +1,4 @@
-"""March along a cable or chain: straight segments joined by hinges, each in moment equilibrium."""
+"""Integration (march) along a cable or chain: straight, hinged segments in moment equilibrium."""
 
 from collections.abc import Sequence
 from math import inf, sqrt
@@ -62,9 +62,7 @@ march accepts the segment.
 
 @within
 def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
-    """Return the strain of a cable at a tension [N], from its elongation curve or, without a curve,
-    from its compliance.
-    """
+    """Return the strain of a cable at a tension [N], by its elongation curve or compliance."""
     if cable.first_knot == cable.end_knot:
         return cable.compliance * tension
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
@@ -78,11 +76,10 @@ def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float
 
 @within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Return the equivalent length of a segment for drag [m]: unstretched cable of this length in
-    reference water has equal drag.
+    """Return the length of unstretched cable that has the same drag in reference water [m].
 
-    If the cable keeps its volume (thinning ½), its drag grows by the factor √(1 + strain);
-    otherwise (thinning 0) the drag does not grow.
+    If the cable keeps its volume (thinning ½), stretch increases the drag by the factor √(1 +
+    strain). If thinning is 0, stretch does not change the drag.
     """
     area = cut * density / REFERENCE_DENSITY
     if strain != 0.0 and cable.thinning != 0.0:
@@ -102,9 +99,7 @@ def segment_drag(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the drag of a current on a segment of axis t [N], with the tangential drag law of the
-    cable.
-    """
+    """Return the drag of a current on a segment of axis t [N], by the friction law of the cable."""
     if friction == BERTEAUX:
         return drag_force(kn, kt, u, v, w, tx, ty, tz)
     qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
@@ -125,19 +120,18 @@ def pass_segment(
 ) -> tuple[State, float]:
     """Compute the state below one segment of unstretched length `cut` [m], and its strain.
 
-    Axis, drag at mid-height and stretch of the segment depend on each other, so passes are repeated
-    until its rise per unstretched metre converges. Each pass reduces the change by about
-    change/earlier.
+    Axis, drag at mid-height and stretch of the segment depend on each other. They are computed
+    repeatedly until the vertical extent of the segment per unstretched metre converges.
 
     Parameters
     ----------
-    near : allowed distance between its midpoint and its water sample [m]; 0 requires full
-        precision
-    expected : load per metre at which the passes begin, from the segment above [N/m]
+    near : allowed distance between the midpoint of the segment and the depth at which the water is
+        sampled [m]; 0 requires full precision
+    expected : initial estimate of the load per metre, from the segment above [N/m]
 
     Returns
     -------
-    The state, and the strain, which is `NO_BALANCE` if the passes do not converge.
+    The state, and the strain, which is `NO_BALANCE` if the iteration does not converge.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
@@ -212,7 +206,7 @@ def pass_halves(
     near: float,
     expected: Vector,
 ) -> Passed:
-    """March a segment, or a part of a segment, as one straight piece or as two straight halves.
+    """Integrate a segment, or a part of it, as one straight piece or as two straight halves.
 
     `near` and `expected` are as in `pass_segment`.
     """
@@ -244,8 +238,8 @@ def vibrating_share(
     Parameters
     ----------
     vibration : vibration of the cable
-    tx, ty, tz : its last known axis, of any length. If the segment's own drag hardly turns it,
-        the factor for this axis is used in this pass.
+    tx, ty, tz : latest estimate of the axis, of any length. If the drag of the segment hardly turns
+        it, the factor is computed for this axis.
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
@@ -272,10 +266,10 @@ def touchdown(
     expected: Vector,
     bed: Bed,
 ) -> Passed:
-    """March the part of a segment above its touchdown, where the force normal to the seabed
-    vanishes.
+    """Find the touchdown in a segment, where the force normal to the seabed vanishes.
 
-    `halves`, `near` and `expected` are as in `pass_halves`.
+    Return the integrated part above the touchdown. `halves`, `near` and `expected` are as in
+    `pass_halves`.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
@@ -308,8 +302,9 @@ def pass_part(
     expected: Vector,
     share: float,
 ) -> Passed:
-    """March a segment down to the first level, or to the first switch of a drag law, that splits
-    the segment.
+    """Integrate a segment down to the first point where it has to be split.
+
+    This is a level of the water profile, or a point where a drag law switches.
 
     Parameters
     ----------
@@ -342,12 +337,14 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Return the length of a segment above the first level, or switch of a drag law, that splits it
-    [m].
+    """Return the length of a segment above the first point where it has to be split [m].
+
+    This is a level of the water profile, or a point where a drag law switches. The result is `cut`
+    if there is no such point.
 
     Parameters
     ----------
-    below : the state below the whole segment
+    below : state below the whole segment
     halves, near, expected : see `pass_halves`
     share : see `counts_across`
     """
@@ -377,14 +374,14 @@ def until_level(
     k: int,
     share: float,
 ) -> float:
-    """Return the length of a segment above a level of the profile [m].
+    """Return the length of a segment above a level of the water profile [m].
 
-    The length follows from the mean load of the segment. If full precision is required, the length
-    is refined by secants.
+    The length is estimated from the mean load of the segment, and refined by secants if full
+    precision is required.
 
     Parameters
     ----------
-    below : the state below the whole segment
+    below : state below the whole segment
     halves, near : see `pass_halves`
     k, share : see `counts_across`
     """
@@ -415,8 +412,13 @@ def until_level(
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
-    """Return the increase in depth per metre along a segment under a uniform load [N/m], given the
-    force above the segment.
+    """Return the increase in depth per metre along a segment.
+
+    Parameters
+    ----------
+    fx, fy, fz : force above the segment [N]
+    load : uniform load on the segment [N/m]
+    length : length of the segment [m]
     """
     half = 0.5 * length
     x, y, z = fx + half * load[0], fy + half * load[1], fz + half * load[2]
@@ -438,14 +440,15 @@ def until_switch(
     expected: Vector,
     law: int,
 ) -> float:
-    """Return the length of a part of a segment above the switch of a drag law [m]; if no law
-    switches, the length `part`.
+    """Return the length of a part of a segment above the point where a drag law switches [m].
 
-    Uses regula falsi; the value at an end that stays fixed is halved (Illinois method).
+    Return the length `part` if the law does not switch in it. The point is found by regula falsi
+    (Illinois method).
 
     Parameters
     ----------
-    below : the state below the whole segment, `cut`
+    below : state below the whole segment, of length `cut`
+    part : length of the part [m]
     halves, near, expected : see `pass_halves`
     law : see `switch_at`
     """
@@ -472,11 +475,11 @@ def until_switch(
 
 
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
-    """Return the quantity whose sign changes where a drag law switches.
+    """Return a quantity whose sign changes where a drag law switches.
 
-    Friction of constant size changes its direction with the flow along the cable; the quantity is
-    this flow, positive down the line, times the tension [N m/s]. For
-    strumming, whose factor on Cn has a maximum, it is the maximum less the factor.
+    Friction of constant size reverses with the flow along the cable; the quantity is this flow,
+    positive down the line, times the tension [N m/s]. The factor of strumming on Cn has a maximum;
+    the quantity is this maximum minus the factor without the limit [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
@@ -500,12 +503,12 @@ def segment_length(
     reach: float,
     share: float,
 ) -> float:
-    """Return the longest allowed length of the next segment [m], from the segment's rotation and
-    depth, the next level, and the depth of minimum flow.
+    """Return the longest allowed length of the next segment [m].
 
-    The rotation is computed from the loads at both ends of the segment, and the tension at its top.
-    Near a free end the tension vanishes; a lower limit keeps the number of segments finite. `share`
-    is as in `counts_across`.
+    It is limited by the rotation of the segment, the water depth, the next level of the water
+    profile, and the depth of minimum flow. The rotation is computed from the loads at both ends of
+    the segment and the tension at its top. Near a free end the tension vanishes, and a lower limit
+    keeps the number of segments finite. `share` is as in `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -539,12 +542,11 @@ def rate_of_turn(
     tz: float,
     angle_step: float,
 ) -> float:
-    """Return the ratio of tension to allowed segment length [N/m], for the load at a depth on a
-    cable of axis t.
+    """Return the ratio of tension to allowed segment length [N/m], for the load at a given depth.
 
-    A slack line, whose tension is little more than its own weight, rotates faster as its tension
-    falls. So the terms for rotation and fall are added: the tension falls by less than half in a
-    segment, and by far less in a segment that also rotates.
+    `t` is the axis of the cable. If the tension is little more than the weight of the line below,
+    the tension decreases along a segment, which therefore rotates faster and faster. Hence a term
+    for the decrease of the tension is added to the term for the rotation.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)

@@ -1,7 +1,7 @@
 """Compilation of the physics functions ("laws") to machine code, from the source that CPython runs,
 too.
 
-A *law* is a function over floats, named tuples and sequences of named tuples that CPython runs
+A *law* is a function of floats, named tuples and sequences of named tuples that CPython can run
 directly. For compiled laws sequences are arrays, and sequences of named tuples arrays of records.
 `calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes machine
 code, which the user's cache keeps. The arithmetic is not reordered, so both give the same digits.
@@ -55,7 +55,9 @@ class Compiled:
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
         self._given, self._result = Layout(Row(None, kinds)), Layout(result)
         self._nothing = result == NOTHING
-        address = _address_of(law, lambda program: program.add_entry(_ENTRY, law, kinds, result))
+        address = _address_of(
+            law, kinds, lambda program: program.add_entry(_ENTRY, law, kinds, result)
+        )
         self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
 
     def __call__(self, *arguments: Any) -> Any:
@@ -73,7 +75,9 @@ class Addressed:
 
     def __init__(self, law: Law, task: Any) -> None:
         self._task = Layout(task)
-        self.address = _address_of(law, lambda program: program.add_function(_ENTRY, law, task))
+        self.address = _address_of(
+            law, task, lambda program: program.add_function(_ENTRY, law, task)
+        )
         self._call = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p, ctypes.c_double)(
             self.address
         )
@@ -99,7 +103,7 @@ def entry(law: Law, *arguments: Any) -> Compiled:
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
-    """Call a law, interpreted or as compiled by `entry`."""
+    """Call a law, compiled (see `entry`) or interpreted."""
     return (entry(law, *given) if compiled else law)(*given)
 
 
@@ -118,15 +122,17 @@ _ENTRY = "calm.entry"
 _engines: list[Any] = []
 
 
-def _address_of(law: Law, add: Callable[[Any], None]) -> int:
-    """Return the address of a law's machine code, from the cache or compiled now."""
+def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
+    """Return the address of a law's machine code for kinds of arguments, from the cache or compiled
+    now.
+    """
     import llvmlite.binding as llvm
 
     for name in FROM_MATH:
         llvm.add_symbol(f"calm.{name}", _in_c(name))
     target = _machine()
     folder, name = cache_folder(), f"{law.__module__}.{law.__qualname__}"
-    file = folder and folder / f"{name}-{_machine_name()}.o"
+    file = folder and folder / f"{name}-{_short_name(kinds)}-{_machine_name()}.o"
     try:
         code = file.read_bytes() if file else b""
     except OSError:
@@ -189,6 +195,10 @@ def _machine_name() -> str:
 
     features = sorted(llvm.get_host_cpu_features().items())
     given = (llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvm.llvm_version_info)
+    return _short_name(given)
+
+
+def _short_name(given: Any) -> str:
     return hashlib.sha256(repr(given).encode()).hexdigest()[:12]
 
 
@@ -202,7 +212,7 @@ def _in_c(name: str) -> int:
 
 
 def packed(value: Any) -> Any:
-    """Convert a named tuple for compiled code; its sequences become arrays."""
+    """Convert a named tuple for compiled code: its sequences become arrays."""
     named: Any = type(value)
     return named(*[pack(part) for pack, part in zip(_packers(named), value, strict=True)])
 
@@ -242,12 +252,10 @@ def cache_folder() -> Path | None:
 
 
 def is_cached(law: str) -> bool:
-    """Return whether the cache folder contains the compiled code of a law, from this or another
-    process.
-    """
+    """True if the cache folder contains the compiled code of a law."""
     folder = cache_folder()
     return (
-        folder is not None and next(folder.glob(f"*.{law}-{_machine_name()}.o"), None) is not None
+        folder is not None and next(folder.glob(f"*.{law}-*-{_machine_name()}.o"), None) is not None
     )
 
 

@@ -1,11 +1,11 @@
 """Drag coefficients by shape, independent of Reynolds number, and tangential drag laws of cables.
 
-Every function gives the drag of a shape at 1 m/s in sea water of 1025 kg/m³: Kn normal to its axis,
+The functions for shapes return the drag at 1 m/s in sea water of 1025 kg/m³: Kn normal to the axis,
 Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5 (cylinders
 1e4 to 2e5).
 
-The balance of an element of axis t, load q = (0, 0, B) + drag at its middle and force F above is
-t = -(F + q/2)/|F + q/2|. The parts of q along t do not turn it, and the normal drag Kn|Vn|Vn
+An element with axis t, load q = (0, 0, B) + drag, and force F above it is in moment balance if t =
+-(F + q/2)/|F + q/2|. Components of q along t do not turn the element, and the normal drag Kn|Vn|Vn
 differs from Kn|Vn|V only along t. So, with A = F + (0, 0, B)/2 and k = Kn/2,
 
     t is parallel to A + c V,     c = k |Vn| = k |V × t| = k |V × A| / |A + c V|,
@@ -46,9 +46,7 @@ _END_CT = (1.17, 1.07, 0.97, 0.86, 0.82)
 
 
 def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    """Interpolate y at x linearly between points of increasing x; y is constant beyond both
-    ends.
-    """
+    """Interpolate y at x linearly between points of increasing x; y is constant beyond the ends."""
     if x <= xs[0]:
         return ys[0]
     low, high = 0, len(xs) - 1
@@ -64,13 +62,14 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 def finite_length_factor(slenderness: float) -> float:
-    """Return the factor κ ≤ 1 that reduces the drag coefficient of a long cylinder for finite
-    length.
+    """Return the factor κ ≤ 1 on the drag coefficient of a long cylinder for its finite length.
+
+    The factor is linear in the logarithm of L/D between the points of a table, and constant below 1
+    and above 100.
 
     Parameters
     ----------
-    slenderness : length over diameter [-]; linear in its logarithm between the table's points,
-        constant below 1 and above 100
+    slenderness : length over diameter L/D [-]
 
     Source: DNV-RP-C205 table 6-2 (Re < 2e5); Wieselsberger (NACA report 121) below 2.
     """
@@ -78,12 +77,13 @@ def finite_length_factor(slenderness: float) -> float:
 
 
 def end_face_coefficient(slenderness: float) -> float:
-    """Return the drag coefficient Ct of a cylinder in axial flow, based on the area of its end
-    face.
+    """Return the drag coefficient Ct of a cylinder in axial flow, for the area of its end face.
+
+    The coefficient is linear between L/D of 0.1 and 1.8, and constant outside.
 
     Parameters
     ----------
-    slenderness : length over diameter [-]; linear between 0.1 and 1.8, constant outside
+    slenderness : length over diameter L/D [-]
 
     Source: Kritzinger's measurements of cylinders end-on.
     """
@@ -91,19 +91,21 @@ def end_face_coefficient(slenderness: float) -> float:
 
 
 def sphere_drag(diameter: float, cx: float | None = None) -> float:
-    """Return the drag K = ½ρ Cx πD²/4 of a sphere of a given diameter [m], independent of
-    direction; Cx is 0.5 by default.
-    """
+    """Return the drag K = ½ρ Cx πD²/4 of a sphere of diameter D [m]; Cx is 0.5 by default."""
     return _HALF_DENSITY * (SPHERE_CX if cx is None else cx) * pi * diameter**2 / 4
 
 
 def cylinder_drag(
     diameter: float, length: float, cn: float | None = None, ct: float | None = None
 ) -> tuple[float, float]:
-    """Return the drags Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder of given diameter and
-    length [m].
+    """Return the drags Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder.
 
-    By default Cn is 1.2 κ(L/D), and Ct is that of the end face.
+    By default Cn is 1.2 κ(L/D), and Ct follows from `end_face_coefficient`.
+
+    Parameters
+    ----------
+    diameter, length : diameter D and length L [m]
+    cn, ct : drag coefficients [-]
     """
     slenderness = length / diameter
     if cn is None:
@@ -114,9 +116,7 @@ def cylinder_drag(
 
 
 def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
-    """Return the drags per metre Kn = ½ρ Cn D and Kt = ½ρ Ct πD of a cable or chain of a given
-    diameter [m].
-    """
+    """Return the drags per metre Kn = ½ρ Cn D and Kt = ½ρ Ct πD of a cable of diameter D [m]."""
     return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
 
 
@@ -126,19 +126,21 @@ def area_drag(area: float, cd: float) -> float:
 
 
 def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
-    """Return the drag K fitted to measurements: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
+    """Return the drag K = Σ(F/V) / ΣV fitted to measured speeds V [m/s] and forces F [N]."""
     return sum(f / v for v, f in zip(speeds, forces, strict=True)) / sum(speeds)
 
 
 class Friction(Enum):
     """Tangential drag law of a cable or chain, by its name in files.
 
-    With Kt for a metre at 1 m/s, t the unit vector along the cable and Vt = (V·t) t:
+    V is the current, t the unit vector along the cable, and Vt = (V·t) t. The drag per metre is
 
-    - ``berteaux``: Kt |Vt| Vt, along the cable; Kt = ½ρ Ct πD. Berteaux, Buoy Engineering (1976).
-    - ``hoerner``: Kt |V| V, along the current; the same Kt. Hoerner, Fluid-Dynamic Drag (1965).
-    - ``constant``: Kt |V|² along the cable, towards where the current goes, whatever the angle;
-      Kt = Ct ½ρ Cn D. Pode, David Taylor Model Basin report 687 (1951).
+    - ``berteaux``: Kt |Vt| Vt, along the cable, with Kt = ½ρ Ct πD (Berteaux, Buoy Engineering,
+      1976);
+    - ``hoerner``: Kt |V| V, along the current, with the same Kt (Hoerner, Fluid-Dynamic Drag,
+      1965);
+    - ``constant``: Kt |V|² at any angle, along the cable, in the sense of the flow along it, with
+      Kt = Ct ½ρ Cn D (Pode, David Taylor Model Basin report 687, 1951).
     """
 
     BERTEAUX = "berteaux"
@@ -155,11 +157,10 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """Return the coefficient of a tangential drag that is not parallel to the cable [N/(m/s)], for
-    Kt in N/(m/s)²; its product with the current velocity is a force.
+    """Return the coefficient of a tangential drag that is not parallel to the cable [N/(m/s)].
 
-    The pull acts along the current u, v, w [m/s] and rotates the cable, unlike a friction along the
-    cable.
+    The coefficient times the current u, v, w [m/s] is a force along the current. Unlike friction
+    along the cable, this force rotates the cable. Kt is in N/(m/s)².
     """
     return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
 
@@ -167,8 +168,9 @@ def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float
 def friction_force(
     law: int, kt: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return the tangential drag of the current u, v, w [m/s] on a cable of axis t [N], for Kt in
-    N/(m/s)².
+    """Return the tangential drag [N] of the current u, v, w [m/s] on a cable of axis t.
+
+    Kt is in N/(m/s)².
     """
     if law == HOERNER:
         pull = turning_friction(law, kt, u, v, w)
@@ -184,21 +186,21 @@ Vector = tuple[float, float, float]
 
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
-    """Return the factor c that gives the axis of a freely rotating element: parallel to A + c V.
+    """Return the factor c that gives the axis of a freely rotating element, parallel to A + c V.
 
-    A is the other force that rotates it, and V the current. c is the smallest root c ≥ 0 of
-    c |A + c V| = k |V × A|.
+    A is the force that rotates the element in addition to its normal drag, and V is the current. c
+    is the smallest root c ≥ 0 of c |A + c V| = k |V × A|.
 
     Parameters
     ----------
-    ax, ay, az : force A that rotates the element in addition to its normal drag [N]
-    k : half its normal drag coefficient, Kn/2 [N/(m/s)²]
+    ax, ay, az : force A [N]
+    k : half the normal drag coefficient of the element, Kn/2 [N/(m/s)²]
     vx, vy, vz : relative current V [m/s]
 
     Returns
     -------
     c [N/(m/s)], between 0 and k|V|. If A is opposite to V to within 19.5° there may be three roots;
-    the smallest is the one reached when the current increases from rest.
+    the element takes the smallest when the current increases from rest.
     """
     vv = vx * vx + vy * vy + vz * vz
     if k == 0.0 or vv == 0.0:
@@ -242,10 +244,11 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
 @within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
-    """Return the excess of c |A + c V| over a target, the magnitude |A + c V|, and the slope with
-    respect to c, times this magnitude.
+    """Return quantities for a Newton step towards c |A + c V| = target.
 
-    `aa`, `av` and `vv` are the products A·A, A·V and V·V.
+    These are the excess of c |A + c V| over the target, the magnitude |A + c V|, and the derivative
+    of c |A + c V| by c, times this magnitude. `aa`, `av` and `vv` are the products A·A, A·V and
+    V·V.
     """
     square = aa + c * (2.0 * av + c * vv)
     root = sqrt(square)
@@ -264,13 +267,12 @@ def few_steps_share(
     vz: float,
     steps: int,
 ) -> tuple[float, float]:
-    """Approximate `drag_share` by a few Newton steps, for drag that rotates the element only
-    slightly.
+    """Approximate `drag_share` by a few Newton steps, if drag rotates the element only slightly.
 
     Parameters
     ----------
-    size : approximately |A| [N]; the first guess neglects the rotation by drag
-    steps : at least 1
+    size : approximate |A| [N]; the initial estimate neglects the rotation by drag
+    steps : number of Newton steps, at least 1
 
     Returns
     -------
@@ -293,10 +295,9 @@ def few_steps_share(
 def axis_along(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float
 ) -> Vector:
-    """Return the unit axis opposite to the force A + c V, which points from the free end towards
-    the fixed end.
+    """Return the unit axis opposite to the force A + c V, from the free end towards the fixed end.
 
-    If the force vanishes, the element is parallel to the current, or plumb in still water.
+    If the force vanishes, the axis is parallel to the current, or vertical in still water.
     """
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     if x * x + y * y + z * z == 0.0:
@@ -317,9 +318,7 @@ def axis_against(x: float, y: float, z: float) -> Vector:
 def drag_force(
     kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] for the axis t and the relative current V
-    [m/s].
-    """
+    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] for an axis t and a relative current V."""
     along = vx * tx + vy * ty + vz * tz
     nx, ny, nz = vx - along * tx, vy - along * ty, vz - along * tz
     normal = kn * sqrt(nx * nx + ny * ny + nz * nz)

@@ -34,7 +34,7 @@ class Hull:
 
     Attributes
     ----------
-    height : keel to top [m]
+    height : height from keel to top [m]
     area : lateral area of the whole hull [m²]
     form : SPHERE, SPAR or TABULATED
     rows : rows of a tabulated hull
@@ -46,30 +46,31 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Return draft and immersed area, as fractions of the whole, for a fraction of the
-        displaced volume.
+        """Return draft and immersed area for a share of the displaced volume.
+
+        All are shares of the values of the whole hull.
         """
         return immersed_shares(self.form, self.rows, share)
 
 
 def spherical_hull(diameter: float) -> Hull:
-    """Return a spherical hull of a given diameter [m]; a draft of x diameters immerses x² (3 - 2x)
-    of its volume.
+    """Return a spherical hull of a given diameter [m].
+
+    A draft of x diameters immerses the fraction x² (3 - 2x) of the volume.
     """
     return Hull(diameter, pi * diameter**2 / 4, SPHERE)
 
 
 def cylindrical_hull(diameter: float, length: float) -> Hull:
-    """Return a spar hull, an upright cylinder of given diameter and length [m]."""
+    """Return the hull of a spar, an upright cylinder of given diameter and length [m]."""
     return Hull(length, diameter * length, SPAR)
 
 
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
-    """Return a hull from rows of draft [m], displaced volume [m³] and immersed area [m²], all
-    increasing.
+    """Return a hull from rows of draft [m], displaced volume [m³] and immersed area [m²].
 
-    Interpolation is linear between the rows, and from zero to the first row; the last row is the
-    whole hull.
+    All values increase from row to row. They are linear between the rows, and from zero to the
+    first row. The last row describes the completely immersed hull.
 
     Raises
     ------
@@ -119,10 +120,10 @@ class Riding(NamedTuple):
 
     Attributes
     ----------
-    draft, freeboard : draft and freeboard [m]; NaN if its hull is unknown
-    standing : share of the float's length above the water
-    above : share of the rigid pieces connected above the float that is out of the water
-    drag : drag at the surface divided by drag when immersed
+    draft, freeboard : draft and freeboard [m]; NaN if the hull is unknown
+    standing : share of the height of the float that is above the water
+    above : share, 0 to 1, by which pieces rigidly connected above the float are out of the water
+    drag : drag at the surface divided by the drag when fully immersed
     push_east, push_north : force of the wind [N]
     """
 
@@ -136,7 +137,6 @@ class Riding(NamedTuple):
 
     @property
     def push(self) -> tuple[float, float]:
-        """East and north component of the wind force [N]."""
         return self.push_east, self.push_north
 
 
@@ -146,13 +146,14 @@ class Floating:
 
     Attributes
     ----------
-    hull : its hull; None if unknown, and then the draft is unknown too
+    hull : hull of the float; None if unknown, so that the draft is unknown, too
     weight : weight in air [N]
     lift : net buoyancy when fully immersed [N]
-    surface_drag : drag at the surface divided by drag when immersed; None uses the immersed area
+    surface_drag : drag at the surface divided by the drag when fully immersed; None means that the
+        drag is proportional to the immersed area
     wind : wind velocity to the east and north [m/s]
-    wind_area : area exposed to the wind [m²]; None uses the area above the water
-    wind_cd : drag coefficient of that area
+    wind_area : area exposed to the wind [m²]; None uses the area of the hull above the water
+    wind_cd : drag coefficient of the area exposed to the wind
     """
 
     hull: Hull | None
@@ -169,14 +170,15 @@ class Floating:
         return self.wind != (0.0, 0.0)
 
     def riding(self, used: float) -> Riding:
-        """Compute position and forces of the float at the surface for a used fraction of its net
-        buoyancy, 0 to 1.
+        """Compute position and forces of the float at the surface.
+
+        `used` is the downward pull of the line divided by the net buoyancy, 0 to 1.
         """
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
     @property
     def as_numbers(self) -> SurfaceFloat:
-        """The float in the array form of the solver."""
+        """The float as plain numbers, for the solver."""
         form, height, area = UNKNOWN_HULL, nan, 0.0
         if self.hull is not None:
             form, height, area = self.hull.form, self.hull.height, self.hull.area
@@ -198,9 +200,7 @@ UNKNOWN_HULL = -1
 
 
 class SurfaceFloat(NamedTuple):
-    """A `Floating` as numbers: `form` is the kind of its hull; NaN stands for unspecified
-    values.
-    """
+    """A `Floating` as plain numbers; `form` is the form of the hull, and NaN means unspecified."""
 
     form: int
     height: float
@@ -219,11 +219,16 @@ UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, na
 
 
 def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
-    """Compute position and forces of a float at the surface for a used fraction of its net
-    buoyancy, 0 to 1.
+    """Compute position and forces of a float at the surface.
 
-    The displaced water carries the weight and the pull of the line, so the immersed share of the
-    volume is (weight + used lift)/(weight + lift). `rows` are the rows of its hull.
+    The displaced water carries the weight of the float and the pull of the line, so the immersed
+    share of the volume is (weight + used · lift)/(weight + lift).
+
+    Parameters
+    ----------
+    floats : the float
+    rows : rows of its hull
+    used : downward pull of the line divided by the net buoyancy, 0 to 1
     """
     above = min((1.0 - used) / AWASH, 1.0)
     draft, seen, height, area = 1.0, 1.0, nan, 0.0

@@ -1,5 +1,6 @@
-"""Input of the march (line and water as float64 arrays, checked on construction), its state and its
-record.
+"""Input, state and record of a march, the integration down a line.
+
+The input is a line and the water, as float64 arrays that are checked on construction.
 """
 
 from __future__ import annotations
@@ -25,15 +26,13 @@ if TYPE_CHECKING:
 
 
 class MarchError(ArithmeticError):
-    """Error of a march that cannot continue: an element has no balance, or the line needs too many
-    segments.
-    """
+    """A march cannot continue: an element has no balance, or the line needs too many segments."""
 
 
 State = tuple[float, float, float, float, float, float, float, int]
-"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], rise of
-the last axis, and interval of the water. It is a bare tuple, since in CPython a named tuple costs
-half as much as the balance of a segment.
+"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], vertical
+component of the last axis, and interval of the water. It is a bare tuple, because creating a named
+tuple in CPython takes half as long as the balance of a segment.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
@@ -48,15 +47,15 @@ FAILURES = (
 )
 """Description of each outcome of a march."""
 NO_BALANCE = -2.0
-"""Marker in place of the strain of a segment, or the rise of a rod, that has no balance."""
+"""Marker for no balance, in place of the strain of a segment or the vertical axis of a rod."""
 
 
 class Bed(NamedTuple):
-    """Plane seabed below an anchor, and its action on a line that rests on it.
+    """Plane seabed below an anchor, with its friction on a line that rests on it.
 
     Attributes
     ----------
-    east, north : slope: increase in depth per metre east and north [-]
+    east, north : slope of the seabed: increase in depth per metre east and north [-]
     friction : friction coefficient along a line on the seabed [-]
     excess : additional buoyancy per displaced cubic metre, relative to reference water [N/m³]
     """
@@ -69,10 +68,9 @@ class Bed(NamedTuple):
 
 @within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
-    """Return the height of a point above the seabed plane through a second point, given the vector
-    from the second to the first.
+    """Return the height above the seabed plane of the tip of a vector that starts on the plane.
 
-    For a force: its component normal to the plane, times √(1 + tan² slope).
+    For a force, this is its component normal to the plane, times √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -102,7 +100,7 @@ part that is marched in two halves; level that splits a segment.
 
 @within
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write node n: position [m] and force above the node [N] of a state."""
+    """Write the position [m] and the force above it [N] of a state to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -116,7 +114,7 @@ def write_node(record: Record, n: int, state: State) -> None:
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:
-    """Write the element that ends at node n; `clamp` is -1 for a part of the piece."""
+    """Write the element that ends at node n to a record; `clamp` is -1 for a part of the piece."""
     record[6][n] = piece
     record[7][n] = clamp
     record[8][n] = cut
@@ -126,16 +124,15 @@ def write_element(
 
 @dataclass(frozen=True)
 class Trace:
-    """Nodes and elements of a recorded march, free end first: k + 1 nodes, and k elements between
-    them.
+    """Shape of a line from a recorded march: k + 1 nodes, free end first, and k elements.
 
     Attributes
     ----------
     position : (k+1, 3) position [m]
     force : (k+1, 3) force above each node [N]
     piece, clamp : (k,) piece and clamp of each element; the clamp is -1 for a part of the piece
-    cut : (k,) unstretched length [m]
-    strain : (k,) strain of cables and chains
+    cut : (k,) unstretched length of each element [m]
+    strain : (k,) strain of each element; 0 for rigid pieces
     better : (k+1, 6) extrapolated position [m] and force [N] of each node of a refined shape
     """
 
@@ -149,7 +146,7 @@ class Trace:
 
     @staticmethod
     def of(record: Record, nodes: int) -> Trace:
-        """Build the trace of a record that holds a given number of nodes."""
+        """Build the trace from the first `nodes` nodes of a record."""
         compiled = isinstance(record, np.ndarray)
         columns = record[:, :nodes].copy() if compiled else np.array([c[:nodes] for c in record])
         return Trace(
@@ -169,7 +166,7 @@ Booleans = NDArray[np.bool_]
 
 
 class _Arrays:
-    """Base class of a frozen dataclass of arrays, whose arguments `_of_arrays` converts."""
+    """Base class of frozen dataclasses whose array arguments are converted by `_of_arrays`."""
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
@@ -191,9 +188,7 @@ _Made = TypeVar("_Made")
 
 
 def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]:
-    """Cache the result of a function of a `Line` or a `Water` on this object, which never
-    changes.
-    """
+    """Cache the result of a function of a `Line` or a `Water` on this object, which is constant."""
     name = f"{make.__module__}.{make.__qualname__}"
 
     @wraps(make)
@@ -213,7 +208,7 @@ _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
 
 
 def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
-    """Make a dataclass convert its arguments to arrays, as declared by the types of its fields.
+    """Decorate a dataclass so that it converts its arguments to the array types of its fields.
 
     Raises ValueError if an array has a value that is not finite.
     """
@@ -238,8 +233,9 @@ def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
 
 
 def _frozen(value: Any, kind: Any, name: str) -> NDArray[Any]:
-    """Return a value as a read-only array of a given type; arrays that are already read-only are
-    returned unchanged.
+    """Return a value as a read-only array of a given type.
+
+    Arrays that are already read-only are returned unchanged.
     """
     if type(value) is np.ndarray and not value.flags.writeable and value.dtype == kind:
         return value
@@ -281,31 +277,35 @@ class Line(_Arrays):
     Attributes
     ----------
     length : (n,) unstretched length [m]
-    flexible : (n,) cable or chain, cut into segments; else one rigid element
+    flexible : (n,) True for a cable or chain, which is divided into segments; False for a rigid
+        piece
     buoyancy : (n,) net buoyancy, positive up [N or N/m]
-    volume : (n,) displaced volume, whose buoyancy follows the density of the water [m³ or m³/m]; 0
-        if unknown
+    volume : (n,) displaced volume [m³ or m³/m], by which the buoyancy varies with the density of
+        the water; 0 if unknown
     normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre if flexible]
-    directional : (n,) False if the drag is Kn|V|V for any axis
+    directional : (n,) False if the drag is Kn|V|V for any direction of the flow
     compliance : (n,) 1/EA [1/N]; 0 if inextensible
-    thinning : (n,) drag per unstretched metre grows by (1 + strain)**thinning: 1/2 if the
-        volume is conserved (cables), 0 if only the length grows (chains)
-    clamp_piece : (m,) index of the piece that a clamp is fixed to
-    clamp_at : (m,) distance from that piece's top along its unstretched length [m]
-    clamp_buoyancy, clamp_volume, clamp_drag : (m,) [N], [m³], K of K|V|V [N/(m/s)²]
+    thinning : (n,) exponent in the factor (1 + strain)**thinning by which the drag per unstretched
+        metre grows: 1/2 if the volume is conserved (cables), 0 for chains
+    clamp_piece : (m,) index of the piece to which each instrument is clamped
+    clamp_at : (m,) distance from the top of that piece along its unstretched length [m]
+    clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and K
+        of the drag K|V|V [N/(m/s)²]
     anchor_height : height of the end of the line above the seabed [m]
     lift, clamp_lift : (n,), (m,) upward force of bodies at 1 m/s [N/(m/s)²]; 0 by default
-    diameter : (n,) diameter of cables and chains [m]; 0 by default, which excludes strumming
-    friction : the law of `tangential_drag` on cables and chains
-    strumming : strumming law of the cables, whose `normal_drag` then applies at rest; None without
-        strumming
-    towed : whether the free end is towed: the pieces there are then not rigidly connected
+    diameter : (n,) diameter of cables and chains [m]; 0 by default, which means no strumming
+    friction : tangential drag law of cables and chains
+    strumming : strumming law of the cables, on which `normal_drag` is then the drag without
+        strumming; None if they do not strum
+    towed : whether the free end is towed; rigid pieces at a towed end are not rigidly connected to
+        each other
     push_east, push_north : (n,) force of the wind on a piece [N]; 0 by default
-    floating : properties of the first float at the surface; None places it just below the surface
-    elongation : (n,) curves of cables that stretch by a table, whose `compliance` is ignored; None
-        for other pieces; () if no cable has a curve
-    drag_curve, clamp_drag_curve : (n,), (m,) curves of normal drag of smooth spheres and cylinders
-        against Reynolds number; None for other bodies, () if there are no curves
+    floating : properties of the first float, which is at the surface; None places it just below the
+        surface
+    elongation : (n,) elongation curves of cables, which replace their `compliance`; None for other
+        pieces; () if no cable has a curve
+    drag_curve, clamp_drag_curve : (n,), (m,) curves of the normal drag of smooth spheres and
+        cylinders against Reynolds number; None for other bodies; () if there are no curves
     """
 
     length: Floats
@@ -338,7 +338,7 @@ class Line(_Arrays):
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
-        """Return the arguments with zeros for missing forces and diameters."""
+        """Add zeros for forces and diameters that are not given."""
         absent = {
             name: np.zeros(np.size(given.get(like, ())))
             for like, names in _ZERO_BY_DEFAULT.items()
@@ -372,11 +372,11 @@ class Line(_Arrays):
 
     @property
     def total_buoyancy(self) -> Floats:
-        """(n,) net buoyancy of each whole piece with its clamps in reference water [N]."""
+        """Net buoyancy (n,) of each whole piece with its clamps, in reference water [N]."""
         return self.net_force(np.zeros(len(self.length)))
 
     def net_force(self, excess: Floats) -> Floats:
-        """(n,) net buoyancy of each whole piece with its clamps [N].
+        """Return the net buoyancy (n,) of each whole piece with its clamps [N].
 
         Parameters
         ----------
@@ -391,8 +391,9 @@ class Line(_Arrays):
 
     @property
     def plumb_drag(self) -> Floats:
-        """(n,) drag of each whole piece with its clamps in vertical flow along the vertical line
-        [N/(m/s)²], in reference water and with constant coefficients.
+        """Drag (n,) of each whole piece with its clamps, in vertical flow past the vertical line.
+
+        It is in N/(m/s)², for reference water and constant coefficients.
         """
         along = np.where(self.directional, self.tangential_drag, self.normal_drag)
         total: Floats = along * np.where(self.flexible, self.length, 1.0)
@@ -407,7 +408,6 @@ class Line(_Arrays):
 
     @property
     def _of_pieces(self) -> dict[str, Any]:
-        """Return the names of the fields that have one value per piece."""
         return {
             column.name: getattr(self, column.name)
             for column in fields(self)
@@ -416,9 +416,7 @@ class Line(_Arrays):
         }
 
     def below_a_point(self) -> Line:
-        """Return the line with an additional first piece without length, weight and drag, which
-        represents a point load.
-        """
+        """Return the line below an additional first piece without length, weight and drag."""
         columns: dict[str, Any] = {
             name: np.append(np.zeros(1, column.dtype), column)
             if isinstance(column, np.ndarray)
@@ -428,7 +426,7 @@ class Line(_Arrays):
         return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
 
     def reversed(self) -> Line:
-        """Return the line listed from the other end; clamp positions are measured from this end."""
+        """Return the line listed from its other end, which clamp positions then refer to."""
         on = self.clamp_piece
         return replace(
             self,
@@ -445,7 +443,7 @@ class Water(_Arrays):
 
     Attributes
     ----------
-    depth : water depth [m]; inf without a seabed (for a tow)
+    depth : water depth [m]; infinite if there is no seabed (for a tow)
     level : (k,) depths of the levels [m], strictly increasing, k ≥ 1
     u, v, w : (k,) current to the east, to the north, upward [m/s]
     density : (k,) density [kg/m³]
@@ -453,7 +451,7 @@ class Water(_Arrays):
     deeper_east, deeper_north : increase in depth of the seabed per metre east and north of the
         anchor [-]
     viscosity_level, viscosity : (j,), (j,) depths [m], strictly increasing, and the kinematic
-        viscosity at them [m²/s], for drags that depend on the Reynolds number
+        viscosity there [m²/s], for drag that depends on the Reynolds number
 
     Values are linear between levels, and constant above the first and below the last level.
     """

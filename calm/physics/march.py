@@ -1,4 +1,4 @@
-"""One march down a line, called from Python (see `calm.physics.passing`)."""
+"""One march (integration) down a line, called from Python; see `calm.physics.passing`."""
 
 from __future__ import annotations
 
@@ -33,28 +33,26 @@ arrays.
 
 
 class Cuts(NamedTuple):
-    """Unstretched lengths of the segments of all cables [m], and the number of segments of each
-    cable.
-    """
+    """Segments of all cables: their unstretched lengths [m], and their number in each cable."""
 
     lengths: Floats
     counts: Integers
 
     def halved(self) -> Cuts:
-        """Return the cuts with every segment divided into two halves."""
+        """Divide every segment into two halves."""
         return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
 
     def first(self, cables: int) -> Cuts:
-        """Return the cuts of the first cables only."""
+        """Return the segments of the first `cables` cables only."""
         counts = self.counts[:cables]
         return Cuts(self.lengths[: counts.sum()], counts)
 
     def after(self, cables: int) -> Cuts:
-        """Return the cuts of the remaining cables only."""
+        """Return the segments of all but the first `cables` cables."""
         return Cuts(self.lengths[self.counts[:cables].sum() :], self.counts[cables:])
 
     def and_then(self, others: Cuts) -> Cuts:
-        """Return these cuts followed by the cuts of further cables."""
+        """Append the segments of further cables."""
         lengths = np.concatenate([self.lengths, others.lengths])
         return Cuts(lengths, np.concatenate([self.counts, others.counts]))
 
@@ -64,13 +62,13 @@ NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.intp))
 
 @dataclass(frozen=True)
 class End:
-    """Result at the end of a march: height, force, and the segments used.
+    """Result at the end of a march.
 
     Attributes
     ----------
-    z, force : height [m], force above [N]
-    cuts : the segments used
-    record, nodes : the record, and its number of nodes
+    z, force : height relative to the sea surface [m], and force above the end [N]
+    cuts : segments used
+    record, nodes : record of the march, and its number of nodes
     """
 
     z: float
@@ -96,7 +94,7 @@ def march(
     record: bool = False,
     compiled: bool = False,
 ) -> End:
-    """March down a line from a free end at a given depth.
+    """Integrate down a line from a free end at a given depth.
 
     Parameters
     ----------
@@ -104,8 +102,8 @@ def march(
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
     cuts : the segments to use; None lets the march choose them
-    record : whether to keep every node and element
-    compiled : whether the march is compiled, or interpreted
+    record : whether to record every node and element
+    compiled : whether to run compiled code, else the interpreter
 
     Raises
     ------
@@ -138,7 +136,6 @@ def march(
 def _work_arrays(
     course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool
 ) -> tuple[Any, ...]:
-    """Create the work arrays of a march: cuts, segment counts, record, and results."""
     cables = len(course.cables)
     if compiled:
         lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.intp))

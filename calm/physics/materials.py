@@ -19,11 +19,11 @@ class Material:
     Attributes
     ----------
     name : name in files
-    words : regular expression for its common names, from the beginning of a word
-    family : metal (corrodes), fibre (stretches) or other
+    words : regular expression that matches its common names from the beginning of a word
+    family : `metal` (corrodes), `fibre` (stretches) or `other`
     density : density of the solid [kg/m³], None if it varies
     potential : middle of its corrosion potential in sea water [V]
-    stiffnesses : published stiffnesses of its ropes
+    stiffnesses : pairs a, b of published stiffnesses EA = (a + b D) D² of ropes of diameter D
     strength : largest tensile strength of its rope wire or yarn [Pa], None if no ropes are made of
         it
     """
@@ -126,15 +126,16 @@ def materials_in(text: str | None) -> tuple[Material, ...]:
 def density_of(text: str | None) -> float | None:
     """Return the density of the single material named in a text [kg/m³].
 
-    None if the text names no material, or several with different densities.
+    Return None if the text names no material, or several with different densities.
     """
     densities = {material.density for material in materials_in(text)}
     return densities.pop() if len(densities) == 1 else None
 
 
 def fibre_of(text: str | None) -> Material | None:
-    """Return the fibre of a rope (of a blend, the first), or None for wire with or without a
-    jacket.
+    """Return the fibre of a rope, or None for wire with or without a jacket.
+
+    For a blend, this is the first fibre named.
     """
     named = materials_in(text)
     if any(material.family == "metal" and material.name != "lead" for material in named):
@@ -145,7 +146,7 @@ def fibre_of(text: str | None) -> Material | None:
 def potential_of(text: str | None) -> float | None:
     """Return the corrosion potential in sea water of the noblest metal named in a text [V].
 
-    None if the text contains no metal, or if the metal is insulated.
+    Return None if the text names no metal, or if the metal is insulated.
     """
     if text is None or _INSULATED.search(text):
         return None
@@ -158,7 +159,7 @@ def published_stiffnesses(text: str | None, diameter: float) -> tuple[float, ...
 
     Parameters
     ----------
-    text : its material in free text
+    text : material of the rope in free text
     diameter : diameter of the rope [m]
     """
     fibre = fibre_of(text)

@@ -1,13 +1,13 @@
-"""March along a line from its free end down, stage by stage, as compiled functions.
+"""Integration (march) down a line from its free end, stage by stage, as functions to compile.
 
-The march starts at a given position of the free end, which no force acts on from above, and returns
-position and force at the other end. The search for the unknowns that bring this end to the anchor
-is the task of `calm.solve`.
+A march starts at a given position of the free end, on which no force acts from above, and returns
+position and force at the other end. `calm.solve` searches for the start from which this end meets
+the anchor.
 
-A cable or chain is divided into straight segments. If no cuts are given the march chooses them:
-each segment rotates by about the angle step, is short against the water depth, and ends at a level
-of the profile. Given cuts keep their lengths, which makes the end of the line a smooth function of
-its start. A segment that straddles a level is split there.
+A cable or chain is divided into straight segments. By default the march chooses them: each segment
+rotates by about the angle step, is short against the water depth, and ends at a level of the water
+profile. If segments are given, they keep their lengths, so that the end of the line is a smooth
+function of its start. A segment that crosses a level is split there.
 """
 
 from collections.abc import MutableSequence
@@ -69,15 +69,15 @@ class MarchSettings(NamedTuple):
     ----------
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    near : allowed distance between a load and its water sample [m]; 0 requires full
-        precision
+    near : allowed distance between a load and the depth at which the water is sampled [m]; 0
+        requires full precision
     stages : number of stages to march
-    lands : whether it has a touchdown, below the last buoyant piece, where the normal force
-        on the seabed vanishes; the rest lies on the seabed
+    lands : whether the line may touch down, below the last buoyant piece, where its force normal to
+        the seabed vanishes; the rest of the line then lies on the seabed
     bed : the seabed
-    given : whether the segments are given, or chosen by the march
-    exact : whether segments are split at every level, at full precision, or only at levels that
-        matter
+    given : whether the segments are given; otherwise the march chooses them
+    exact : whether segments are split at every level; otherwise only at levels with an appreciable
+        effect
     halves : whether each segment or part is integrated in two halves
     recording : whether every node and element is recorded
     """
@@ -105,15 +105,16 @@ def pass_line(
     record: Record,
     left: MutableSequence[float],
 ) -> None:
-    """March down a line from a free end at a given depth [m].
+    """Integrate down a line from a free end at a given depth [m].
 
     Parameters
     ----------
-    out : length of the pieces above the surface [m], which determines the depth; 0 without
-    cuts, counts : the segments, and their number for each cable, read if they are given, else
-        written
-    record : array for nodes and elements
-    left : array for the results
+    out : length of the pieces above the surface [m], which then determines the depth; 0 if there
+        are none
+    cuts, counts : unstretched lengths of the segments [m], and their number in each cable; input if
+        the segments are given, else output
+    record : output of nodes and elements
+    left : output of the results, see the indices `Z` to `FAILURE`
     """
     if out > 0.0:
         depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)
@@ -180,12 +181,12 @@ def pass_cable(
     record: Record,
     nodes: int,
 ) -> tuple[State, float, int, int, int]:
-    """March along cable number `place` of a line.
+    """Integrate along cable number `place` of a line.
 
     Returns
     -------
-    The state; the unstretched length above its touchdown [m], -1 without; the numbers of segments
-    used and nodes passed so far; and the outcome.
+    The state; the unstretched length above the touchdown [m], or -1 without touchdown; the numbers
+    of segments and of nodes so far; and the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:
@@ -275,10 +276,10 @@ def cut_evenly(
     length: float,
     reach: float,
 ) -> int:
-    """Choose equal segments for a cable that is not marched, and return the total number of
-    segments used so far.
+    """Choose equal segments for a length of cable that is not integrated.
 
-    Segments are written only as far as the array extends.
+    Return the total number of segments so far. Segments beyond the end of the array `cuts` are
+    counted but not written.
     """
     if length <= 0.0:
         return used

@@ -15,15 +15,14 @@ LEAST_PART = 0.01
 
 NEAR_A_LEVEL = 1e-6
 """Depth range beyond a level, as a fraction of the segment's depth range, below which the segment
-is not split at the level. In water that is still at the level, every part would otherwise be split.
+is not split at the level. Without this limit, every part would be split at a level without flow.
 """
 
 
 class Interval(NamedTuple):
-    """Water between two levels: depth of the origin [m], values at the origin and their increase
-    per metre of depth.
+    """Water between two levels: current u, v, w [m/s] and density [kg/m³].
 
-    Values are the current u, v, w [m/s] and the density [kg/m³].
+    Each has its value at the depth `origin` [m], and its increase per metre of depth.
     """
 
     origin: float
@@ -38,8 +37,10 @@ class Interval(NamedTuple):
 
 
 class Stratum(NamedTuple):
-    """Kinematic viscosity below a given depth [m]: value at the origin [m²/s] and increase per
-    metre of depth.
+    """Kinematic viscosity of the water below the depth `top` [m].
+
+    `value` is the viscosity at the depth `origin` [m²/s], and `slope` its increase per metre of
+    depth.
     """
 
     top: float
@@ -55,9 +56,10 @@ class Sea(NamedTuple):
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
     intervals : water in each interval
-    bends : change of slope at each level, see `find_bends` [1/m]
+    bends : relative change at each level of the slopes of current and density, see `find_bends`
+        [1/m]
     gravity : acceleration of gravity [m/s²]
-    strata : kinematic viscosity, from depth -inf down
+    strata : kinematic viscosity by depth, from -inf down
     """
 
     levels: Sequence[float]
@@ -68,10 +70,9 @@ class Sea(NamedTuple):
 
 
 def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
-    """Return the index of the interval that contains `depth` [m]; the search starts at interval
-    `i`.
+    """Return the index of the interval that contains `depth` [m], searching from interval `i`.
 
-    Returns `i` if the line has diverged to infinity.
+    Return `i` if the depth is not finite, because the line has diverged.
     """
     if not isfinite(depth):
         return i
@@ -84,8 +85,9 @@ def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
 
 @within
 def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
-    """Return current u, v, w [m/s], density [kg/m³] and interval at a depth [m]; the search starts
-    at interval `i`.
+    """Return current u, v, w [m/s], density [kg/m³] and interval at a depth [m].
+
+    The search for the interval starts at interval `i`.
     """
     levels = sea.levels
     if not levels[i] <= depth < levels[i + 1]:
@@ -113,16 +115,17 @@ def viscosity_at(sea: Sea, depth: float) -> float:
 def distance_to_bend(
     sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Return the distance to the next kink of the drag [m], along a path that descends by `sinking`
-    per metre.
+    """Return the distance to the next kink of the drag [m], along a path.
 
-    The kink is at the next level, or before it at the depth of minimum flow, if the flow almost
-    vanishes within a segment: |V| V has a kink there. The search begins at interval `i`. A level
-    within `LEAST_PART` of the length is skipped, unless a segment of that length has to be split
-    there.
+    The kink is at the next level. If the flow almost vanishes within a segment before that level,
+    |V| V has a kink there, at the depth of minimum flow. A level within the fraction `LEAST_PART`
+    of the length is skipped, unless a segment of that length has to be split there.
 
     Parameters
     ----------
+    depth : depth at the start of the path [m]
+    sinking : increase in depth per metre of the path [-]
+    i : interval at which the search starts
     length : length of a segment [m]
     share : see `counts_across`
     """
@@ -151,18 +154,17 @@ def distance_to_bend(
 
 
 def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
-    """Return whether both of two depths [m] are in an interval."""
+    """True if two depths [m] are both in interval `i`."""
     upper, lower = sea.levels[i], sea.levels[i + 1]
     return upper <= start < lower and upper <= end < lower
 
 
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
-    """Return the index of the first level at which a straight segment has to be split, or 0 if
-    there is none.
+    """Return the index of the first level at which a straight segment has to be split, else 0.
 
     Parameters
     ----------
-    hint : interval from which the ends are searched
+    hint : interval at which the search for the ends starts
     start, end : depths of the ends of the segment [m]
     share : see `counts_across`
     """
@@ -179,18 +181,19 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 
 @within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
-    """Return whether a segment that extends beyond a level has to be split at this level.
+    """True if a segment that crosses a level has to be split there.
 
-    The water at the midpoint of a segment is used for the mean along it. If the slope of the
-    current changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most
-    `share` of the flow at the level. The same holds for the density, which jumps where a tow leaves
-    the water.
+    The water at the midpoint of a segment represents the mean along it. If the slope of the current
+    changes by b at a level, the error of this mean is b·off²/(2·length). The segment has to be
+    split if twice this error exceeds `share` of the flow at the level. The same holds for the
+    density, which jumps where a tow leaves the water.
 
     Parameters
     ----------
     k : index of the level
     off : depth range of the segment on the far side of the level [m]
     length : depth range of the segment [m]
+    share : allowed error relative to the flow [-]
     """
     return off > NEAR_A_LEVEL * length and sea.bends[k] * off * off > share * length
 
@@ -201,7 +204,7 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
     Parameters
     ----------
     intervals : intervals of the water; interval k begins at level k
-    bends : results for each level, from -inf to inf
+    bends : output, one value for each level from -inf to inf
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):
@@ -217,7 +220,7 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
 
 
 class Profile:
-    """Water profile prepared for the march, extended beyond its first and last level."""
+    """Water profile in the form used by the march, constant beyond its first and last level."""
 
     def __init__(self, water: Water) -> None:
         depths = water.level.tolist()
@@ -254,8 +257,9 @@ class Profile:
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """Return the additional buoyancy per displaced volume at a depth, relative to reference
-        water [N/m³].
+        """Return the additional buoyancy per displaced volume at a depth [N/m³].
+
+        It is relative to reference water.
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity
@@ -266,9 +270,7 @@ profile_of = once_per_input(Profile)
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:
-    """Return the value at the origin and the slope for every interval; the first and the last
-    interval have constant values.
-    """
+    """Return value at the origin and slope for every interval; the outer two are constant."""
     values = column.tolist()
     slopes = [
         (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]) for i in range(len(depths) - 1)

@@ -1,9 +1,8 @@
-"""Independent check of the march: load on every element of a shape, and moment balance of the
-element.
+"""Independent check of a march: load and moment balance of every element of a shape.
 
-All results follow from the coordinates. The lookup of the flow and the laws of drag and friction
-are independent implementations; only measured curves (stretch, drag, strumming) are shared with the
-march.
+All results follow from the recorded coordinates. The interpolation of the water and the laws of
+drag and friction are implemented independently of the march. Only measured curves (stretch, drag,
+strumming) are shared with it.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -34,7 +33,7 @@ class RefereeBody(NamedTuple):
     flexible, length, buoyancy, volume, normal_drag, tangential_drag, directional, compliance,
     thinning, lift, push_east, push_north, diameter : as in `Line`
     smooth, lengthening : diameter [m] and lengthening of its `DragCurve`; 0 without a curve
-    first_knot, end_knot : knots of its elongation curve; equal without a curve
+    first_knot, end_knot : range of the knots of its elongation curve; equal without a curve
     """
 
     flexible: int
@@ -57,10 +56,10 @@ class RefereeBody(NamedTuple):
 
 
 class Moored(NamedTuple):
-    """A line in its water: the pieces, followed by the clamps. The first `head` pieces form one
-    rod.
+    """A line and its water: properties of the pieces, followed by those of the clamps.
 
-    `friction` is the number of a law, and `frequency` is that of the strumming cables [Hz].
+    The first `head` pieces form one rod. `friction` is the number of a friction law, and
+    `frequency` is the frequency of strumming [Hz].
     """
 
     bodies: Sequence[RefereeBody]
@@ -85,7 +84,7 @@ class RefereeShape(NamedTuple):
 
     Attributes
     ----------
-    record : its nodes, and for each node the element that ends there, see `calm.physics.line`
+    record : the nodes, and for each node the element that ends there, see `calm.physics.line`
     nodes, hanging : numbers of nodes, and of elements above the touchdown
     first, last : first and last node of every piece
     """
@@ -110,7 +109,7 @@ def find_ends(shape: RefereeShape) -> None:
 def element_loads(
     moored: Moored, shape: RefereeShape, loads: Sequence[MutableSequence[float]]
 ) -> None:
-    """Write buoyancy and drag of every element to the columns of `loads` [N].
+    """Compute buoyancy, drag and wind force of every element, and write them to `loads` [N].
 
     The load of a rigid piece is computed at its midpoint and distributed over its elements by
     length.
@@ -159,8 +158,9 @@ def chord(shape: RefereeShape, top: int, bottom: int) -> Vector:
 
 
 def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
-    """Return the axis of a rigid piece's rod or, for a rod without length, the direction opposite
-    to the force at its ends.
+    """Return the axis of the rod to which a rigid piece belongs.
+
+    For a rod without length, this is the direction opposite to the mean of the forces at its ends.
     """
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
@@ -171,16 +171,14 @@ def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
 
 
 def rod_nodes(moored: Moored, shape: RefereeShape, piece: int) -> tuple[int, int]:
-    """Return the first and the last node of the rod that a rigid piece belongs to."""
+    """Return the first and the last node of the rod to which a rigid piece belongs."""
     if piece < moored.head:
         return shape.first[0], shape.last[moored.head - 1]
     return shape.first[piece], shape.last[piece]
 
 
 def flow_at(moored: Moored, depth: float) -> tuple[float, float, float, float]:
-    """Return current u, v, w [m/s] and density [kg/m³] at a depth [m], interpolated linearly
-    between levels.
-    """
+    """Interpolate current u, v, w [m/s] and density [kg/m³] linearly to a depth [m]."""
     level = moored.level
     low, high = 0, len(level) - 1
     while high - low > 1:
@@ -212,8 +210,9 @@ def drag_on(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the drag of a current on a body of axis t, unstretched and in reference water [N or
-    N/m].
+    """Return the drag of a current on a body of axis t, in reference water and without stretch.
+
+    It is in N, or for cables and chains in N/m.
     """
     along = u * tx + v * ty + w * tz
     if not body.directional:
@@ -242,8 +241,9 @@ def drag_on(
 
 
 def varied(moored: Moored, body: RefereeBody, depth: float, speed: float) -> float:
-    """Return the ratio of a body's drag to its drag with constant coefficients, at a speed normal
-    to its axis [m/s].
+    """Return the ratio of the drag of a body to its drag with constant coefficients.
+
+    `speed` is the speed of the current normal to the axis of the body [m/s].
     """
     if body.smooth == 0.0:
         return 1.0
@@ -262,7 +262,7 @@ def strumming(
 ) -> float:
     """Return the factor by which strumming increases the normal drag of a cable.
 
-    `across` is the speed of the current normal to its axis [m/s].
+    `across` is the speed of the current normal to the axis of the cable [m/s].
     """
     if across <= 0.0:
         return 1.0
@@ -275,14 +275,13 @@ def strumming(
 def worst_moment(
     moored: Moored, shape: RefereeShape, loads: Sequence[MutableSequence[float]]
 ) -> float:
-    """Return the largest angle between an element's axis and the mean of the forces at its ends
-    [rad].
+    """Return the largest angle between an element and the mean of the forces at its ends [rad].
 
-    The forces follow from the loads. The result also covers the deviation of a cable's strain from
-    the strain at these forces, if this is larger. Both are counted beyond the rounding of the
-    coordinates, for hanging elements only. Towards a slack end the tension vanishes, and the
-    direction becomes undetermined. There only the part of the normal force counts that exceeds the
-    rounding of the largest tension and the load left unconverged by the passes.
+    The forces are sums of the loads. If it is larger, the result is instead the difference between
+    the strain of a cable and the strain that these forces would cause. The rounding of the
+    coordinates is subtracted from both, and elements on the seabed are excluded. Towards a slack
+    end the tension vanishes, so its direction is undetermined. There, errors are subtracted that
+    correspond to the rounding of the largest tension and to the tolerance of the iterations.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging
@@ -322,8 +321,9 @@ def worst_moment(
 
 
 def greatest_size(shape: RefereeShape, first: int) -> float:
-    """Return the largest absolute coordinate [m] (if `first` is 0), or the largest force [N] (if
-    `first` is 3).
+    """Return the largest absolute coordinate [m], or the largest force [N].
+
+    `first` is 0 for coordinates and 3 for forces.
     """
     greatest = 0.0
     for n in range(shape.nodes):
@@ -336,8 +336,9 @@ def greatest_size(shape: RefereeShape, first: int) -> float:
 
 
 def expected_strain(moored: Moored, body: RefereeBody, middle: float, half: float) -> float:
-    """Return the mean strain of a segment whose tension varies linearly from `middle` - `half` to
-    `middle` + `half` [N].
+    """Return the mean strain of a segment.
+
+    The tension varies linearly by ± `half` about `middle` [N].
     """
     if body.first_knot == body.end_knot:
         return body.compliance * middle
@@ -355,7 +356,7 @@ def rod_moment(
 ) -> float:
     """Return the angle between a rod of several elements and the force that rotates it [rad].
 
-    This is the force above the rod plus the share of every load given by its lever.
+    This force is the sum of the force above the rod and of the loads on it, each times its lever.
     """
     dx, dy, dz = chord(shape, top, bottom)
     length = sqrt(dx * dx + dy * dy + dz * dz)
@@ -375,7 +376,7 @@ def rod_moment(
 
 
 def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
-    """Return the angle between an axis and a reversed force [rad]; 0 if either vanishes."""
+    """Return the angle between an axis and the opposite of a force [rad]; 0 if either vanishes."""
     cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
     across = sqrt(cx * cx + cy * cy + cz * cz)
     along = -(x * fx + y * fy + z * fz)

@@ -49,26 +49,28 @@ def cylinder_coefficient(reynolds: float) -> float:
 
     Parameters
     ----------
-    reynolds : |Vn| D/ν [-]; held below 3.18, where drag no longer matters, and above 4.94e6
+    reynolds : |Vn| D/ν [-]; the coefficient is constant below 3.18, where drag no longer matters,
+        and above 4.94e6
 
-    Wieselsberger's measurements (NACA report 121) up to 1.61e5, where Cn is 1.18, DNV's
-    recommendation (DNV-RP-C205, figure 6-6, smooth) from 2.1e5, where it is 1.21, joined linearly
-    in log Re. From 3e4 to 1.61e5 the measurements lie 2 to 4 % below the recommendation. In the
-    crisis the recommendation falls later, on the safe side, and extends to higher Re, so it is used
-    there. Roshko (1961) found 0.7 above 3.5e6, compared with 0.65 to 0.68 here.
+    Up to 1.61e5, where Cn is 1.18, the curve is Wieselsberger's measurements (NACA report 121).
+    From 2.1e5, where Cn is 1.21, it is DNV's recommendation (DNV-RP-C205, figure 6-6, smooth).
+    Between them it is linear in log Re. From 3e4 to 1.61e5 the measurements lie 2 to 4 % below the
+    recommendation. In the drag crisis the recommendation falls later, which is on the safe side,
+    and extends to higher Re. Roshko (1961) found 0.7 above 3.5e6, compared with 0.65 to 0.68 here.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
 
 def sphere_coefficient(reynolds: float) -> float:
-    """Return the coefficient Cx of a smooth sphere.
+    """Return the drag coefficient Cx of a smooth sphere.
 
     Parameters
     ----------
-    reynolds : |V| D/ν [-], up to 1e6; held above it, and below 0.1, where drag no longer matters
+    reynolds : |V| D/ν [-]; the coefficient is constant above 1e6, and below 0.1, where drag no
+        longer matters
 
-    Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan
-    Technological University, 2016), whose author advises Re < 1e6.
+    Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan Technological
+    University, 2016), whose author advises Re < 1e6.
     """
     re = min(max(reynolds, _CREEPING), LARGEST_SPHERE)
     intermediate, crisis, beyond = re / 5.0, re / 2.63e5, re / 1e6
@@ -84,11 +86,11 @@ def sphere_coefficient(reynolds: float) -> float:
 
 
 class Smooth(NamedTuple):
-    """Properties of a smooth sphere or cylinder, and of the water, that determine its drag.
+    """Properties of a smooth sphere or cylinder in water that determine its drag.
 
     Attributes
     ----------
-    reynolds : its Reynolds number at 1 m/s [-]
+    reynolds : Reynolds number at 1 m/s [-]
     lengthening : for a cylinder, κ(L/D) above the crisis divided by κ below it; 0 for a sphere
     """
 
@@ -97,10 +99,10 @@ class Smooth(NamedTuple):
 
 
 def drag_variation(smooth: Smooth, speed: float) -> float:
-    """Return the ratio of the drag at a speed normal to the axis [m/s] to the drag with the
-    constant coefficient.
+    """Return the ratio of the drag at a speed to the drag with the constant coefficient.
 
-    The constant coefficient is Cx = 0.5 for a sphere and Cn = 1.2 κ for a cylinder.
+    The speed is normal to the axis [m/s]. The constant coefficient is Cx = 0.5 for a sphere and Cn
+    = 1.2 κ for a cylinder.
     """
     reynolds = smooth.reynolds * speed
     if smooth.lengthening == 0.0:
@@ -117,20 +119,19 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
 def varying_share(
     ax: float, ay: float, az: float, k: float, smooth: Smooth, vx: float, vy: float, vz: float
 ) -> float:
-    """Return `drag_share` for a smooth element, whose coefficient varies with the speed normal to
-    its axis.
+    """Return `drag_share` for a smooth element, whose drag coefficient depends on the normal speed.
 
     Parameters
     ----------
-    k : half its normal drag coefficient for f = 1 [N/(m/s)²]
+    k : half the normal drag coefficient of the element for f = 1 [N/(m/s)²]
     smooth : body for which `drag_variation` gives f > 0, a continuous function of |Vn| [m/s]
 
     Returns
     -------
-    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|; roots
+    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|. Roots
     less than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes
-    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. The
-    smallest root, with more drag, is the one reached when the current grows from rest.
+    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. It
+    takes the smallest root, which has more drag, when the current grows from rest.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -166,7 +167,6 @@ def varying_share(
 def _turned(
     ax: float, ay: float, az: float, k: float, s: float, vx: float, vy: float, vz: float
 ) -> float:
-    """Return the left-hand side of the equation at k and s: s |A + k s V|."""
     c = k * s
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     return s * sqrt(x * x + y * y + z * z)
@@ -191,16 +191,12 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Return the ratio of the drag at a Reynolds number to the drag with the constant
-        coefficient (see `drag_variation`).
-        """
+        """Return the ratio of the drag at a Reynolds number to that of the constant coefficient."""
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property
     def lengthening(self) -> float:
-        """Ratio of the length factor κ above the drag crisis to κ below the crisis (see
-        `Smooth`).
-        """
+        """Ratio of the length factor κ above the drag crisis to κ below the crisis."""
         if self.slenderness is None:
             return 0.0
         below = finite_length_factor(self.slenderness)
@@ -208,15 +204,16 @@ class DragCurve:
 
 
 def finite_length_factor_above(slenderness: float) -> float:
-    """Return the length factor κ above the drag crisis, from Re = 2.2e5
-    (`drag.finite_length_factor` applies up to 1.8e5).
+    """Return the length factor κ of a cylinder above the drag crisis, from Re = 2.2e5.
+
+    `drag.finite_length_factor` applies up to Re = 1.8e5. κ is linear in the logarithm of L/D
+    between the points of a table, and constant below 2 and above 100.
 
     Parameters
     ----------
-    slenderness : length over diameter [-]; linear in its logarithm between the table's points,
-        constant below 2 and above 100
+    slenderness : length over diameter L/D [-]
 
-    Source: DNV-RP-C205, table 6-2, whose columns change at 2e5. Between the two κ is linear in
-    log Re here, so that drag has no step.
+    Source: DNV-RP-C205, table 6-2, whose columns change at Re = 2e5. Here κ is linear in log Re
+    between 1.8e5 and 2.2e5, so that the drag has no step.
     """
     return interpolated(_KAPPA_AT, _KAPPA, log(max(slenderness, 1.0)))

@@ -1,5 +1,6 @@
-"""March along a rigid body in moment equilibrium: a piece with its clamps, or the rigid pieces at
-the head of the line.
+"""Integration (march) along a rigid body in moment equilibrium.
+
+The body is a piece with its clamps, or all rigid pieces at the head of the line.
 """
 
 from collections.abc import Sequence
@@ -32,7 +33,7 @@ def pass_clamp(
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
-    """March past an instrument clamped on a cable (see `pass_rod`)."""
+    """Integrate past an instrument clamped on a cable; the results are as in `pass_rod`."""
     x, y, z, fx, fy, fz, tz, level = state
     qx, qy, qz = force_at(load, sea, -z, level, 0.0, 0.0, -1.0)
     sx, sy, sz, hanging = fx + qx, fy + qy, fz + qz, -1.0
@@ -58,20 +59,20 @@ def pass_rod(
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
-    """March along a rod from its top to its bottom.
+    """Integrate along a rod from its top to its bottom.
 
     Parameters
     ----------
-    lands : whether the seabed, `bed`, supports loads that the line cannot carry: at the rod's lower
-        end, or along the whole rod if it would tip over
+    lands : whether the seabed `bed` supports loads that the line cannot carry: at the lower end of
+        the rod, or along the whole rod if it would tip over
     near : as in `rod_axis`
-    record, recording, nodes : array for the record, whether to record, and the number of nodes so
-        far
+    record, recording, nodes : output of nodes and elements, whether to record, and the number of
+        nodes so far
 
     Returns
     -------
-    The state, its rise `NO_BALANCE` if the rod has no balance; 0 if the rod lies on the seabed, inf
-    if it stands on the seabed, else -1; and the number of nodes.
+    The state, with `NO_BALANCE` as last axis if the rod has no balance; 0 if the rod lies on the
+    seabed, inf if it stands on the seabed, else -1; and the number of nodes.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)
@@ -97,11 +98,10 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Return the depth of the free end at which a length `out` of the head is above the surface
-    [m].
+    """Return the depth of the free end if a length `out` of the head is above the surface [m].
 
-    The inclination of the head follows from its loads, which depend slightly on its depth. The head
-    is upright if it has no balance.
+    The head is the rigid body at the free end. Its inclination follows from its loads, which depend
+    slightly on its depth. It is upright if it has no balance.
     """
     depth = -out
     for _ in range(_LEANINGS):
@@ -126,10 +126,10 @@ def _record(
     record: Record,
     nodes: int,
 ) -> int:
-    """Record a rod piece by piece. The load of a piece is distributed along the piece; the load of
-    a clamp is concentrated.
+    """Record a rod piece by piece.
 
-    The loads of a rod are listed downwards: for every piece its own load, then its clamps.
+    The load of a piece is distributed along the piece, the load of a clamp acts at a point. The
+    loads of a rod are listed downwards: for every piece its own load, then the loads of its clamps.
     """
     x, y, top, fx, fy, fz, _, level = state
     z = top

@@ -1,6 +1,4 @@
-"""Inclination of a rigid body under the forces of the water on it and its clamps: the axis at which
-the moment about its midpoint vanishes.
-"""
+"""Inclination of a rigid body: axis at which the forces on it have no moment about its midpoint."""
 
 from collections.abc import Sequence
 from math import inf, sqrt
@@ -19,21 +17,23 @@ _NOTHING = 1e-12
 
 
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
-    """Compute the axis at which the moments about the rod's midpoint vanish.
+    """Compute the axis at which the moments about the midpoint of a rod vanish.
 
-    t ∥ F + Σ (1 - a_i/L) q_i. The normal drags are combined into one current and one coefficient
-    that reproduce their sum at the present axis, so each pass solves a single element exactly,
-    including its drag curve, and only shear along the rod is left to the passes. If several drags
-    follow curves, these are left to the passes, too.
+    The axis t is parallel to F + Σ (1 - a_i/L) q_i, with the force F above the rod, and the loads
+    q_i at distances a_i from its top. Since the drags depend on t, the equation is solved
+    repeatedly. The normal drags are combined into one current and one coefficient that give their
+    sum at the present axis. Each iteration then solves a single element exactly, including its drag
+    curve; only the change of the flow along the rod, and the curves if there are several, need
+    further iterations.
 
     Parameters
     ----------
-    near : allowed distance between a load and its water sample [m]; 0 requires full
-        precision
+    near : allowed distance between a load and the depth at which the water is sampled [m]; 0
+        requires full precision
 
     Returns
     -------
-    The axis; its rise is `NO_BALANCE` if there is none.
+    The unit axis; its vertical component is `NO_BALANCE` if there is no such axis.
     """
     _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
@@ -68,10 +68,10 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: fl
 def lone_axis(
     load: Load, sea: Sea, state: State, tx: float, ty: float, tz: float, settled: float
 ) -> Vector:
-    """Return the axis of a rod with a single load of constant drag, by a short iteration from an
-    initial axis.
+    """Return the axis of a rod with a single load of constant drag, by a short iteration.
 
-    Its rise is `NO_BALANCE` if the passes do not converge.
+    The iteration starts at the axis t. The vertical component of the result is `NO_BALANCE` if it
+    does not converge.
     """
     _, _, z, fx, fy, fz, _, level = state
     for _ in range(_FEW):
@@ -94,15 +94,13 @@ def lone_axis(
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
-    """Return the axis of a rod in water that changes too much along the rod for `rod_axis` to
-    converge.
+    """Return the axis of a rod if `rod_axis` does not converge because the water varies too much.
 
-    The depths of the loads, and thus the water, follow from the rise of the axis alone. For the
-    water at a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s falls
-    through zero in between, which is found by bisection. If r jumps there, as for a float without
-    net buoyancy at the upper edge of a current, the moment on the rod vanishes.
-
-    If the moment does not vanish, the rise is `NO_BALANCE`.
+    The depths of the loads, and so the water at them, depend only on the vertical component
+    ("rise") of the axis. In the water for a rise s, the axis in balance has a rise r(s) between -1
+    and 1, so r(s) - s changes sign; the root is found by bisection. At a jump of r, as for a float
+    without net buoyancy at the upper edge of a current, the bisection ends at the jump, where the
+    moment on the rod may vanish. If it does not, the rise is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -133,9 +131,7 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the axis in moment balance, with the water at the depths that the loads have for a
-    given rise of the rod.
-    """
+    """Return the axis in moment balance, in the water at the depths that follow from a `rise`."""
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
@@ -156,9 +152,7 @@ def _axis_in_water_at(
 def _turning(
     rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the force that rotates a rod of axis t about its midpoint, as a fraction of its lift
-    and drag forces.
-    """
+    """Return the force that rotates a rod of axis t, as a fraction of its buoyancy and drag."""
     _, _, z, fx, fy, fz, _, level = state
     own = 0.0
     for i in range(rod.first, rod.first + rod.size):
@@ -179,9 +173,10 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the axis of a rod whose drags are combined at another axis t (see `rod_axis`).
+    """Return the next iterate of the axis of a rod.
 
-    The water is sampled at the positions of the loads for a `rise`.
+    Drags are combined at the axis t, see `rod_axis`. The water is sampled at the depths that the
+    loads have for a given `rise`.
     """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
@@ -235,8 +230,9 @@ def _following_axis(
 
 @within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
-    """Return the buoyancy of a rigid piece or clamp, plus its lift in a current of given squared
-    speed [N].
+    """Return buoyancy plus lift of a rigid piece or clamp [N].
+
+    `squared` is the square of the current speed.
     """
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
     return lift + density / REFERENCE_DENSITY * load.lift * squared
@@ -255,11 +251,13 @@ def load_force(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the buoyancy, drag, lift and wind force on a rigid piece or clamp of axis t [N].
+    """Return the force on a rigid piece or clamp of axis t [N].
+
+    It is the sum of buoyancy, drag, lift and wind force.
 
     Parameters
     ----------
-    varied : ratio of its normal drag to the constant normal drag, see `load_variation`
+    varied : ratio of the normal drag to that with constant coefficients, see `load_variation`
     """
     scale, squared = density / REFERENCE_DENSITY, u * u + v * v + w * w
     kn = varied * scale * load.normal_drag
@@ -275,8 +273,9 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the ratio of the normal drag on a load of axis t to its normal drag with constant
-    coefficients, for a viscosity [m²/s].
+    """Return the ratio of the normal drag on a load of axis t to that with constant coefficients.
+
+    The viscosity is in m²/s.
     """
     if load.diameter == 0.0:
         return 1.0
@@ -290,9 +289,7 @@ def load_variation(
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return `load_force` at a depth [m] of the sea; the search for the depth starts at interval
-    `level`.
-    """
+    """Return `load_force` at a depth [m]; the search for the water starts at interval `level`."""
     u, v, w, density, _ = water_at(sea, depth, level)
     varied = 1.0
     if load.diameter > 0.0:
@@ -301,6 +298,6 @@ def force_at(
 
 
 def speed_across(u: float, v: float, w: float, tx: float, ty: float, tz: float) -> float:
-    """Return |V × t| [m/s]."""
+    """Return the speed |V × t| of a current V normal to a unit axis t [m/s]."""
     cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
     return sqrt(cx * cx + cy * cy + cz * cz)

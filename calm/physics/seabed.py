@@ -29,21 +29,24 @@ def lay_line(
     recording: bool,
     nodes: int,
 ) -> tuple[State, int, float]:
-    """Lay a line on the seabed from its touchdown to the anchor, and return the state at its end,
-    the number of nodes, and the length on the seabed [m].
+    """Lay a line on the seabed from its touchdown to the anchor.
 
-    The line is straight, along the force at the touchdown, in the plane of the seabed. Down the
-    line its tension falls by friction times the contact force, and by the downslope component of
-    the weight, or grows if the line leads upslope; it is never negative. There is no drag. A slack
-    line lies across the slope. A rigid piece or a clamp that the line at the touchdown could not
-    carry rests on the seabed at a point.
+    The line is straight, in the plane of the seabed, in the direction of the force at the
+    touchdown. Down the line, its tension decreases by friction and by the downslope component of
+    the weight, or increases by the weight if the line leads upslope; it is never negative. There is
+    no drag. A slack line lies across the slope. A rigid piece or a clamp at the touchdown that the
+    line could not carry rests on the seabed at a point.
 
     Parameters
     ----------
-    stage, hanging : stage of the touchdown, and its unstretched length above the seabed
-        [m]; for a rod or clamp inf if it stands on the seabed, 0 if it lies there
-    record, recording, nodes : array for the record, whether to record, and the number of nodes so
-        far
+    stage, hanging : stage of the touchdown, and its unstretched length above the seabed [m]; for a
+        rod or clamp inf if it stands on the seabed, 0 if it lies there
+    record, recording, nodes : output of nodes and elements, whether to record, and the number of
+        nodes so far
+
+    Returns
+    -------
+    The state at the end of the line, the number of nodes, and the length on the seabed [m].
     """
     x, y, z, fx, fy, fz, tz, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -102,8 +105,9 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a part along which the tension acts against friction up to `hold`, and
-    the tension at the end of the part [N].
+    """Return the fraction of a part of a line under tension, and the tension at its end [N].
+
+    Friction and slope would reduce the tension by `hold` along the whole part [N].
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -113,8 +117,10 @@ def held_back(tension: float, hold: float) -> tuple[float, float]:
 def lying_strain(
     cable: CableStretch, knots: Sequence[Knot], pulled: float, tension: float, left: float
 ) -> float:
-    """Return the mean strain of a part whose tension decreases linearly over a fraction `pulled` of
-    its length.
+    """Return the mean strain of a part of a line on the seabed.
+
+    Its tension decreases linearly from `tension` to `left` [N] over the fraction `pulled` of its
+    length, and is zero beyond.
     """
     middle = 0.5 * (tension + left)
     if cable.first_knot == cable.end_knot:
@@ -132,15 +138,15 @@ def required_weight(
 ) -> Forces:
     """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
+    The rule is W ≥ factor (V + H / friction), as in Dewey's Mooring Design & Dynamics and at WHOI.
     The weight is never negative: an anchor that the line presses on the seabed needs no weight.
 
     Parameters
     ----------
-    vertical, horizontal : load of the line on the anchor [N], positive up; floats or arrays
+    vertical, horizontal : components V, positive up, and H of the load of the line on the anchor
+        [N]; floats or arrays
     factor : safety factor against lifting and sliding [-], typically 1.5
     friction : friction coefficient between anchor and seabed [-], typically 0.6
-
-    W ≥ factor (V + H / friction): the rule of Dewey's Mooring Design & Dynamics and of WHOI.
     """
     needed: Forces = np.maximum(factor * (vertical + horizontal / friction), 0.0)
     return needed
@@ -153,12 +159,12 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Return the relative difference between the sum of the loads and the force at the line's end.
+    """Return the relative difference between the sum of the loads and the force at the end.
 
     If the line has a part on the seabed, the loads above its touchdown must leave no force normal
-    to the seabed, except for a downward force at a rigid piece or clamp that stands there, and an
-    upward force that is less than the weight of a rigid piece that lies there. Friction and the
-    downslope component of the weight reduce the remaining force.
+    to the seabed. Exceptions are a downward force at a rigid piece or clamp that stands on the
+    seabed, and an upward force less than the weight of a rigid piece that lies there. Friction and
+    the downslope component of the weight reduce the remaining force.
 
     Parameters
     ----------
@@ -191,9 +197,7 @@ def closure(
 
 
 def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
-    """Return whether an element can rest on the seabed at a point, as a rigid piece or a
-    clamp can.
-    """
+    """True if an element is a rigid piece or a clamp, which can rest on the seabed at a point."""
     if element >= shape.nodes - 1:
         return False
     piece = int(shape.record[6][element + 1])

@@ -1,7 +1,7 @@
-"""Properties of sea water, and gravity: density by TEOS-10, viscosity by Sharqawy, gravity by
-latitude.
+"""Properties of sea water, and gravity.
 
-Positions are geographic, in degrees north and east, as in TEOS-10.
+Density follows from TEOS-10, viscosity from Sharqawy, and gravity from the latitude. Positions are
+geographic, in degrees north and east, as in TEOS-10.
 """
 
 from __future__ import annotations
@@ -29,14 +29,13 @@ SOUTHERNMOST = -86.0
 def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np.float64]:
     """Return the dynamic viscosity of sea water [Pa s].
 
+    The formula holds at atmospheric pressure, to 1.5 %. The pressure of the deep sea changes the
+    viscosity by at most a few percent.
+
     Parameters
     ----------
     temperature : (...) in situ [°C], 0 to 180
-    salinity : (...) [g/kg], 0 to 150; a practical salinity, which is 0.5 % less, may be used
-        instead
-
-    Valid at atmospheric pressure, to 1.5 %; the pressure of the deep sea changes it by at most a
-    few percent.
+    salinity : (...) [g/kg], 0 to 150; practical salinity, which is 0.5 % less, may be used instead
 
     Source: Sharqawy, Lienhard & Zubair (2010), Desalination and Water Treatment 16, 354-380,
     equations 22 and 23.
@@ -52,8 +51,12 @@ def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np
 def kinematic_viscosity(
     temperature: ArrayLike, salinity: ArrayLike, density: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return the kinematic viscosity of sea water [m²/s], from temperature [°C], salinity and
-    density [kg/m³].
+    """Return the kinematic viscosity of sea water [m²/s].
+
+    Parameters
+    ----------
+    temperature, salinity : as in `dynamic_viscosity`
+    density : (...) density [kg/m³]
     """
     viscosity: NDArray[np.float64] = dynamic_viscosity(temperature, salinity) / np.asarray(
         density, dtype=float
@@ -64,7 +67,7 @@ def kinematic_viscosity(
 def gravity(latitude: float) -> float:
     """Return the acceleration of gravity at the sea surface [m/s²] for a latitude [degrees].
 
-    The increase of gravity by 0.011 m/s² down to 5000 m is neglected.
+    Gravity increases with depth by 0.011 m/s² down to 5000 m; this is neglected.
 
     Source: the international gravity formula as adopted in TEOS-10, to 1e-6 m/s².
     """
@@ -87,8 +90,8 @@ def density(
     salinity : (...) practical [-]
     depth : (...) depth below the surface [m]
     latitude : latitude [degrees]
-    longitude : [degrees]; without longitude, and far inland, the reference composition is assumed,
-        whose density is off by less than 0.03 kg/m³ in the open ocean
+    longitude : longitude [degrees]; without it, and far inland, sea water of reference composition
+        is assumed, which changes the density in the open ocean by less than 0.03 kg/m³
 
     Returns
     -------
@@ -110,8 +113,9 @@ def density(
 def potential_density(
     temperature: ArrayLike, salinity: ArrayLike, depth: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return the density of water raised adiabatically to the surface [kg/m³], which in stable
-    water does not decrease with depth.
+    """Return the density of water that is raised adiabatically to the surface [kg/m³].
+
+    In stable water, this density does not decrease with depth.
 
     Parameters
     ----------
@@ -127,9 +131,7 @@ def potential_density(
 
 
 def pressure_at(depth: ArrayLike, latitude: float) -> NDArray[np.float64]:
-    """Return the pressure in the sea [dbar] at depths [m] and a latitude [degrees], from
-    TEOS-10.
-    """
+    """Return the pressure in the sea [dbar] at depths [m] and a latitude [degrees], by TEOS-10."""
     import gsw
 
     return np.asarray(gsw.p_from_z(-np.asarray(depth, dtype=float), latitude), dtype=float)
@@ -148,10 +150,10 @@ def absolute_density(
     absolute_salinity : (...) [g/kg]
     conservative_temperature : (...) [°C]
     depth : (...) depth below the surface [m]
-    latitude : [degrees]
+    latitude : latitude [degrees]
 
-    Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression
-    of Roquet et al. (2015), Ocean Modelling 90, 29-43, by way of the library gsw.
+    Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression of
+    Roquet et al. (2015), Ocean Modelling 90, 29-43, by way of the library gsw.
     """
     import gsw
 

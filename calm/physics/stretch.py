@@ -14,8 +14,7 @@ _GAUSS = sqrt(1.0 / 3.0)
 
 
 class Knot(NamedTuple):
-    """A point of an elongation curve: its tension [N], and the strain above it as a cubic
-    polynomial.
+    """A point of an elongation curve, and a cubic polynomial for the strain above it.
 
     The strain is a + x (b + x (c + x d)) at x newtons above the tension of the point.
     """
@@ -28,10 +27,10 @@ class Knot(NamedTuple):
 
 
 def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
-    """Return the strain of a rope at a tension ≥ 0 [N], from the knots `first` to `end` of its
-    curve [-].
+    """Return the strain of a rope at a tension ≥ 0 [N].
 
-    Monotone cubic interpolation, with linear extrapolation above the last knot.
+    `first` and `end` are the range of the knots of its curve. Monotone cubic interpolation, with
+    linear extrapolation above the last knot.
     """
     knot = knots[_knots_below(knots, first + 1, end, tension) - 1]
     x = tension - knot.tension
@@ -41,8 +40,7 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Return the mean strain for a tension that varies linearly from `tension` - `half` to
-    `tension` + `half` [-].
+    """Return the mean strain if the tension varies linearly by ± `half` about `tension` [N].
 
     Two Gauss points between each pair of knots in the range make this exact.
     """
@@ -66,7 +64,7 @@ def _gauss(knots: Sequence[Knot], first: int, end: int, middle: float, half: flo
 
 
 def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) -> int:
-    """Return the index of the first knot above a tension; the search starts at `first`."""
+    """Return the index of the first knot above a tension, searching from knot `first`."""
     while first < end and knots[first].tension <= tension:
         first += 1
     return first
@@ -81,7 +79,7 @@ class ElongationCurve:
 
     Parameters
     ----------
-    points : (load / breaking load [-], strain [-]) in order of increasing load, up to 1; (0, 0) is
+    points : pairs (load / breaking load [-], strain [-]) by increasing load, up to 1; (0, 0) is
         added if the table does not begin with it
     breaking_load : breaking load [N]
     permanent : permanent elongation after the first loading [-], added at every tension
@@ -91,7 +89,7 @@ class ElongationCurve:
     tensions, strains : points of the table, starting with (0, 0) [N], [-]
     breaking_load, permanent : as given [N], [-]
     knots : the curve in the form used by the march, including permanent elongation
-    limit : tension above which results need a warning [N]: that of the last point, and at
+    limit : tension above which results need a warning [N]: the tension of the last point, but at
         most 80 % of the breaking load
 
     Raises
@@ -100,8 +98,8 @@ class ElongationCurve:
         Loads do not increase, strains decrease, there is a strain without load or a load above the
         breaking load, or values are negative or not finite.
 
-    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the
-    slopes at the points.
+    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the slopes
+    at the points.
     """
 
     __slots__ = ("breaking_load", "knots", "limit", "permanent", "strains", "tensions")
@@ -139,7 +137,7 @@ class ElongationCurve:
 
 
 def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:
-    """Return the loads and strains of a table after validation, starting with (0, 0)."""
+    """Validate a table, and return its loads and strains, starting with (0, 0)."""
     loads, strains = [0.0], [0.0]
     for number, (load, strain) in enumerate(points, start=1):
         if not (isfinite(load) and isfinite(strain)):
@@ -162,8 +160,9 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
 
 
 def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float, float]]:
-    """Return the coefficients of y in powers of x - xs[i], for every interval and for the straight
-    line beyond the last point.
+    """Return the coefficients of y in powers of x - xs[i] for every interval.
+
+    The last ones apply beyond the last point.
     """
     widths = [b - a for a, b in pairwise(xs)]
     chords = [(b - a) / h for (a, b), h in zip(pairwise(ys), widths, strict=True)]
@@ -177,9 +176,7 @@ def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float,
 
 
 def _slopes(widths: list[float], chords: list[float]) -> list[float]:
-    """Return the slope at every point: a weighted harmonic mean, at both ends the slope of a
-    parabola.
-    """
+    """Return the slope at every point: a weighted harmonic mean; at the ends that of a parabola."""
     if len(chords) == 1:
         return [chords[0], chords[0]]
     slopes = [_end_slope(widths[0], widths[1], chords[0], chords[1])]

@@ -2,7 +2,8 @@
 
 Amplitudes A are single amplitudes relative to the diameter, A/D [-]; angles are in radians. A long
 line has a mode near every frequency, so it is assumed to strum wherever it sheds vortices. In a
-sheared current, with attachments or fairing, it strums less; these factors are upper limits.
+sheared current, or with attachments or fairing, it strums less; the factors given here are upper
+limits.
 """
 
 from collections.abc import Callable, Mapping
@@ -47,17 +48,21 @@ def reduced_damping(
     mass : mass per metre of line [kg/m]
     diameter : diameter of the line [m]
     density : density of the water [kg/m³]
-    damping : ζ, structural damping over critical [-]
+    damping : ζ, structural damping as a fraction of critical damping [-]
     """
     return 8.0 * pi**2 * strouhal**2 * mass * damping / (density * diameter**2)
 
 
 def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
-    """Return the amplitude ratio A/D at resonance from the reduced damping S_G: 0.645 γ/(1 + 0.43
-    S_G)^3.35.
+    """Return the amplitude ratio A/D at resonance, 0.645 γ/(1 + 0.43 S_G)^3.35.
 
-    Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, who give
-    the double amplitude, 1.29 γ.
+    Parameters
+    ----------
+    damping : reduced damping S_G [-]
+    mode : mode factor γ [-]
+
+    Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, who give the
+    double amplitude, 1.29 γ.
     """
     return 0.645 * mode * pow(1.0 + 0.43 * damping, -3.35)
 
@@ -65,25 +70,26 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
 def line_amplitude(
     mass: float, diameter: float, density: float, damping: float = STRUCTURAL_DAMPING
 ) -> float:
-    """Return the amplitude ratio A/D of a strumming mooring line, from `griffin_skop` with the mode
-    factor of a cable.
+    """Return the amplitude ratio A/D of a strumming line.
+
+    It is that of `griffin_skop` with the mode factor of a cable. The result does not depend on the
+    current: at any speed, some mode of a long line is excited. Values for ropes and wires in water
+    are between 0.68 and 0.74.
 
     Parameters
     ----------
     mass : mass per metre of line [kg/m]
     diameter : diameter of the line [m]
     density : density of the water [kg/m³]
-    damping : ζ, structural damping over critical [-]
-
-    The result does not depend on the current: at any speed, some mode of a long line is excited.
-    Values for ropes and wires in water are between 0.68 and 0.74.
+    damping : ζ, structural damping as a fraction of critical damping [-]
     """
     return griffin_skop(reduced_damping(mass, diameter, density, damping))
 
 
 def vandiver(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn at rest, by Vandiver: 1 + 1.043 (2
-    Y_rms/D)^0.65, Y_rms = A/√2.
+    """Return the ratio of Cn of a strumming line to Cn at rest, by Vandiver.
+
+    The formula is 1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2.
 
     Source: Vandiver (1983), Offshore Technology Conference, paper 4490.
     """
@@ -91,11 +97,10 @@ def vandiver(amplitude: float) -> float:
 
 
 def blevins(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn at rest, by Blevins: 1 + 2.1 A/D, constant
-    above A/D = 1.
+    """Return the ratio of Cn of a strumming line to Cn at rest, by Blevins: 1 + 2.1 A/D.
 
-    Above this limit, the straight line exceeds the values measured on cables: Cn of 2.4 to 3.2, 2.0
-    to 2.7 times that at rest (Griffin et al. 1984).
+    It is constant above A/D = 1, where the formula would exceed the values measured on cables: Cn
+    of 2.4 to 3.2, which is 2.0 to 2.7 times Cn at rest (Griffin et al. 1984).
 
     Source: Blevins (1990), Flow-Induced Vibration, second edition.
     """
@@ -103,11 +108,12 @@ def blevins(amplitude: float) -> float:
 
 
 def skop_griffin(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn at rest, by Skop & Griffin: 1 + 1.16 (w_r -
-    1)^0.65, w_r = 1 + 2 A/D.
+    """Return the ratio of Cn of a strumming line to Cn at rest, by Skop & Griffin.
 
-    Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884, at resonance
-    (reduced speed times Strouhal number equal to 1).
+    The formula is 1 + 1.16 (w_r - 1)^0.65 with w_r = 1 + 2 A/D, at resonance (reduced speed times
+    Strouhal number equal to 1).
+
+    Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884.
     """
     return 1.0 + 1.16 * pow(2.0 * amplitude, 0.65)
 
@@ -119,16 +125,15 @@ AMPLIFICATIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 
 
 def drag_factor(ratio: float) -> float:
-    """Return the ratio of the drag of a vibrating cylinder to its drag at rest, by the power
-    balance of Bourget & Marichal.
+    """Return the ratio of the drag of a vibrating cylinder to its drag at rest.
+
+    It follows from the power balance of Bourget & Marichal: f(λ) = (1/π) ∫₀^π (1 + λ² cos²θ)^{3/2}
+    dθ = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²), evaluated by
+    arithmetic-geometric means. (The paper prints 2/π, which would give f(0) = 2.)
 
     Parameters
     ----------
     ratio : λ, maximum speed of the vibration over the speed of the current normal to the line [-]
-
-    f(λ) = (1/π) ∫₀^π (1 + λ² cos²θ)^{3/2} dθ = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)],
-    m = λ²/(1 + λ²), by arithmetic-geometric means. (The paper prints 2/π, which would give
-    f(0) = 2.)
     """
     square = ratio * ratio
     # K = π/(2 agm), E = K (1 - Σ 2^(n-1) c_n²), from a = 1, b = √(1 - m), c² = m
@@ -150,9 +155,9 @@ class Vibration(NamedTuple):
     ----------
     a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees
     greatest : largest factor on the cable's Cn at rest [-]
-    beat : F D/|V|, the dimensionless frequency of the cable from its diameter and the local speed
-        [-]; 0.166 sin φ_n in a uniform flow of any speed. For a line it is F [Hz], and for one of
-        its cables F D [m/s]
+    beat : dimensionless frequency F D/|V| of the cable at the local speed |V| [-], which is 0.166
+        sin φ_n in a uniform flow of any speed. Before diameter and speed are known, it holds F [Hz]
+        for a line, and F D [m/s] for one of its cables
     """
 
     a1: float
@@ -179,18 +184,16 @@ def amplitude(vibration: Vibration, angle: float) -> float:
 
 
 def strummed(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to its maximum, from the
-    sine of the angle φ between cable and flow.
+    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to its maximum.
 
-    λ = 2π (a/D) F D/(|V| sin φ). For flow along the cable the factor is the maximum.
+    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow, and `across` is sin
+    φ. For flow along the cable the ratio is the maximum.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio f(λ) of a strumming cable without its limit, but at most twice this
-    limit.
-    """
+    """Return the drag ratio as `strummed`, but limited only to twice the maximum."""
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:
@@ -202,14 +205,13 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """Return `drag_share` for a strumming cable, whose coefficient k f(sin φ) grows with its angle
-    φ to the flow.
+    """Return `drag_share` for a strumming cable, whose Cn depends on its angle to the flow.
 
     Parameters
     ----------
-    k : half its normal drag coefficient at rest [N/(m/s)²]
-    vibration : law for which `strummed` gives f ≥ 1, decreasing with the sine of the angle φ
-        between axis and current
+    k : half the normal drag coefficient at rest [N/(m/s)²]
+    vibration : law for which `strummed` gives a factor f ≥ 1, which decreases as the sine of the
+        angle between axis and current grows
 
     Returns
     -------
@@ -248,26 +250,28 @@ def amplified_share(
 def _leaning(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float, flat: float
 ) -> float:
-    """Return the sine of the angle between A + c V and V, from |A × V|/|V|."""
+    """Return the sine of the angle between A + c V and V; `flat` is |A × V|/|V|."""
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     return min(flat / sqrt(x * x + y * y + z * z), 1.0)
 
 
 @dataclass(frozen=True)
 class BourgetMarichal:
-    """Strumming law of a towed cable: the speed of the ship determines the frequency, the local
-    angle determines the amplitude.
+    """Strumming law of a towed cable.
+
+    The speed of the ship determines the frequency of the vibration, and the local angle φ between
+    cable and flow determines its amplitude. Angles φ are above 0 and up to π/2 [rad].
 
     Attributes
     ----------
-    a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees. The paper does not give them; the defaults
-        match its published values (a/D = 0.5 at 90°; in its example C* = 1.25 at the sphere and
-        16.28° at the ship).
+    a1, b1, c1 : coefficients of a/D = a1 + b1 φ + c1 φ², φ in degrees. The paper does not give
+        them; the defaults match its published values (a/D = 0.5 at 90°; in its example C* = 1.25 at
+        the sphere and 16.28° at the ship).
     rest : C₀, the cable's Cn at rest; valid for φ > 15° only
     ceiling : largest allowed C*
     strouhal : Strouhal number of the cable, for the speed normal to it
 
-    Angles φ are between cable and flow, above 0 and up to π/2 [rad].
+
     """
 
     a1: float = 1.60185
@@ -294,8 +298,7 @@ class BourgetMarichal:
         return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
-        """Return the frequency F = 0.166 V₀ sin φ_n/D [Hz], common to the whole cable, for a
-        diameter [m].
+        """Return the frequency F = 0.166 V₀ sin φ_n/D [Hz], common to the whole cable.
 
         Parameters
         ----------
@@ -305,30 +308,29 @@ class BourgetMarichal:
         return self.strouhal * speed * sin(ship_angle) / diameter
 
     def factor(self, angle: float, beat: float) -> float:
-        """Return the drag ratio C*/C₀, at most 3.0/C₀, of a cable at an angle φ to the flow [rad].
+        """Return the drag ratio C*/C₀ of a cable at an angle φ to the flow [rad].
 
-        `beat` is as in `Vibration`.
+        It is at most `greatest`. `beat` is as in `Vibration`.
         """
         return strummed(self.vibration(beat), min(sin(angle), 1.0))
 
     def coefficient(self, angle: float, ship_angle: float) -> float:
-        """Return the drag coefficient C* of a cable at an angle φ in a uniform flow, which is
-        independent of speed.
+        """Return the drag coefficient C* of a cable in a uniform flow of any speed.
 
         Parameters
         ----------
-        angle, ship_angle : angles φ on the cable and at the ship [rad]
+        angle, ship_angle : angle φ between cable and flow, and its value at the ship [rad]
         """
         return self.rest * self.factor(angle, self.strouhal * sin(ship_angle))
 
     def from_bare_cable(
         self, angle: float, speed: float, diameter: float, weight: float, density: float
     ) -> tuple[float, float]:
-        """Return C* and a/D of a bare cable, from its angle under tow.
+        """Return C* and a/D of a cable without attachments, from its angle under tow.
 
         Parameters
         ----------
-        angle : φ measured, constant along the cable [rad]
+        angle : measured angle φ, constant along the cable [rad]
         speed : V₀, speed of the ship [m/s]
         diameter : diameter of the cable [m]
         weight : weight per metre in water [N/m]
@@ -337,7 +339,7 @@ class BourgetMarichal:
         Returns
         -------
         C* for which the drag normal to the cable balances its weight, w cos φ = ½ρ D C* (V₀ sin
-        φ)², and the corresponding a/D, 0 if C* does not exceed C₀.
+        φ)², and the corresponding a/D, which is 0 if C* does not exceed C₀.
         """
         coefficient = weight * cos(angle) / (0.5 * density * diameter * (speed * sin(angle)) ** 2)
         return coefficient, _ratio(coefficient / self.rest) / (2.0 * pi * self.strouhal)

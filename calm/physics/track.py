@@ -1,4 +1,4 @@
-"""Layout of a line for the march: rigid rods, stretches of cable, and the loads between them."""
+"""Layout of a line for the march: rods, cables and clamps in order, with the loads on them."""
 
 from __future__ import annotations
 
@@ -19,18 +19,19 @@ if TYPE_CHECKING:
 
 
 class Load(NamedTuple):
-    """A rigid piece or a clamped instrument, centred `at` metres below the top of its rod.
+    """A rigid piece or a clamped instrument as a load on a rod.
 
     Attributes
     ----------
     piece, clamp : indices in the line; the clamp is -1 for the piece itself
-    at : distance from the top of the rod [m]
-    lever : 1 - at/length, the share of the load that rotates the rod; ½ for a rod of no length
-    length : length of the piece [m]; 0 for a clamp
-    buoyancy, volume, normal_drag, tangential_drag, directional, lift, push_east, push_north : as
-        in `Line`
-    diameter, lengthening : of its drag curve, see `DragCurve`; the diameter is 0
-        without a curve
+    at : distance of its centre from the top of the rod [m]
+    lever : 1 - at/length of the rod, the share of the load that rotates the rod; ½ for a rod
+        without length
+    length : length of the rigid piece [m]; 0 for a clamp
+    buoyancy, volume, normal_drag, tangential_drag, directional, lift, push_east, push_north : as in
+        `Line`
+    diameter, lengthening : values of its drag curve, see `DragCurve`; the diameter is 0 without a
+        curve
     """
 
     piece: int
@@ -55,13 +56,13 @@ class CableStretch(NamedTuple):
 
     Attributes
     ----------
-    piece : index in the line
-    length : unstretched [m]
+    piece : index of the piece in the line
+    length : unstretched length [m]
     buoyancy, volume, normal_drag, tangential_drag, compliance, thinning : as in `Line`
-    friction : number of the law, see `Friction`
+    friction : number of the friction law, see `Friction`
     first_knot, end_knot : range of its elongation curve among the knots of the track; equal if it
         has no curve
-    diameter : diameter for strumming [m]; 0 without strumming
+    diameter : diameter [m] if the cable strums, else 0
     """
 
     piece: int
@@ -82,13 +83,13 @@ ROD, CABLE, CLAMP = range(3)
 
 
 class Stage(NamedTuple):
-    """One step of the march: a rod, a stretch of cable or a clamp.
+    """One step of the march along a line: a rod, a stretch of cable or a clamp.
 
     Attributes
     ----------
     kind : ROD, CABLE or CLAMP
-    first, size : index of its first load in the course and number of loads; for a cable, its
-        index among the cables and 1
+    first, size : for a rod or clamp, index of its first load among the loads and number of its
+        loads; for a cable, its index among the cables and 1
     length : length of the stage [m]
     """
 
@@ -101,7 +102,8 @@ class Stage(NamedTuple):
 class Course(NamedTuple):
     """A `Track` in the form used by the march: its parts by kind, from the top down.
 
-    `landing` is the first stage that may touch the seabed, below the last buoyant stage.
+    `landing` is the index of the first stage that may touch the seabed, below the last buoyant
+    stage.
     """
 
     stages: Sequence[Stage]
@@ -118,8 +120,9 @@ class Track:
 
     Attributes
     ----------
-    stages, loads, cables, knots : rows, each a `Stage`, `Load`, `CableStretch` or `Knot`
-    vibration : law of strumming of the cables
+    stages, loads, cables, knots : rows with the fields of `Stage`, `Load`, `CableStretch` and
+        `Knot`
+    vibration : strumming law of the cables
     """
 
     stages: list[tuple[Any, ...]]
@@ -144,7 +147,7 @@ class Track:
 
     @property
     def landing(self) -> int:
-        """First stage that may rest on the seabed, below the last buoyant stage."""
+        """Index of the first stage that may rest on the seabed, below the last buoyant stage."""
         for i in range(len(self.stages), 0, -1):
             kind, first, size, _ = self.stages[i - 1]
             if kind == CABLE:
@@ -158,7 +161,7 @@ class Track:
         return 0
 
     def first_pieces(self, count: int) -> Track:
-        """Return the track of the first pieces only."""
+        """Return the track of the first `count` pieces only."""
         cables = [row for row in self.cables if row[0] < count]
         stages = [
             row
@@ -170,9 +173,7 @@ class Track:
     @staticmethod
     @once_per_input
     def of(line: Line) -> Track:
-        """Lay out a line for the march, free end first; its head (see `head_count`) becomes one
-        rod.
-        """
+        """Lay out a line, free end first; the pieces counted by `head_count` become one rod."""
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
         track = Track([], [], [], [], vibration)
         rows, head = _Rows(line), head_count(line)
@@ -221,12 +222,11 @@ class Track:
 
 
 def head_count(line: Line) -> int:
-    """Return the number of pieces at the free end that form one rigid body: those down to the first
-    buoyant piece.
+    """Return the number of pieces at the free end that form one rigid body.
 
-    Pieces without buoyancy listed above the first buoyant piece (a beacon, ballast) are rigidly
-    connected to it. If a cable is in between, or no piece is buoyant, the first piece is separate.
-    At a towed end every piece is separate.
+    These are the pieces down to the first buoyant piece: pieces without buoyancy above it (a
+    beacon, ballast) are rigidly connected to it. The number is 0 if a cable comes first or in
+    between, if no piece is buoyant, or if the end is towed.
     """
     if line.towed:
         return 0
@@ -244,10 +244,10 @@ class _Rows:
     Attributes
     ----------
     length, clamp_at : as in `Line`
-    rigid, clamp : for each piece, and for each clamp: the fields of a `Load` after its length
-    cable : for each piece: the fields of a `CableStretch` between its length and its knots
-    strums : for each piece: the diameter of its `CableStretch`
-    clamps : clamps of each piece, from its top
+    rigid, clamp : for each piece, and for each clamp, the fields of a `Load` after its length
+    cable : for each piece, the fields of a `CableStretch` between length and knots
+    strums : for each piece, the diameter of its `CableStretch`
+    clamps : indices of the clamps of each piece, from its top
     """
 
     def __init__(self, line: Line) -> None:
@@ -274,7 +274,6 @@ class _Rows:
 
 
 def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
-    """Combine columns, or single values that apply to all rows, to rows."""
     values = (
         column.tolist() if isinstance(column, np.ndarray) else [column] * count
         for column in columns
@@ -283,9 +282,6 @@ def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
 
 
 def _followed(curves: Sequence[DragCurve | None]) -> tuple[Any, Any]:
-    """Return the columns `diameter` and `lengthening` of loads with drag curves; 0 without
-    a curve.
-    """
     if not curves:
         return 0.0, 0.0
     return (

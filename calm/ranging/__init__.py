@@ -1,4 +1,4 @@
-"""Ranging of an anchor: its position from acoustic ranges measured by a ship."""
+"""Position of an anchor from acoustic ranges measured by a ship."""
 
 from calm.ranging.range_fit import Located as Located
 from calm.ranging.range_fit import locate as locate

@@ -1,9 +1,7 @@
-"""Best-fitting position for acoustic ranges, and its uncertainty.
+"""Position that best fits acoustic ranges, and its uncertainty.
 
-Ranges are straight lines from the ship's transducer. Residuals of accepted ranges are assumed
-normal with equal variance.
-
-This module also writes the position into the mooring file.
+Rays are straight lines from the ship's transducer. The residuals of accepted ranges are assumed to
+be normal with equal variance. This module also writes the position to the mooring file.
 """
 
 from dataclasses import asdict, dataclass
@@ -42,14 +40,14 @@ ODDS = 20.0
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Another position that fits within twice the scatter of the ranges.
+    """Another position that also fits the ranges, within twice their scatter.
 
     Attributes
     ----------
     latitude, longitude : WGS 84 [degrees]
     distance : distance from the chosen position [m]
-    rms : root of the sum of squared residuals over the number of degrees of freedom [m]; NaN if
-        there are none
+    rms : root of the sum of squared residuals divided by the degrees of freedom [m]; NaN if there
+        are none
     """
 
     latitude: float
@@ -60,21 +58,22 @@ class SecondPlace:
 
 @dataclass(frozen=True)
 class Located:
-    """Position of a transponder.
+    """Position of a transponder, with its uncertainty and the residuals of the ranges.
 
     Attributes
     ----------
     survey : the ranges
     latitude, longitude : WGS 84 [degrees]
     depth : depth below the surface [m]
-    horizontal_95 : major half-axis of the 95 % ellipse [m]; NaN without redundant ranges, or if
-        the ranges do not constrain it
-    ellipse : both half-axes [m], and bearing of the major one [degrees]
+    horizontal_95 : semi-major axis of the 95 % ellipse [m]; NaN without redundant ranges, or if the
+        ranges do not constrain it
+    ellipse : both semi-axes [m], and bearing of the major axis [degrees]
     depth_95 : half of the 95 % interval of the depth [m]; 0 if the depth was given
-    rms : rms residual of the ranges in use, by degrees of freedom [m]
+    rms : root of the sum of squared residuals of the ranges in use divided by the degrees of
+        freedom [m]
     residuals : (n,) measured minus computed ranges [m]
     used : (n,) False for rejected ranges
-    sound_speed : harmonic mean along the path [m/s]
+    sound_speed : harmonic mean of the speed of sound along the ray [m/s]
     warnings : warnings about geometry and consistency
     place : (3,) position east, north, up in the frame of the survey [m]
     depth_given : whether the depth was given
@@ -102,7 +101,7 @@ class Located:
     doubts: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object; unknown values are None."""
+        """Return the position as a JSON object; unknown values are None."""
         lines = self.survey.line
         major, minor, bearing = map(_known, self.ellipse)
         rejected = [(lines[i], self.residuals[i].item()) for i in np.flatnonzero(~self.used)]
@@ -142,19 +141,19 @@ def locate(
 
     Parameters
     ----------
-    survey : ranges as read, or their file, by a transducer at the surface
-    sound : speed of sound for times, as a profile or a constant [m/s]
+    survey : ranges, or the path of their file; a file is read with the transducer at the surface
+    sound : speed of sound that converts times to ranges, as a profile or a constant [m/s]
     depth : depth of the transponder [m]; estimated if None
-    near : latitude and longitude [degrees] of the plan: two places that fit are weighed by how far
-        an anchor can fall back from there
+    near : planned latitude and longitude [degrees]; if two positions fit, they are weighed by their
+        distance from the plan, compared with the fallback of an anchor
 
     Raises
     ------
     InputError
-        The file holds no ranges.
+        The file contains no ranges.
     UsageError
-        Fewer ranges than unknowns, a depth that no range reaches, ranges that meet nowhere, or
-        ranges along the horizontal.
+        There are fewer ranges than unknowns, no range reaches the depth, the ranges do not
+        intersect, or they are nearly horizontal.
     """
     survey = survey if isinstance(survey, Survey) else read_ranges(Path(survey))
     sound = sound if isinstance(sound, Sound) else Sound.constant(sound)
@@ -170,7 +169,7 @@ def locate(
     ships = frame.place(survey.latitude, survey.longitude, np.full(count, survey.transducer))
     model = range_model.RangeModel(survey, sound, frame, ships, depth)
     x, used = model.fitted()
-    inconsistent = model.consistency(x, used)  # a wrong unit is named for what it is
+    inconsistent = model.consistency(x, used)  # before the residuals, to report a wrong unit
     missed, reach = (
         float(np.median(np.abs(each[used]))) for each in (model.residuals(x), model.measured(x))
     )
@@ -253,11 +252,15 @@ def _weighed(
     near: tuple[float, float] | None,
     scattered: float,
 ) -> tuple[Floats, Floats | None, str]:
-    """Return the more likely position, the other one, and the reason for keeping both ("" if
-    decided).
+    """Choose the more likely of two positions, using the planned position if it is known.
 
-    The likelihood of a position combines the scatter [m] of its ranges and its distance from the
-    plan, both normal. The position near the plan is not chosen if the other fits far better.
+    The likelihood of a position combines the residuals of its ranges, relative to their scatter
+    [m], with its distance from the plan; both are assumed normal. The choice stays open if the odds
+    are low, or if the less likely position fits the ranges far better.
+
+    Returns
+    -------
+    The more likely position, the other position, and the reason for keeping both ("" if decided).
     """
     if other is None:
         return x, None, ""
@@ -294,16 +297,17 @@ def _second(model: range_model.RangeModel, x: Floats, other: Floats, used: Boole
 
 
 def _scatter(residuals: Floats, freedom: int) -> float:
-    """Root mean square by degrees of freedom [m]; NaN without degrees of freedom."""
+    """Return the root of the mean square by degrees of freedom [m]; NaN if there are none."""
     return sqrt(float(residuals @ residuals) / freedom) if freedom else nan
 
 
 def _intervals(
     jacobian: Floats, rms: float, freedom: int, depth_given: bool, farthest: float
 ) -> tuple[float, float, float, float]:
-    """Half-axes [m], bearing of the major axis [degrees], and half the depth interval [m].
+    """Return semi-axes [m] and bearing [degrees] of the 95 % ellipse, and the depth interval.
 
-    Values are NaN if the interval is as wide as the longest range.
+    The bearing is in degrees; the depth interval is half of the 95 % interval. An interval that is
+    as wide as the longest range is NaN.
     """
     from scipy.stats import chi2, norm
     from scipy.stats import f as fisher
@@ -314,7 +318,7 @@ def _intervals(
     _, sizes, axes = np.linalg.svd(jacobian, full_matrices=False)
     covariance = (axes.T / np.maximum(sizes, 1e-12) ** 2) @ axes
     lengths, axes = np.linalg.eigh(covariance[:2, :2])
-    # as the residuals tell, and no less than ranges and ship are known to scatter
+    # the scatter of the residuals, but at least the known scatter of ranges and ship
     of_residuals = rms * sqrt(2.0 * float(fisher.ppf(CONFIDENCE, 2, freedom)))
     widest = max(of_residuals, range_model.FLOOR * sqrt(float(chi2.ppf(CONFIDENCE, 2))))
     reach = widest * np.sqrt(np.maximum(lengths, 0.0))
@@ -348,7 +352,12 @@ and a share of the planned depth.
 def located_mooring(path: Path) -> MooringFile:
     """Read the mooring file to which a position belongs.
 
-    InputError: the file has mistakes. UsageError: it is a tow, or has several legs.
+    Raises
+    ------
+    InputError
+        The file has mistakes.
+    UsageError
+        It is a tow, or has several legs.
     """
     file = read_mooring(path)
     refuse_all_but_moorings(file)
@@ -358,22 +367,27 @@ def located_mooring(path: Path) -> MooringFile:
 def with_deployed(
     path: Path, before: MooringFile, located: Located, water_depth: float
 ) -> tuple[WorkingFile, str, tuple[str, ...], tuple[str, ...]]:
-    """Return the mooring file, its text with the position in `deployed`, the deviation from the
-    plan, and any doubts.
+    """Write the position to `deployed` in the text of a mooring file, without saving it.
 
-    The rest of the file, including comments and other keys of `deployed`, is unchanged.
+    The rest of the text, including comments and other keys of `deployed`, is unchanged.
 
     Parameters
     ----------
+    path : path of the mooring file
     before : the file as read, see `located_mooring`
-    water_depth : at the anchor [m]
+    located : the position
+    water_depth : depth of the water at the anchor [m]
+
+    Returns
+    -------
+    The file, its new text, sentences on the deviation from the plan, and any doubts.
 
     Raises
     ------
     InputError
-        The file has mistakes with the place in it.
+        With the new position, the file has mistakes.
     UsageError
-        It is written in a way that does not allow this change, or planned to stand where
+        The YAML of the file cannot be edited automatically, or the planned position suggests that
         latitude and longitude are exchanged.
     """
     sentences, doubts = _beside_the_plan(before, located, water_depth)
@@ -395,9 +409,9 @@ def with_deployed(
 def _beside_the_plan(
     file: MooringFile, located: Located, water_depth: float
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Compare the anchor with its planned position and depth, and list any doubts."""
+    """Describe the deviation from the planned position and depth, and list any doubts."""
     planned, plan_depth = file.position, file.environment.depth
-    assert plan_depth is not None  # of a mooring
+    assert plan_depth is not None  # a mooring always has a water depth
     deeper = water_depth - plan_depth
     sentences = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
     doubts = []

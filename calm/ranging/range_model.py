@@ -1,9 +1,9 @@
 """Model of acoustic ranges: computed ranges, robust fit, and rejection of outliers.
 
-If there are enough ranges, a robust fit comes first, then each doubtful range is tested against the
-others (Student's test, 1 % for all of them together). Otherwise all ranges count.
-
-Inconsistent surveys, and surveys with poor geometry, are reported.
+If there are enough ranges, a robust fit comes first. Each doubtful range is then tested against the
+others by Student's t-test, with a probability of 1 % for a false rejection among all ranges. If
+there are few ranges, all are used. Inconsistent surveys, and surveys with poor geometry, are
+reported.
 """
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ APART = 10.0
 
 @dataclass(frozen=True)
 class RangeModel:
-    """Model of ranges from a position: the unknowns are east, north and, unless given, depth."""
+    """Model of ranges to a position. Its unknowns are east, north and, unless given, depth."""
 
     survey: Survey
     sound: Sound
@@ -42,11 +42,13 @@ class RangeModel:
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns."""
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:
-        """Return the position (3,) for the unknowns; a given depth refers to the curved surface."""
+        """Return the position (3,) for the unknowns [m].
+
+        A given depth is measured from the curved sea surface.
+        """
         if self.depth is None:
             return x
         # the surface is that much below the plane of the frame
@@ -59,7 +61,7 @@ class RangeModel:
         return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
 
     def measured(self, x: Floats) -> Floats:
-        """Ranges [m] (n,); times are converted by the mean speed of sound to the position."""
+        """Return the measured ranges (n,) [m]; times are converted by the mean speed of sound."""
         if not self.survey.timed:
             return self.survey.measured
         ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)
@@ -79,7 +81,7 @@ class RangeModel:
         return np.stack(columns, axis=1) / (2.0 * step)
 
     def fitted(self) -> tuple[Floats, Booleans]:
-        """Return the unknowns, and a mask of the ranges in use."""
+        """Fit the position; return the unknowns, and a mask of the ranges in use."""
         count = len(self.ships)
         used = np.ones(count, dtype=bool)
         if count <= self.unknowns + SPARE:
@@ -98,7 +100,7 @@ class RangeModel:
         return x, used
 
     def _robust_fit(self) -> Floats:
-        """Return the unknowns of a robust fit, started from several sides."""
+        """Return the unknowns of the best robust fit from several starting positions."""
         from scipy.optimize import least_squares
 
         found = []
@@ -115,7 +117,7 @@ class RangeModel:
         return min(found, key=lambda each: each[0])[1]
 
     def _starts(self) -> list[Floats]:
-        """Return starting values: the middle of the survey, and its four sides."""
+        """Return starting positions: below the middle of the survey, and towards its four sides."""
         middle = self.ships.mean(axis=0)
         _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
         reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
@@ -126,14 +128,14 @@ class RangeModel:
         return starts
 
     def _below(self, x: Floats) -> Floats:
-        """Return a position below the ship for a fit that converged to the mirror image above."""
+        """Move a position that converged above the ship to its mirror image below."""
         if self.depth is None:
             level = float(self.ships[:, 2].mean())
             x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
         return x
 
     def least_squares(self, x: Floats, used: Booleans) -> Floats:
-        """Return the least-squares fit to the ranges in use, from a starting value."""
+        """Fit the unknowns to the ranges in use by least squares, from a starting value."""
         from scipy.optimize import least_squares
 
         fit = least_squares(
@@ -145,7 +147,8 @@ class RangeModel:
     def tested(self, x: Floats, used: Booleans) -> Booleans:
         """Reject the worst outlier, or restore a rejected range with a small residual.
 
-        A range is tested by its residual over its standard error, as estimated from the others.
+        A range is tested by the ratio of its residual to the standard error estimated from the
+        other ranges. Return the new mask of the ranges in use.
         """
         from scipy.stats import t as student
 
@@ -174,9 +177,12 @@ class RangeModel:
         return changed
 
     def consistency(self, x: Floats, used: Booleans) -> list[str]:
-        """Describe a scale factor of all ranges that improves the fit, if any.
+        """Describe a factor on all ranges that improves the fit, if there is one.
 
-        UsageError: a factor of two, from mixing one-way and two-way times.
+        Raises
+        ------
+        UsageError
+            The factor is about two, because one-way and two-way times were mixed.
         """
         from scipy.optimize import least_squares
         from scipy.stats import t as student
@@ -218,11 +224,11 @@ class RangeModel:
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
         """Find another position that fits nearly as well, or within a scatter [m].
 
-        None if there is no other. Positions on either side of the track are tried.
+        Return None if there is no other. The search starts on either side of the track.
         """
         starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
         fits = [self.least_squares(start, used) for start in starts]
-        if self.depth is None:  # a place as deep that fits is one, if a deeper one fits better
+        if self.depth is None:  # another place also counts if it fits at the depth of this one
             same = replace(self, depth=self.frame.position(x)[2])
             fits += [np.append(same.least_squares(start[:2], used), x[2]) for start in starts]
 
@@ -237,14 +243,14 @@ class RangeModel:
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:
-    """Return the standard deviation of most of the residuals, by their median [m]."""
+    """Estimate the standard deviation of absolute residuals [m] from their median."""
     count = len(residuals)
     freedom = max(count - unknowns, 1)
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
 
 
 def _doubled(timed: bool, factor: float) -> str:
-    """Describe the probable error if the ranges fit at twice or half their length."""
+    """Describe the probable error if the ranges fit better with a factor of two or one half."""
     instead = "give the distance from the ship to the transponder"
     meant = {
         (True, 2.0): "one-way times, but two-way times (there and back) are needed",
@@ -268,13 +274,14 @@ that are all farther the depth.
 def geometry_warnings(
     ships: Floats, place: Floats, below: float, depth_given: bool
 ) -> Iterator[str]:
-    """Warn of survey geometry that constrains the position poorly.
+    """Yield a warning for each way in which the survey geometry constrains the position poorly.
 
     Parameters
     ----------
     ships : (n, 3) positions of the transducer [m]
     place : (3,) position of the transponder [m]
     below : depth of the transponder below the transducer [m]
+    depth_given : whether the depth of the transponder is known
     """
     away = (ships - place)[:, :2]
     distance = np.linalg.norm(away, axis=1)
@@ -303,13 +310,13 @@ def geometry_warnings(
 
 
 def is_line(ships: Floats) -> bool:
-    """Return whether places lie nearly on a line, or at one place."""
+    """True if positions (n, 3) lie nearly on a line, or at a single point."""
     _, spread, _ = np.linalg.svd((ships - ships.mean(axis=0))[:, :2], full_matrices=False)
     return len(spread) < 2 or bool(spread[1] <= NARROW * spread[0])
 
 
 def widest_gap(away: Floats) -> float:
-    """Return the widest angle between neighbouring directions (n, 2) [degrees]."""
+    """Return the widest sector between neighbouring horizontal directions (n, 2) [degrees]."""
     bearing = np.sort(np.degrees(np.arctan2(away[:, 0], away[:, 1])))
     return float(np.diff(np.append(bearing, bearing[0] + 360.0)).max())
 

@@ -1,12 +1,14 @@
-"""Ranges from a CSV file: `latitude[deg],longitude[deg]` of the ship, `range[m]` or `time[s]`.
+"""Read acoustic ranges from a table of ship positions with `range[m]` or `time[s]`.
 
-Other survey formats are converted to that table: positions in two columns, degrees and minutes;
-column names of deck boxes and event logs; and two forms without a heading, from programs that
-locate an anchor by ranges:
+The usual form is CSV with the columns `latitude[deg]`, `longitude[deg]` and `range[m]` or
+`time[s]`. Other formats are converted to this form: positions as degrees and minutes in two
+columns; column names of deck boxes and event logs; and two formats without a heading, from programs
+that locate an anchor by ranges:
 
-- five columns: degrees and minutes of latitude and of longitude, and seconds one way (WHOI);
-- three columns: range, latitude and longitude, below the target, depth, height of the release
-  and transducer, and the position of the drop (NOC).
+- five columns: degrees and minutes of latitude and of longitude, and one-way time in seconds
+  (WHOI);
+- three columns with range, latitude and longitude; the rows above have the target, then water
+  depth, height of the release and depth of the transducer, then the drop position (NOC).
 """
 
 from __future__ import annotations
@@ -62,27 +64,27 @@ class Survey:
 
     @cached_property
     def frame(self) -> Frame:
-        """Local frame around the mean position of the ship, valid across the 180° meridian, too."""
+        """Local frame around the mean position of the ship, also across the 180° meridian."""
         lam = np.radians(self.longitude)
         middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
         return Frame(float(self.latitude.mean()), float(middle))
 
 
 def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Survey:
-    """Return the ranges of a file.
+    """Read the ranges of a file.
 
     Rows without a range (blank or `nan`), and rows that repeat another row, are excluded. Other
-    columns are not read.
+    columns are ignored.
 
     Parameters
     ----------
-    transducer : depth of the ship's transducer [m]; if 0, the depth in the file, or the surface
-    hemisphere : letters of positions that have neither letter nor sign, such as ``"S,W"``
+    transducer : depth of the ship's transducer [m]; 0 means the depth in the file, else the surface
+    hemisphere : letters such as ``"S,W"`` for positions that have neither letter nor sign
 
     Raises
     ------
     InputError
-        Lists every mistake of the file with its line.
+        The file has mistakes; all are listed with their lines.
     """
     problems: list[Problem] = []
     signs = hemisphere_signs(hemisphere)
@@ -142,9 +144,12 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
 
 
 def hemisphere_signs(letters: str) -> dict[str, float]:
-    """Return the signs of latitudes and longitudes by the letters of their hemispheres.
+    """Return the signs of latitude and longitude for the letters of their hemispheres.
 
-    UsageError: a letter is none of N, S, E and W, or names the same coordinate twice.
+    Raises
+    ------
+    UsageError
+        A letter is none of N, S, E and W, or two letters refer to the same coordinate.
     """
     signs: dict[str, float] = {}
     for letter in filter(None, (part.strip().upper() for part in letters.split(","))):
@@ -156,7 +161,7 @@ def hemisphere_signs(letters: str) -> dict[str, float]:
 
 
 def _figure(name: str, text: str, factor: float) -> float:
-    """Return a cell in SI or degrees (ValueError: why it is no such figure)."""
+    """Parse a cell to SI units or degrees; raise ValueError with the reason if it is invalid."""
     placed = name in HEMISPHERES
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
@@ -212,8 +217,8 @@ class Sound:
 
     Attributes
     ----------
-    depth : (k,) growing [m]
-    speed : (k,) [m/s]
+    depth : (k,) depths, increasing [m]
+    speed : (k,) speed of sound at these depths [m/s]
     """
 
     depth: Floats
@@ -221,14 +226,14 @@ class Sound:
 
     @classmethod
     def constant(cls, speed: float) -> Sound:
-        """Return the same speed at all depths [m/s]."""
+        """Return a profile with the same speed at all depths [m/s]."""
         return cls(np.zeros(1), np.array([speed]))
 
     def mean(self, above: float, below: float) -> float:
-        """Harmonic mean between two depths [m/s].
+        """Return the harmonic mean of the speed between two depths [m/s].
 
-        A straight ray at any slope covers equal lengths per depth interval, so this mean converts
-        its length to travel time.
+        A straight ray covers the same length in each metre of depth, whatever its slope, so its
+        length divided by this mean is its travel time.
         """
         if len(self.speed) == 1 or below - above < 1e-6:
             return float(np.interp(0.5 * (above + below), self.depth, self.speed))
@@ -246,8 +251,11 @@ class Sound:
 def read_sound(path: Path) -> Sound:
     """Read a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
 
-    InputError: lists every mistake of the file, such as depths that do not increase or implausible
-    speeds.
+    Raises
+    ------
+    InputError
+        The file has mistakes, such as depths that do not increase or implausible speeds; all are
+        listed.
     """
     problems: list[Problem] = []
     columns = read_named_columns(delimited.read_table(path, _EXAMPLE), _OF_SOUND, problems)
@@ -283,7 +291,7 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
 
 
 def sound_complaint() -> str:
-    """Message for an implausible speed of sound."""
+    """Return the message for an implausible speed of sound."""
     return f"is not a speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"
 
 
@@ -297,7 +305,7 @@ _OTHER_NAMES: Mapping[str, str] = {
 
 _PART = re.compile(r"(?i)(?:ship[ _]?)?(lat|lon)\w*?[ _\[(]*(deg|min|hem|ns|ew|dir)\w*[\])]*")
 _LARGEST = 5_000_000
-_NEAR = 1.0  # degrees between a survey's positions, at most
+_NEAR = 1.0  # degrees: largest difference between the positions of a survey
 _BareRow = tuple[int, list[str]]
 """The number of a line and its cells."""
 
@@ -305,8 +313,10 @@ _BareRow = tuple[int, list[str]]
 def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
     """Read the table of a survey, the depth of its transducer [m] if given, and notices.
 
-    InputError: the file is unreadable, is empty, or has neither a header nor one of the two known
-    forms.
+    Raises
+    ------
+    InputError
+        The file is unreadable or empty, or has neither a header nor a known form without header.
     """
     rows = _bare_rows(path)
     columns = len(rows[0][1]) if rows else 0
@@ -337,7 +347,10 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
 
 
 def _bare_rows(path: Path) -> list[_BareRow]:
-    """Read the rows of a purely numeric file with equal row lengths; empty for other files."""
+    """Read the rows of a purely numeric file in which all rows have the same length.
+
+    The result is empty for other files.
+    """
     whole = enumerate(read_text(path, largest=_LARGEST).splitlines(), 1)
     bare = ((number, re.split("[%#]", line)[0].strip()) for number, line in whole)
     lines = [(number, line) for number, line in bare if line]
@@ -349,9 +362,9 @@ def _bare_rows(path: Path) -> list[_BareRow]:
 
 
 def _row_of_depths(rows: Sequence[_BareRow]) -> int:
-    """Find the row of depths: 1, or 2 if it follows the target; 0 if there is none.
+    """Return the number of the row with the depths: 1, or 2 if the target is above it.
 
-    The last two cells of all other rows must be positions of one survey.
+    Return 0 if there is none. The last two cells of all other rows must be positions of one survey.
     """
     if len(rows) <= 4:
         return 0
@@ -363,16 +376,16 @@ def _row_of_depths(rows: Sequence[_BareRow]) -> int:
 
 
 def _placed(cells: Sequence[str]) -> str:
-    """Join degrees and minutes in one cell, with the sign of the degrees first."""
+    """Join the cells of degrees, minutes and hemisphere to one cell."""
     degrees, *rest = (cell.strip() for cell in cells)
     degrees = re.sub(r"\.0*$", "", degrees)
     return " ".join([degrees, *rest]).strip()
 
 
 def _joined(table: delimited.TextTable) -> delimited.TextTable:
-    """Return a table whose degrees and minutes of one position are one cell, in that of degrees.
+    """Join degrees and minutes of positions in one cell, in the column of the degrees.
 
-    A time of day is no time of travel: its column is called another.
+    The column of a time of day is renamed, so that it is not mistaken for travel times.
     """
     rows, header = list(table.rows), list(table.header.cells)
     for j, cell in enumerate(header):

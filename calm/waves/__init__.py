@@ -1,1 +1,1 @@
-"""Effect of waves on a mooring: linear tensions and motions about its static equilibrium."""
+"""Tensions and motions of a mooring in waves, linearised about its static equilibrium."""

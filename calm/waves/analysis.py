@@ -1,5 +1,6 @@
-"""Tensions and motions of a mooring in sea states, with automatic refinement and an error
-estimate.
+"""Tensions and motions of a mooring in sea states.
+
+Elements and frequencies are refined automatically, and the remaining error is estimated.
 """
 
 from __future__ import annotations
@@ -49,9 +50,9 @@ SMALL = 0.05
 class WaveAccuracy:
     """Estimated relative errors of the standard deviations of tension and float pitch.
 
-    `mesh` and `frequencies` are the changes for twice the number of elements or frequencies.
-    `linearisation` is the change if the linearised drag is reduced by a fifth; it shows the
-    contribution of drag.
+    `mesh` and `frequencies` are the changes if the number of elements or of frequencies is doubled.
+    `linearisation` is the change if the linearised drag is reduced by a fifth; it shows how much
+    the results depend on drag.
     """
 
     mesh: float
@@ -67,9 +68,9 @@ class WaveAnalysis:
     ----------
     name : name of the mooring
     states : results for each sea state, in the given order
-    accuracy : accuracy in the highest and in the shortest sea
-    fatigue : fatigue of each piece, with the seas weighted by their shares of time; a single sea
-        lasts all year
+    accuracy : estimated errors in the highest and in the shortest sea
+    fatigue : fatigue of each piece, with the seas weighted by their shares of time; a single sea is
+        assumed to last all year
     warnings : warnings about assumptions
     pitch_unknown : reason why the pitch of the float is not computed; None if it is computed
     """
@@ -104,7 +105,7 @@ class WaveAnalysis:
 
 @dataclass(frozen=True)
 class _Setting:
-    """Line, float and water of a computation, and the number of frequencies per sea state."""
+    """Line, float and water of an analysis, and the number of frequencies per sea state."""
 
     line: LumpedLine
     buoy: Buoy | None
@@ -117,17 +118,18 @@ class _Setting:
     def respond(
         self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
     ) -> tuple[WaveResponse, Floats]:
-        """Compute the response to a sea state, and the flow past the nodes; `first` is the flow in
-        a similar sea state.
+        """Compute the response to a sea state, and the flow past the nodes.
+
+        `first` is an initial estimate of this flow, such as the flow in a similar sea state.
         """
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
-        """Compute the responses for half and for twice the cut-off frequency, with the linearised
-        drag of a given response.
+        """Compute the responses for half and for twice the cut-off frequency of a response.
 
-        Additional frequencies have the spacing of the frequencies in the response.
+        All use the drag linearised for the given response. Frequencies above the cut-off have the
+        same relative spacing as those below.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
@@ -136,9 +138,7 @@ class _Setting:
         return CutOffs(response, response.below(0.5 * last), response.joined(beyond))
 
     def below_a_follower(self, sea: SeaState, flow: Floats) -> float | None:
-        """Return the standard deviation of the tension below a float that follows every
-        wave [N].
-        """
+        """Return the standard deviation of tension below a float that follows every wave [N]."""
         if self.buoy is None:
             return None
         following = replace(self, buoy=replace(self.buoy, follows=True))
@@ -147,8 +147,10 @@ class _Setting:
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
-        """Compute the standard deviations of tension (seas, pieces) [N], 0 on the seabed, and of
-        the float's pitch (seas, 1), 0 if unknown; also return the flows.
+        """Compute the standard deviations of tension [N], and of the pitch of the float.
+
+        They are arrays (seas, pieces) and (seas, 1). Tensions are 0 on the seabed, and the pitch is
+        0 if unknown. Also return the flow past the nodes in each sea.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])
@@ -165,16 +167,16 @@ def analyse(
 ) -> WaveAnalysis:
     """Compute tensions and motions of a mooring in sea states.
 
-    The line is represented by lumped masses about its equilibrium in the mean current. Waves are
-    linear and long-crested, and drag is linearised with equal dissipation. Elements and frequencies
-    are refined in the highest and in the shortest sea until the standard deviations of tension
-    converge to 1 %.
+    The line is represented by lumped masses that move about its equilibrium in the mean current.
+    Waves are linear and long-crested. Drag is linearised with equal energy dissipation. Elements
+    and frequencies are refined in the highest and in the shortest sea until the standard deviations
+    of tension converge to 1 %.
 
     Parameters
     ----------
     seas : one or more sea states
-    toward : direction towards which the waves travel [degrees], clockwise from north
-    duration : duration for the maximum and minimum tension [s]
+    toward : direction in which the waves travel [degrees], clockwise from north
+    duration : duration to which the maximum and the minimum tension refer [s]
     watched : wrapper that yields the seas one by one, for instance to show progress
 
     Raises
@@ -182,7 +184,7 @@ def analyse(
     NoEquilibrium
         The mooring has no equilibrium.
     UsageError
-        The float at the surface has no hull, or no mass, or a sea breaks at this depth.
+        The float at the surface has no hull or no mass, or a sea breaks at this water depth.
     """
     for sea in seas:
         if sea.significant_height > SHALLOWEST * leg.water.depth:
@@ -220,9 +222,7 @@ def analyse(
 
 
 def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
-    """Compute the fatigue of a piece, with its lives for half and for twice the cut-off
-    frequency.
-    """
+    """Compute the fatigue of a piece, also for half and for twice the cut-off frequency."""
     found, half, twice = (
         fatigue_of(
             piece.component, piece.index, piece.label,
@@ -236,10 +236,9 @@ def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
 def _settled(
     leg: Leg, solution: Solution, seas: Sequence[SeaState], toward: float
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
-    """Refine elements and frequencies until they suffice for all sea states, and estimate the
-    remaining error.
+    """Refine elements and frequencies until they suffice for all given sea states.
 
-    The second result is the flow past the nodes in the first sea.
+    Return the refined setting, the flow past the nodes in the first sea, and the remaining error.
     """
     density = leg.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, leg.water.depth, float(density), leg.water.gravity)
@@ -268,7 +267,7 @@ def _settled(
 
 
 def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
-    """Interpolate the flow past the nodes of a line to a finer line of the same shape."""
+    """Interpolate the flow past the nodes to the nodes of a finer line of the same shape."""
     along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
     nodes = np.column_stack([np.interp(at, along, values) for values in flow[:-1].T])
     return np.vstack([nodes, flow[-1:]])

@@ -63,17 +63,19 @@ class Buoy:
     displaced : displaced mass of water [kg]
     radius : radius of its waterplane [m]
     draft : draft [m]
-    drag, heave_drag : K of its drag in the current, and in heave [N/(m/s)²]
-    rao : angular frequency [rad/s], amplitude [-] and phase of heave over elevation
-        [degrees]; optionally amplitude [degrees/m] and phase [degrees] of pitch
-    follows : whether its heave and pitch follow the water
-    panels : (12, f) results of a panel method: frequency [rad/s]; added mass and radiation of
-        heave, surge, surge with pitch, and pitch about the surface; exciting force per metre of
-        elevation in heave, and, divided by ω², in surge and pitch; None uses the formulas
-    profile : (s, 2) radius and height above the surface of its sections [m], the keel first; None
-        if its pitch is not computed
-    centre, bail : heights above the surface of the centre of mass of the float with all pieces on
-        it and of the attachment point of the line [m]
+    drag, heave_drag : K of the drag K|V|V in the current, and in heave [N/(m/s)²]
+    rao : rows of the prescribed response: angular frequency [rad/s], amplitude [-] and phase
+        [degrees] of heave relative to the elevation; optionally amplitude [degrees/m] and phase
+        [degrees] of pitch
+    follows : whether heave and pitch follow the water
+    panels : (12, f) results of a panel method: row 0, frequency [rad/s]; rows 1 to 8, added mass
+        and radiation damping of heave, surge, surge coupled with pitch, and pitch about the
+        surface; rows 9 to 11, exciting force per metre of elevation in heave, and divided by ω² in
+        surge and pitch. None means that formulas are used instead
+    profile : (s, 2) radius and height above the surface of the sections of the hull [m], from the
+        keel up; None if the pitch is not computed
+    centre : height above the surface of the centre of mass of the float with all pieces on it [m]
+    bail : height above the surface of the attachment point of the line [m]
     gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
@@ -103,17 +105,17 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness in heave [N/m], and the exciting force per metre of wave
-        elevation [N/m].
+        """Return dynamic stiffness and exciting force per metre of elevation in heave [N/m].
 
-        Froude-Krylov force of a disc at its draft, ρgA e^(-kT) 2 J1(kR)/(kR); added mass
-        `DISC_ADDED`, excited by the acceleration of the water at this draft; radiation by Haskind's
-        relation, k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
+        The formulas for a disc of radius R at the draft T are: Froude-Krylov force ρgA e^(-kT) 2
+        J1(kR)/(kR); added mass `DISC_ADDED`, excited by the acceleration of the water at this
+        draft; and radiation damping by Haskind's relation, k ω |X|² / (2 ρ g²) in deep water
+        (Newman 1977, 6.18).
 
         Parameters
         ----------
         omega, number : (f,) angular frequencies [rad/s] and wave numbers [1/m]
-        density, gravity : density of the water and gravity [kg/m³], [m/s²]
+        density, gravity : density of the water [kg/m³] and acceleration of gravity [m/s²]
         """
         if self.follows:
             return np.full(omega.shape, PRESCRIBED_STIFFNESS + 0j), np.full(
@@ -139,17 +141,20 @@ class Buoy:
     def pitch(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness in surge and pitch, and the exciting forces per metre of
-        wave elevation.
+        """Return dynamic stiffness and exciting forces per metre of elevation, in surge and pitch.
 
-        Stiffness and forces refer to the point of the axis at the surface. Pitch is positive if the
-        part above the surface moves forward. Stiffness (3, f): surge [N/m], surge with pitch [N]
-        and pitch [N m]; forces (2, f).
+        They refer to the point where the axis of the float meets the surface. Pitch is positive if
+        the part above the surface moves forward.
 
         Parameters
         ----------
         profile : as in `Buoy`
         omega, number, density, gravity : as in `heave`
+
+        Returns
+        -------
+        Stiffness (3, f) of surge [N/m], of surge coupled with pitch [N], and of pitch [N m];
+        exciting force in surge [N/m] and moment in pitch [N] (2, f).
         """
         if self.panels is None:
             added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)
@@ -168,8 +173,9 @@ class Buoy:
         return held, pushing
 
     def _given(self, omega: Floats, column: int) -> Complexes:
-        """Interpolate the response given in `rao`, with amplitudes in one column and phases in the
-        next.
+        """Interpolate a response in `rao`.
+
+        The amplitudes are in `column`, and the phases in the next column.
         """
         at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
         turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
@@ -178,8 +184,9 @@ class Buoy:
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the righting moment of the float per radian of pitch [N m].
 
-        Sum of the moments of waterplane, centre of buoyancy and weight (for a free float, its
-        weight times the metacentric height) and of the line, which pulls down at the bail.
+        It is the sum of the moments of the waterplane, the buoyancy and the weight, which for a
+        free float equals weight times metacentric height, and of the line, which pulls down at the
+        bail.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -191,13 +198,12 @@ class Buoy:
     def _of_sections(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Floats, Floats, Complexes]:
-        """Compute added mass (3, f), radiation (3, f) and exciting forces (2, f) from the sections
-        of the hull, as in `pitch`.
+        """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        Exciting forces include the wave pressure on the hull, the added mass of its sections from
-        `END_LOSS` and that of its bottom from `DISC_TURNED`, with the local acceleration of the
-        water. Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman
-        1977, 6.18).
+        They are integrated over the sections of the hull. Exciting forces include the wave pressure
+        on the hull and the inertia of the water, with the local acceleration: the added mass of the
+        sections is reduced by `END_LOSS`, that of the bottom follows from `DISC_TURNED`. Radiation
+        follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977, 6.18).
         """
         radius, height = profile.T
         area = pi * radius**2
@@ -234,9 +240,9 @@ class Buoy:
 def bessel(order: int, x: Floats) -> Floats:
     """Evaluate the Bessel function of the first kind, of an integer order ≥ 0.
 
-    Below 4, the power series is used (Abramowitz and Stegun 9.1.10), which is accurate at small x.
-    Above, the function is the mean of cos(nθ − x sin θ) over a circle (9.1.21) in equal steps,
-    which is exact to rounding if there are many more steps than |x| + n.
+    For |x| below 4, the power series is used (Abramowitz and Stegun 9.1.10), which is accurate at
+    small x. Otherwise the function is the mean of cos(nθ − x sin θ) at equal steps around a circle
+    (9.1.21), which is exact to rounding if there are many more steps than |x| + n.
     """
     small = np.minimum(np.abs(x), 4.0) * np.sign(x)
     term = (0.5 * small) ** order / factorial(order)
@@ -253,16 +259,17 @@ def bessel(order: int, x: Floats) -> Floats:
 
 
 def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
-    """Return the float at the surface, or None for a line below the surface.
+    """Return the float at the surface, or None if the line is below the surface.
 
     Parameters
     ----------
-    follows : whether its heave follows the water, for any hull
+    follows : whether the heave follows the water, whatever the hull
 
     Raises
     ------
     UsageError
-        The hull of the float is unknown, or the float would capsize.
+        The hull or the mass of the float is unknown, the component is not a float, or the float
+        would capsize.
     """
     if not solution.afloat:
         return None
@@ -322,8 +329,9 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
 
 
 def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
-    """Return the radius of a hull's waterplane [m], and radius and height above the surface of its
-    sections (s, 2) [m] from the keel up; 0 and None if the hull is unknown.
+    """Return the radius of a hull's waterplane [m], and its profile as in `Buoy`.
+
+    They are 0 and None if the hull is unknown.
     """
     if hull is None or draft <= 0.0:
         return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None
@@ -342,13 +350,12 @@ def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
 
 
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
-    """Compute added mass, radiation and exciting forces of an axisymmetric hull in deep water by
-    Capytaine, in the form of `Buoy.panels`.
+    """Compute `Buoy.panels` for an axisymmetric hull in deep water by Capytaine.
 
     Parameters
     ----------
     profile : (n, 2) radius and height above the surface, from the keel up [m]
-    density, gravity : density of the water and gravity [kg/m³], [m/s²]
+    density, gravity : density of the water [kg/m³] and acceleration of gravity [m/s²]
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Extremes and fatigue of a Gaussian tension: cycle distribution by Dirlik, damage by Miner."""
+"""Extremes and fatigue of a Gaussian tension: ranges by Dirlik, damage by Miner's rule."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,16 +13,16 @@ from calm.physics.materials import fibre_of, materials_in
 
 
 def greatest_of(deviation: float, period: float, duration: float) -> float:
-    """Return the most probable maximum of a Gaussian process, as the distance from its mean.
+    """Return the most probable maximum of a Gaussian process, measured from its mean.
 
-    σ √(2 ln N) with N = duration / zero-crossing period (Longuet-Higgins 1952); 0 for a constant
-    process.
+    The formula is σ √(2 ln N) with N = duration / zero-crossing period (Longuet-Higgins 1952). The
+    result is 0 for a constant process.
 
     Parameters
     ----------
     deviation : standard deviation σ, in the unit of the result
     period : time between upward crossings of the mean [s]
-    duration : duration [s]
+    duration : duration to which the maximum refers [s]
     """
     if not deviation > 0.0 or isnan(period):
         return 0.0
@@ -30,15 +30,15 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
 
 
 def passing_probability(margin: float, deviation: float, period: float, duration: float) -> float:
-    """Return the probability that a Gaussian process deviates by more than a margin from its mean
-    within a duration.
+    """Return the probability that a Gaussian process departs from its mean by more than a margin.
 
-    1 - exp(-N exp(-½ (margin/σ)²)), with N as in `greatest_of` (Rice 1945).
+    The formula is 1 - exp(-N exp(-½ (margin/σ)²)), with N as in `greatest_of` (Rice 1945).
 
     Parameters
     ----------
-    margin, deviation : margin from the mean, and standard deviation, in the same unit
-    period, duration : as in `greatest_of` [s]
+    margin, deviation : margin from the mean, and standard deviation σ, in the same unit
+    period : time between upward crossings of the mean [s]
+    duration : duration to which the probability refers [s]
     """
     if deviation <= 0.0:
         return 0.0 if margin > 0.0 else 1.0
@@ -58,15 +58,15 @@ tensions measured at sea is wider (`calm.waves.measured`).
 
 @dataclass(frozen=True)
 class FatigueCurve:
-    """Fatigue curve: number of cycles to failure for a tension range R, N = K R^-slope.
+    """Fatigue curve N = K R^-slope: number of cycles to failure at a tension range R.
 
     Attributes
     ----------
-    slope : m of the curve
+    slope : exponent m of the curve
     logarithm : log10 of K
-    by_mean : decrease of log10 K per mean tension over breaking load
-    range : meaning of the range R: stress in the steel [MPa], or fraction of the breaking load
-    source : publication
+    by_mean : decrease of log10 K per unit of mean tension divided by breaking load
+    range : what R measures: `stress` in the steel [MPa], or `share` of the breaking load
+    source : publication of the curve
     """
 
     slope: float
@@ -107,9 +107,10 @@ load, half the range used here; their distance from the mean is not stated.
 class PieceFatigue:
     """Fatigue of a piece; values are None without a curve or if a required parameter is unknown.
 
-    `life` is in years to a damage of 1. `life_low` and `life_high` are for standard deviations of
-    tension larger and smaller by `BAND`, `life_half_cut_off` and `life_twice_cut_off` for half and
-    twice the cut-off frequency of the waves. `unknown` names the missing parameter.
+    `life` is the time to a damage of 1 [years]. `life_low` and `life_high` are the lives if the
+    standard deviations of tension are larger and smaller by `BAND`; `life_half_cut_off` and
+    `life_twice_cut_off` are the lives for half and twice the cut-off frequency of the waves.
+    `unknown` names the missing parameter.
     """
 
     index: int
@@ -126,8 +127,12 @@ class PieceFatigue:
 
 
 def moments_of(omega: Floats, spectral: Floats) -> Floats:
-    """Return the spectral moments m0, m1, m2 and m4 of variances (f, …) at frequencies (f,)
-    [rad/s].
+    """Return the spectral moments m0, m1, m2 and m4 of a response.
+
+    Parameters
+    ----------
+    omega : (f,) angular frequencies [rad/s]
+    spectral : (f, …) variance of the response at each frequency
     """
     shape = (-1,) + (1,) * (spectral.ndim - 1)
     powers = [(spectral * omega.reshape(shape) ** power).sum(0) for power in (0, 1, 2, 4)]
@@ -135,16 +140,15 @@ def moments_of(omega: Floats, spectral: Floats) -> Floats:
 
 
 def dirlik(moments: Sequence[float], slope: float) -> float:
-    """Return the rate of rainflow ranges of a Gaussian process, raised to a power and summed, per
-    second.
+    """Return the mean of R^slope of the rainflow ranges R, times their rate [1/s].
 
-    Dirlik 1985, Application of computers in fatigue analysis (University of Warwick): the ranges
-    have one exponential and two Rayleigh distributions, fitted to simulations.
+    The ranges have one exponential and two Rayleigh distributions that were fitted to simulations
+    (Dirlik 1985, Application of computers in fatigue analysis, University of Warwick).
 
     Parameters
     ----------
     moments : m0, m1, m2, m4 for angular frequencies
-    slope : exponent
+    slope : exponent of the ranges
     """
     zeroth, first, second, fourth = moments
     if not zeroth > 0.0:
@@ -166,10 +170,10 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
 
 
 def narrow_band(moments: Sequence[float], slope: float) -> float:
-    """Return the result of `dirlik` for a narrow-band process with Rayleigh ranges: ν0 (2 √(2
-    m0))^m Γ(1 + m/2).
+    """Return the result of `dirlik` for a narrow-band process.
 
-    It is an upper bound for processes with the same moments m0 and m2 (Rychlik 1993).
+    The ranges of such a process have a Rayleigh distribution. The formula is ν0 (2 √(2 m0))^m Γ(1 +
+    m/2). It is an upper bound for all processes with the same moments m0 and m2 (Rychlik 1993).
     """
     zeroth, _, second, _ = moments
     if not zeroth > 0.0:
@@ -180,8 +184,9 @@ def narrow_band(moments: Sequence[float], slope: float) -> float:
 
 
 def curve_of(component: Component) -> str | None:
-    """Return the name of a component's fatigue curve, as specified or by type and material; None if
-    unknown.
+    """Return the name of a component's fatigue curve: as specified, else by type and material.
+
+    Return None if no curve applies.
     """
     if component.fatigue is not None and component.fatigue.curve is not None:
         return component.fatigue.curve
@@ -202,9 +207,9 @@ def fatigue_of(
 
     Parameters
     ----------
-    component, index, label : component, index and label of the piece; corrosion reduces its
-        diameter, and quadratically its strength
-    seas : share of time, mean tension [N] and moments of the tension in each sea
+    component, index, label : component, index and label of the piece; corrosion reduces the
+        diameter, and the strength with the square of the diameter
+    seas : share of time, mean tension [N], and spectral moments of the tension in each sea
     """
     name, strength = curve_of(component), component.breaking_load
     size = getattr(component, "diameter", None)

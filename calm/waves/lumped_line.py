@@ -43,21 +43,22 @@ class LumpedLine:
 
     Attributes
     ----------
-    position : (n, 3) east, north and up from the surface [m]
+    position : (n, 3) position east, north, and up from the surface [m]
     mass : (n,) mass [kg]
     added_across, added_along : (n,) added mass normal and tangential to the line [kg]
     water_across, water_along : (n,) displaced mass on which the wave pressure acts [kg]
-    across_drag, along_drag, any_drag : (n,) K of K|v|v, for the flow normal and tangential to
-        the line, and independent of direction [N/(m/s)²]
-    tangent : (n, 3) unit vectors down the line
+    across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for the flow normal to the line,
+        for the tangential flow, and for flow in any direction [N/(m/s)²]
+    tangent : (n, 3) unit vectors down the line, at the nodes
     tension : (n-1,) tension in equilibrium [N]
     stiffness : (n-1,) spring stiffness dT/d(length) [N/m]
-    spring : (n-1, 3) unit vectors down the springs
+    spring : (n-1, 3) unit vectors along the springs, down the line
     span : (n-1,) stretched lengths of the springs [m]
-    current : (n, 3) current [m/s]
-    piece_spring : (pieces,) index of the spring below the upper end of each piece, for pieces of
-        the top float below their lower end; -1 without a spring
-    piece_below : (pieces,) next spring of the same piece, or the same spring if there is no other
+    current : (n, 3) current at the nodes [m/s]
+    piece_spring : (pieces,) index of the spring below the upper end of each piece, but below the
+        lower end for pieces of the top float; -1 without a spring
+    piece_below : (pieces,) index of the next spring of the same piece; if there is none,
+        `piece_spring`
     piece_node : (pieces,) node at the upper end of each piece; -1 on the seabed
     top_pieces : number of pieces of the top float, including the pieces that it carries above the
         surface
@@ -86,16 +87,18 @@ class LumpedLine:
     inextensible: tuple[str, ...]
 
     def turned(self, motion: Complexes) -> Complexes:
-        """Return the rotation (f, n-1, 3) of the springs normal to their axes, for a motion (f, n,
-        3) [rad].
+        """Return the rotation (f, n-1, 3) of the springs [rad], for motions (f, n, 3).
+
+        It is normal to their axes.
         """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
 
     def upper_ends(self, middle: Complexes) -> Complexes:
-        """Extrapolate values (f, n-1, …) at the midpoints of springs to the upper ends of pieces.
+        """Extrapolate values (f, n-1, …) from the midpoints of springs to the upper ends of pieces.
 
-        Above the midpoint of the first spring of a piece, the values continue linearly.
+        The extrapolation is linear, from the first two springs of a piece. Pieces on the seabed get
+        0.
         """
         first, next_one = self.piece_spring, self.piece_below
         share = self.span[first] / (self.span[first] + self.span[next_one])
@@ -105,14 +108,15 @@ class LumpedLine:
 
 
 def lumped_line(leg: Leg, solution: Solution, longest: float) -> LumpedLine:
-    """Convert the line of a solution to lumped masses.
+    """Represent the line of a solution by lumped masses and springs.
 
-    Half the mass and the drag of an element is lumped at each of its ends. Parts on the seabed do
-    not move.
+    Half of the mass and of the drag of an element is lumped at each of its ends. Parts on the
+    seabed do not move and are omitted.
 
     Parameters
     ----------
     leg : leg that was solved
+    solution : equilibrium of this leg
     longest : largest length of an element [m]
     """
     pieces = leg.file.pieces
@@ -207,9 +211,7 @@ _NODE_FIGURES = (
 def _element_figures(
     component: Component, carried: Line, piece: int, cut: float
 ) -> dict[str, float]:
-    """Return the masses and drag of an element: a rigid piece, or a length [m] of a
-    flexible piece.
-    """
+    """Return masses and drag of a rigid piece, or of `cut` metres of a flexible piece."""
     flexible = isinstance(component, Flexible)
     share, length = (cut, 1.0) if flexible else (1.0, _length_of(component))
     across, along = float(carried.normal_drag[piece]), float(carried.tangential_drag[piece])
@@ -225,7 +227,7 @@ def _length_of(component: Component) -> float:
 
 
 def _figures_of(component: Component, length: float) -> dict[str, float]:
-    """Return the masses of a component, per metre for a flexible component [kg, kg/m].
+    """Return the masses of a component [kg], or for a flexible component per metre [kg/m].
 
     An unknown mass follows from the net buoyancy and the displacement for its size.
     """
@@ -247,8 +249,9 @@ def _figures_of(component: Component, length: float) -> dict[str, float]:
 
 
 def _volume(component: Component, length: float) -> float:
-    """Return the displaced volume, estimated from the outer dimensions if unspecified [m³,
-    m³/m].
+    """Return the displaced volume [m³], or for a flexible component per metre [m³/m].
+
+    It is estimated from the outer dimensions if it is not specified.
     """
     diameter = float(getattr(component, "diameter", 0.0) or 0.0)
     if isinstance(component, Cable):
@@ -266,7 +269,7 @@ def _volume(component: Component, length: float) -> float:
 
 
 def _axial(component: Component, tension: float) -> float:
-    """Return the tangent stiffness EA at a tension [N]."""
+    """Return the stiffness EA for small changes about a tension [N]."""
     if isinstance(component, Chain):
         return component.stiffness or CHAIN_STIFFNESS * component.diameter**2
     if isinstance(component, Cable):

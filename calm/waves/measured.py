@@ -1,12 +1,11 @@
-"""Ratio of tensions measured at sea to computed tensions, as a band for low and for high sea
-states.
+"""Ratio of tensions measured at sea to computed tensions, for low and for high seas.
 
 The Southern Ocean Flux Station (SOFS, 47° S, 4600 m of water, disc buoys of 2.7 m on inverse
 catenaries) had a load cell below its buoy. Five of its lines are described well enough to be
-computed: SOFS-1 and SOFS-3 to SOFS-6. Standard deviations of the tension are compared by bins of
-significant height, 1.5 to 9.5 m. The peak periods are from the load cases of the station for these
-heights. No parameter was fitted. The comparison is in `tests/validation/test_sofs.py`; source of
-the measurements: petejan/sots-cable-model.
+computed: SOFS-1 and SOFS-3 to SOFS-6. Standard deviations of the tension are compared in bins of
+significant height from 1.5 to 9.5 m, with the peak periods that the load cases of the station have
+for these heights. No parameter was fitted. The comparison is in `tests/validation/test_sofs.py`;
+the measurements are from petejan/sots-cable-model.
 """
 
 from __future__ import annotations
@@ -25,9 +24,10 @@ COMPARED = 1.0, 10.0
 
 @dataclass(frozen=True)
 class MeasuredBand:
-    """Band, `low` to `high`, of the ratio of measured to computed standard deviation of tension.
+    """Range of the ratio of measured to computed tension, from `low` to `high`.
 
-    `from_height` and `to_height` are the significant heights of the seas compared [m].
+    The ratio is that of the standard deviations. `from_height` and `to_height` are the limits of
+    significant height of the seas compared [m].
     """
 
     low: float
@@ -50,15 +50,14 @@ seas, `panels` 1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to
 def measured_band(
     significant_height: float, heave: Literal["filtered", "panels", "follows"]
 ) -> MeasuredBand:
-    """Return the band of measured tensions for a sea state, for the line below a float at the
-    surface.
+    """Return the band of measured tensions below a float at the surface.
 
     Seas outside the range of the comparison get the band of the nearest height.
 
     Parameters
     ----------
     significant_height : significant wave height [m]
-    heave : method that computes the heave of the float
+    heave : method by which the heave of the float is computed
     """
     low, high = _BY_HEAVE[heave]
     if significant_height <= HIGHEST_LOW_SEA:

@@ -1,5 +1,6 @@
-"""Tensions and motions of a mooring in one sea state, including those for other cut-off frequencies
-and for the measured band.
+"""Tensions and motions of the pieces of a mooring in one sea state.
+
+The results include tensions for other cut-off frequencies and for the band measured at sea.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 class PieceLoads:
     """Tensions of a piece in a sea state [N].
 
-    `tension_max` and `tension_min` are the most probable extremes of the duration at the upper end,
-    `greatest` and `least` the extremes over the whole piece. `slack_probability` is the probability
-    that the upper end becomes slack in the duration.
+    `tension_max` and `tension_min` are the most probable extremes at the upper end within the
+    duration; `greatest` and `least` are the extremes over the whole piece. `slack_probability` is
+    the probability that the upper end becomes slack within the duration.
     """
 
     tension_std: float
@@ -42,14 +43,15 @@ class PieceLoads:
 
 @dataclass(frozen=True)
 class PieceInWaves:
-    """Results for a piece of the line in a sea state: tensions as in `PieceLoads`, motions [m],
-    [degrees].
+    """Results for a piece of the line in a sea state.
+
+    Tensions are described in `PieceLoads`. Heave is in m, and tilt in degrees.
 
     Attributes
     ----------
     half_cut_off, twice_cut_off : tensions with half and with twice the cut-off frequency
-    measured_low, measured_high : tensions at the ends of the band measured at sea; None without a
-        band
+    measured_low, measured_high : tensions at the two ends of the band measured at sea; None if no
+        band applies
     """
 
     index: int
@@ -77,9 +79,7 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state up to its cut-off frequency, and up to half and twice this
-    frequency.
-    """
+    """Responses to a sea state up to its cut-off frequency, half of it, and twice it."""
 
     full: WaveResponse
     half: WaveResponse
@@ -88,20 +88,23 @@ class CutOffs(NamedTuple):
 
 @dataclass(frozen=True)
 class MooringInSea:
-    """Results for a mooring in a sea state: its pieces down the line, and the labels of pieces that
-    become slack.
+    """Results for a mooring in one sea state.
 
     Attributes
     ----------
+    components : results for the pieces, down the line
+    slack : labels of the pieces that become slack
     cut_off : cut-off frequency of the waves [rad/s]
     band : band of measured over computed standard deviations of tension; None for a line below the
         surface and for a float with a prescribed response
-    follower_std : standard deviation of the tension below a float that follows every wave [N], only
-        in the highest of several seas; None for a line below the surface
+    follower_std : standard deviation of the tension below a float that follows every wave [N],
+        computed only in the highest of several seas; None in other seas and for a line below the
+        surface
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
-    moments : moments of the pieces, for the cut-off frequency, half and twice of it
-    spectrum : spectrum of the tension at the top, N² s/rad at rad/s
-    along : depth [m], mean, standard deviation and maximum tension down the line [N]
+    moments : moments of the tension in the pieces, for the cut-off frequency, half of it, and twice
+        it
+    spectrum : angular frequencies [rad/s], and spectrum of the tension at the top [N² s/rad]
+    along : depth [m], and mean, standard deviation and maximum of the tension down the line [N]
     """
 
     sea: SeaState
@@ -143,8 +146,9 @@ class _Tensions:
         self.mean, self.duration = line.tension, duration
 
     def loads(self, piece: int, mean: float, own: slice, factor: float = 1.0) -> PieceLoads:
-        """Return the tensions of a piece with given springs; standard deviations are multiplied by
-        a factor.
+        """Return the tensions of a piece with the springs `own`.
+
+        Standard deviations are multiplied by `factor`.
         """
         deviation, apart = factor * float(self.at_ends[piece]), float(self.periods[piece])
         most = greatest_of(deviation, apart, self.duration)
@@ -159,8 +163,9 @@ class _Tensions:
         )
 
     def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
-        """Return mean and spectral moments at the spring with the largest standard deviation; 0 on
-        the seabed.
+        """Return mean and spectral moments at the spring with the largest standard deviation.
+
+        The moments are 0 on the seabed.
         """
         if own == slice(0):
             return mean, np.zeros(4)
@@ -182,8 +187,9 @@ def mooring_in_sea(
 
     Parameters
     ----------
-    duration : duration for the maximum and the minimum tension [s]
-    follower : `follower_std` of the result
+    responses : responses for the cut-off frequency, half of it, and twice it
+    duration : duration to which the maximum and the minimum tension refer [s]
+    follower : `MooringInSea.follower_std` of the result
     """
     response = responses.full
     pitches = buoy is not None and buoy.profile is not None

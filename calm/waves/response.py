@@ -1,5 +1,6 @@
-"""Linear response of a line to waves, frequency by frequency, with drag linearised for equal energy
-dissipation.
+"""Linear response of a line to waves, frequency by frequency.
+
+Drag is linearised so that it dissipates the same energy.
 """
 
 from __future__ import annotations
@@ -38,8 +39,7 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 @dataclass(frozen=True)
 class WaveResponse:
-    """Transfer functions of a line for unit wave elevation, and the weights of the frequencies in a
-    sea state.
+    """Transfer functions of a line per metre of wave elevation, at the frequencies of a sea state.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class WaveResponse:
     weight : (f,) variance of the elevation that each frequency represents [m²]
     motion : (f, n, 3) motion of the nodes [m/m]
     pull : (f, n-1) tension in the springs [N/m]
-    pitch : (f,) pitch of the float, towards the direction of wave travel [rad/m]
+    pitch : (f,) pitch of the float, positive in the direction of wave travel [rad/m]
     """
 
     omega: Floats
@@ -57,7 +57,7 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Return standard deviation and zero-crossing period [s] of transfer functions (f, …)."""
+        """Return standard deviation and zero-crossing period [s] for transfer functions (f, …)."""
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
         zeroth = spectral.sum(0)
@@ -67,9 +67,9 @@ class WaveResponse:
         return np.sqrt(zeroth), period
 
     def below(self, limit: float) -> WaveResponse:
-        """Return the response to the waves below a frequency only [rad/s].
+        """Return the response to the waves below a frequency `limit` [rad/s].
 
-        Each frequency represents the waves to the midpoints between it and its neighbours.
+        Each frequency represents the waves up to the midpoints between it and its neighbours.
         """
         middle = 0.5 * (self.omega[1:] + self.omega[:-1])
         edges = np.concatenate([self.omega[:1], middle, self.omega[-1:]])
@@ -77,7 +77,7 @@ class WaveResponse:
         return replace(self, weight=self.weight * np.clip(share, 0.0, 1.0))
 
     def joined(self, other: WaveResponse) -> WaveResponse:
-        """Return the combined response to the waves of two responses."""
+        """Combine the frequencies of two responses in one."""
         names = [each.name for each in fields(self)]
         both = ((getattr(self, name), getattr(other, name)) for name in names)
         return WaveResponse(*(np.concatenate(pair) for pair in both))
@@ -91,7 +91,7 @@ class Waves:
     ----------
     omega : (f,) angular frequency [rad/s]
     toward : direction of travel [degrees], clockwise from north
-    depth, density, gravity : depth, density and gravity [m], [kg/m³], [m/s²]
+    depth, density, gravity : water depth [m], density [kg/m³], and acceleration of gravity [m/s²]
     """
 
     omega: Floats
@@ -102,7 +102,6 @@ class Waves:
 
     @property
     def number(self) -> Floats:
-        """Wave numbers [1/m]."""
         return wave_numbers(self.omega, self.depth, self.gravity)
 
     @property
@@ -111,9 +110,10 @@ class Waves:
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the water velocity at positions (n, 3), per metre of wave elevation: (f, n, 3).
+        """Return the velocity (f, n, 3) of water at positions (n, 3) [1/s].
 
-        Linear waves with elevation Re e^(i(ωt - ks)), s in the direction of travel.
+        It is per metre of wave elevation. The elevation of the linear waves is the real part of
+        e^(i(ωt - ks)), with s in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
@@ -129,13 +129,13 @@ class Waves:
 
 
 class _Afloat(NamedTuple):
-    """Dynamic stiffness of a float and its exciting forces, in the three translations of its
-    attachment point and in pitch.
+    """Dynamic stiffness of a float and exciting forces on it, without drag.
 
-    `held` (f, 4, 4) is the stiffness and `pushed` (f, 4) the force per metre of elevation, both
-    without drag. Drag acts at p points whose motion is given by `ways` (p, 3, 4), in water of
-    velocities `water` (f, p, 3). The bottom also has a rotational drag `turning` (K), relative to
-    the `slope` (f,) of the waves.
+    The four degrees of freedom are the translations of the attachment point of the line, and pitch.
+    `held` (f, 4, 4) is the stiffness and `pushed` (f, 4) the force per metre of elevation. Drag
+    acts at p points: `ways` (p, 3, 4) gives their motion by the degrees of freedom, and `water` (f,
+    p, 3) the velocity of the water there. The bottom has a rotational drag with the factor
+    `turning`, relative to the `slope` (f,) of the waves.
     """
 
     held: Complexes
@@ -178,8 +178,9 @@ class _Afloat(NamedTuple):
         return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
-        """Return stiffness and exciting forces with linear drag (3, 3) and rotational drag
-        added.
+        """Return stiffness and exciting forces including drag.
+
+        The drag is a linear drag (3, 3) and a rotational drag.
         """
         each = drag / len(self.ways)
         whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
@@ -200,19 +201,24 @@ def respond(
     first: Floats | None = None,
     once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
-    """Compute the response to a sea state, and the flow (n, 3) past the nodes for which drag is
-    linearised.
+    """Compute the response to a sea state.
 
-    The drag of each node is replaced by the linear drag that is equivalent, on average, over a
+    The drag of each node is replaced by the linear drag that is equivalent on average, for a
     Gaussian motion about the mean current: E[F v'] / E[v'²]. It is updated until the motions
-    converge. The flow is given as standard deviations along the axes of each node [m/s].
+    converge.
 
     Parameters
     ----------
+    line, buoy : the line, and the float at the surface; None for a line below the surface
     waves, sea : the waves, and their spectrum
     drag_factor : factor on the damping, for a sensitivity test
-    first : initial flow, such as that of a similar sea
-    once : use this flow without iteration
+    first : initial estimate of the flow past the nodes, such as the flow in a similar sea
+    once : whether to use this flow without iteration
+
+    Returns
+    -------
+    The response, and the flow past the nodes for which drag is linearised: (n, 3) standard
+    deviations along the axes of each node [m/s], followed by a row for the pitch of the float.
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
@@ -255,8 +261,9 @@ def respond(
 
 
 def _axes(line: LumpedLine) -> Floats:
-    """Return (n, 3, 3) unit vectors: along the line, along the mean normal flow, and normal to
-    both.
+    """Return (n, 3, 3) unit vectors at the nodes.
+
+    They lie along the line, along the mean normal flow, and normal to both.
     """
     t = line.tangent
     across = line.current - (line.current * t).sum(1, keepdims=True) * t
@@ -275,9 +282,7 @@ def _deviations(axes: Floats, relative: Complexes, weight: Floats) -> Floats:
 
 
 def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Floats:
-    """Return the (n, 3, 3) damping of the nodes for a flow with given standard deviations
-    [N/(m/s)].
-    """
+    """Return the damping (n, 3, 3) of the nodes, from standard deviations of the flow [N/(m/s)]."""
     axes = _axes(line)
     mean = np.einsum("nac,nc->na", axes, line.current)
     along = np.array([_slope(u, s) for u, s in zip(mean[:, 0], deviation[:, 0], strict=True)])
@@ -311,7 +316,7 @@ def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Float
 
 
 def _slope(mean: float, deviation: float) -> float:
-    """Evaluate E[d(|v|v)/dv] for a Gaussian flow: 2 (σ √(2/π) e^(-U²/2σ²) + U erf(U/(√2 σ)))."""
+    """Return E[d(|v|v)/dv] of a Gaussian flow: 2 (σ √(2/π) e^(-U²/2σ²) + U erf(U/(√2 σ)))."""
     ratio = mean / deviation
     return 2.0 * (
         deviation * sqrt(2.0 / pi) * exp(-0.5 * min(ratio**2, 1400.0))
@@ -320,7 +325,7 @@ def _slope(mean: float, deviation: float) -> float:
 
 
 def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexes:
-    """Return the (f, n, 3) forces of the accelerated water, per metre of wave elevation [N/m]."""
+    """Return the inertia forces (f, n, 3) on the nodes, per metre of wave elevation [N/m]."""
     across = line.water_across + line.added_across
     along = line.water_along + line.added_along
     t = line.tangent
@@ -352,7 +357,7 @@ def _solved(
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Solve for the motion (f, n, 3) of the nodes, by a block-tridiagonal matrix per frequency.
+    """Solve for the motion (f, n, 3) of the nodes, one block-tridiagonal system per frequency.
 
     `top` holds the stiffness (f, 3, 3) and the force (f, 3) of the float at the first node.
     """
@@ -421,18 +426,18 @@ def _times(matrices: Floats, vectors: Complexes) -> Complexes:
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
-    """Return the (f, n-1) change of tension in the springs from equilibrium [N/m]."""
+    """Return the change in tension (f, n-1) of the springs from equilibrium [N/m]."""
     stretched = ((motion[:, 1:] - motion[:, :-1]) * line.spring).sum(2)
     return np.asarray(line.stiffness * stretched)
 
 
 def wave_numbers(omega: Floats, depth: float, gravity: float) -> Floats:
-    """Solve ω² = g k tanh(k h) for the wave numbers k of linear waves [1/m], by Newton's method.
+    """Return the wave numbers k of linear waves [1/m]: ω² = g k tanh(k h), by Newton's method.
 
     Parameters
     ----------
     omega : (f,) angular frequencies [rad/s]
-    depth : water depth [m]
+    depth : water depth h [m]
     gravity : acceleration of gravity [m/s²]
     """
     deep = omega**2 / gravity

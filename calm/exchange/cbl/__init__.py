@@ -1,4 +1,4 @@
-"""Problem files of WHOI Cable."""
+"""Import and export of problem files of WHOI Cable."""
 
 from calm.exchange.cbl.reader import is_cbl, read_cbl
 from calm.exchange.cbl.writer import write_cbl

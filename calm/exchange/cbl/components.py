@@ -26,7 +26,9 @@ _SLIGHT = 1e-9
 
 @dataclass
 class ComponentMaker:
-    """Converter of components for the water of the problem; unsupported keys are added to
+    """Converter of buoys, anchors, connectors and materials to components.
+
+    Drag and weight refer to the water of the problem. Keys that CALM does not support are added to
     `dropped`.
     """
 
@@ -37,15 +39,14 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """Convert a material to a cable of given length [m], with its drag at a given depth [m] and
-        speed [m/s].
+        """Convert a material to a cable, with its drag at one depth and speed.
 
         Parameters
         ----------
         definition : definition of the material
         length : length of the segment [m]
-        depth : depth for a drag that depends on depth [m]
-        speed : speed for a drag that depends on speed [m/s]
+        depth : depth at which to evaluate a drag that depends on depth [m]
+        speed : speed at which to evaluate a drag that depends on speed [m/s]
         """
         values, name = definition.values, definition.name
         across, inside = values.number("d", "diam"), values.number("id")
@@ -97,7 +98,10 @@ class ComponentMaker:
             component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """Convert a connector to a sphere with the drag and length of the connector."""
+        """Convert a connector to a sphere of the same drag and length.
+
+        A connector without size becomes a body.
+        """
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         across, drag = values.number("d", "diam"), values.number("cdn")
@@ -114,11 +118,11 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """Convert an anchor; its weight is undefined if the file has none.
+        """Convert an anchor; it has no weight if the file has none.
 
         Parameters
         ----------
-        definition : None if the file has no definition
+        definition : definition of the anchor; None if the file has none
         name : name in the layout
         friction : friction coefficient in the layout; 0 if unspecified
         """
@@ -140,10 +144,10 @@ class ComponentMaker:
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """Convert the float at the upper end, or a towed body.
+        """Convert the float at the upper end of a mooring, or a towed body.
 
-        The hull is taken from the file. If the buoy does not float, the body is a point, as in WHOI
-        Cable.
+        A buoy that is not at the surface becomes a point, as in WHOI Cable; otherwise its hull is
+        taken from the file.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"
@@ -186,11 +190,11 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight to CALM's reference water; the mass is 0 if the specified mass is
-        impossible.
+        """Convert a weight in the file's water to reference water.
 
-        The displaced volume follows from both, so that the weight in the file's own water is
-        unchanged.
+        Return it with the mass. The displaced volume follows from weight and mass, so that the
+        weight in the file's own water is unchanged. If the mass is impossible, the mass is 0 and
+        the weight is unchanged.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0
@@ -206,8 +210,9 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """Whether a drag coefficient depends on depth. A table that ends at a realistic speed depends
-    on speed instead.
+    """True if a drag coefficient depends on depth, and not on speed.
+
+    A table that ends at a realistic speed is a table by speed.
     """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
@@ -217,7 +222,7 @@ def _drag(value: KeyValue | None, depth: float, speed: float) -> float:
 
 
 def varies(definition: CableDefinition) -> bool:
-    """Whether a drag coefficient of a material depends on depth."""
+    """True if a drag coefficient of a material varies with depth."""
     given = [definition.values[key] for key in ("cdn", "cdt") if key in definition.values]
     deep = [value for value in given if counts_on_depth(value)]
     return any(value.rows or (value.formula and value.formula.names) for value in deep)
@@ -226,7 +231,10 @@ def varies(definition: CableDefinition) -> bool:
 def _displacement(
     definition: CableDefinition, shape: str
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return rows of draft [m], displaced volume [m³] and immersed area [m²] of a known shape."""
+    """Return the displacement table of a buoy.
+
+    Its columns are draft [m], displaced volume [m³] and immersed area [m²].
+    """
     values = definition.values
     across = values.number("d", "diam")
     height = values.number("h", "height")
@@ -253,7 +261,7 @@ def _displacement(
 
 
 def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Convert diameters at heights above the keel to the displacement table of the hull."""
+    """Return the displacement table of a hull from its diameters at heights above the keel."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")

@@ -1,4 +1,4 @@
-"""Parse formulas of problem files to functions; a formula may depend on the depth `H`."""
+"""Parse formulas of problem files to functions, which may depend on the depth `H`."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -59,7 +59,7 @@ class TokenStream:
         return self.tokens[self.at]
 
     def ahead(self, count: int) -> Token:
-        """Return a later token, without consuming it."""
+        """Return the token `count` places after the next one, without consuming it."""
         return self.tokens[min(self.at + count, len(self.tokens) - 1)]
 
     def take(self) -> Token:
@@ -69,11 +69,11 @@ class TokenStream:
         return token
 
     def is_next(self, *signs: str) -> bool:
-        """Whether the next token is one of the given operators."""
+        """True if the next token is one of the given signs."""
         return self.next.kind == "sign" and self.next.text in signs
 
     def accept(self, sign: str) -> bool:
-        """Consume the next token if it is a given sign; return whether it is."""
+        """Consume the next token if it is the given sign; return whether it was."""
         return self.is_next(sign) and bool(self.take())
 
     def expect(self, sign: str) -> None:
@@ -96,16 +96,21 @@ class UnknownNameError(InputError):
 
 @dataclass
 class Expression:
-    """Parsed formula, with its names and its first token."""
+    """Parsed formula, with the names it contains and its first token."""
 
     formula: Formula
     names: frozenset[str]
     token: Token
 
     def at(self, **values: float) -> float:
-        """Evaluate the formula.
+        """Evaluate the formula for values of its names.
 
-        Raises UnknownNameError for other names, and InputError if there is no value.
+        Raises
+        ------
+        UnknownNameError
+            The formula contains other names.
+        InputError
+            The formula has no value, for example because it divides by zero.
         """
         unknown = sorted(self.names - values.keys())
         if unknown:
@@ -120,7 +125,7 @@ class Expression:
 
 
 def constant(text: str) -> float:
-    """Evaluate a formula without names."""
+    """Evaluate a formula that contains no names."""
     words = TokenStream(list(tokens_of([SourceLine(text, "", 1)])))
     value = read_expression(words).at()
     if words.next.kind != "end":
@@ -129,7 +134,7 @@ def constant(text: str) -> float:
 
 
 def read_expression(words: TokenStream) -> Expression:
-    """Parse a formula to its end; raises InputError if it cannot be parsed."""
+    """Parse a formula as far as it extends; raise InputError if it is invalid."""
     token, names = words.next, set[str]()
     formula = _Reader(words, names).choice(0)
     return Expression(formula, frozenset(names), token)

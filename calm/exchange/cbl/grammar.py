@@ -45,15 +45,15 @@ class KeyValue:
     repeats: bool = False
 
     def number(self, **values: float) -> float:
-        """Evaluate a formula; `values` are the values of its names."""
+        """Evaluate the formula; `values` are the values of its names."""
         if self.formula is None:
             raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
         return self.formula.at(**values)
 
     def at(self, depth: float) -> float:
-        """Evaluate a formula or a table at a depth, or at another variable it depends on.
+        """Evaluate the formula or table at a depth, or at the speed or strain that it depends on.
 
-        The lines of a table are extrapolated at both ends.
+        A table is interpolated linearly, and extrapolated beyond its ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)
@@ -72,12 +72,12 @@ class KeyValue:
 
 
 class KeyValues(dict[str, KeyValue]):
-    """Values by key, in a section, a definition or a block."""
+    """Values by key, of a section, a definition or a block."""
 
     def number(self, *keys: str, default: float = 0.0) -> float:
-        """Return the first nonzero value among synonymous keys, at time 0.
+        """Return the first nonzero value among keys that are synonyms, at time 0.
 
-        The keys are synonyms; `default` is returned if all are missing.
+        `default` is returned if all keys are missing.
         """
         found = default
         for key in keys:
@@ -103,9 +103,9 @@ class CableDefinition:
 
 @dataclass
 class CableSegment:
-    """Length of a single material, with the connector to the next segment above.
+    """A length of one material, and the connector at its upper end.
 
-    `attachments` are connectors attached to it, each with its nodes.
+    `attachments` are connectors attached along the segment, each with the numbers of its nodes.
     """
 
     token: Token
@@ -121,13 +121,13 @@ class CableTerminal(CableDefinition):
 
     @property
     def buoy(self) -> KeyValue | None:
-        """Buoy or platform at this end."""
+        """Name of the buoy or platform at this end; None if there is none."""
         return self.values.get("buoy") or self.values.get("platform")
 
 
 @dataclass
 class CableBranch:
-    """A side line, with its segments from the junction outward, and its terminal."""
+    """A side line: its segments from the junction outward, and its terminal."""
 
     token: Token
     layout: CableItems
@@ -144,7 +144,7 @@ class CableProblem:
     Attributes
     ----------
     options : options of the import
-    description, environment : values by key
+    description, environment, analysis : values of these sections by key
     buoys, anchors, connectors, materials : definitions by name
     layout : terminals, segments and branches in the order of the file
     """
@@ -173,7 +173,7 @@ class CableProblem:
 
     @property
     def segments(self) -> list[CableSegment]:
-        """Segments of the line, from the first end to the last."""
+        """Segments of the line, from its first end to its last."""
         return [each for each in self.layout if isinstance(each, CableSegment)]
 
     @property
@@ -183,7 +183,7 @@ class CableProblem:
 
 
 def read_problem(path: Path, options: ImportOptions) -> CableProblem:
-    """Parse a file; raises InputError, with line and column, if it is invalid."""
+    """Parse a problem file; raise InputError with line and column if it is invalid."""
     words = TokenStream(list(tokens_of(Preprocessor(options).read(path))))
     problem = CableProblem(path, options)
     while words.next.kind != "end":
@@ -213,7 +213,7 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
 
 
 def _section_name(words: TokenStream) -> str | None:
-    """Return the name of a section that begins here, or None."""
+    """Return the name of a section that begins here; None if none begins here."""
     word, behind = words.next.text.lower(), words.ahead(1)
     if words.next.kind != "name" or word not in _SECTIONS:
         return None
@@ -223,7 +223,7 @@ def _section_name(words: TokenStream) -> str | None:
 
 
 def _values(words: TokenStream) -> KeyValues:
-    """Parse successive keys and values; the last value of a repeated key counts."""
+    """Parse successive keys and values; the last value of a repeated key is used."""
     values = KeyValues()
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
@@ -257,9 +257,7 @@ def _word(words: TokenStream, key: Token) -> str:
 
 
 def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
-    """Parse rows such as ``(0, 0.5) (100, 0.2)``; return none if the parenthesis belongs to a
-    formula.
-    """
+    """Parse rows such as ``(0, 0.5) (100, 0.2)``; return no rows for a formula in parentheses."""
     rows: list[tuple[Expression, ...]] = []
     while True:
         back = words.at

@@ -25,14 +25,15 @@ _End = grammar.CableTerminal | str
 
 @dataclass
 class CableLayout:
-    """Converter of the layout of a problem.
+    """Converter of the layout of a problem to pieces, or to legs of a net.
 
     Attributes
     ----------
     problem : problem of the line
     makers : converter of components
-    design : design that receives the pieces and legs, and whose water is used for drags by depth
-    nodes : number of nodes of a net so far; legs begin at their first segment in the layout
+    design : design to which pieces and legs are added; drag that depends on depth or speed is
+        evaluated in its water
+    nodes : number of nodes of the net so far
     """
 
     problem: grammar.CableProblem
@@ -48,7 +49,7 @@ class CableLayout:
 
     @property
     def depth(self) -> float:
-        """Water depth [m]; raises InputError if the file has none."""
+        """Water depth [m]; InputError is raised if the file has none."""
         if self.water.depth is None:
             raise refused(self.problem.path, "the environment has no `depth`")
         return self.water.depth
@@ -67,8 +68,10 @@ class CableLayout:
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
 
     def lay_tow(self) -> None:
-        """Convert the line from the ship down. A ship at rest in a current becomes a moving ship in
-        still water.
+        """Convert the line from the ship down.
+
+        If the ship is at rest in a current, it becomes a moving ship, and the current at the
+        surface is subtracted.
         """
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals
@@ -92,14 +95,17 @@ class CableLayout:
     def lay_net(self) -> None:
         """Convert a line with branches, or with an anchor at each end, to legs of a net.
 
-        Raises InputError if a branch has no end, or if there is nothing between two anchors.
+        Raises
+        ------
+        InputError
+            A branch has no end, or there is nothing between two anchors.
         """
         first, *others = self.problem.layout
         assert isinstance(first, grammar.CableTerminal)
         self._lay(others, first)
 
     def _anchor(self, end: grammar.CableTerminal) -> model.ImportedComponent:
-        """Return the anchor of an end, with the height of the end."""
+        """Return the anchor at an end of the line; its length is the height of this end."""
         name = end.values["anchor"].text
         known, height = self.problem.anchors.get(name), end.values.number("z")
         anchor = self.makers.anchor(known, name, end.values.number("mu"))
@@ -139,10 +145,10 @@ class CableLayout:
         length: float,
         lower: float,
     ) -> list[model.ImportedPiece]:
-        """Convert a segment to pieces from below; the depth of its lower end is that of an upright
-        line.
+        """Convert a segment to pieces, from the lowest up.
 
-        There are several pieces if the drag changes with depth.
+        There are several pieces if the drag varies with depth. Depths are those in the upright
+        line; `lower` is the depth of the lower end of the segment [m].
         """
         clamps = self._clamps(segment, length)
         count = _PARTS if varies(material) else 1
@@ -171,7 +177,7 @@ class CableLayout:
         return made
 
     def _speed(self, depth: float) -> float:
-        """Speed of the current at the level closest to a depth [m/s]."""
+        """Return the current speed at the level that is closest to a depth [m/s]."""
         levels = self.water.current or ((0.0, 0.0, 0.0, 0.0),)
         row = min(levels, key=lambda each: abs(each[0] - depth))
         return math.hypot(row[1], row[2])
@@ -179,9 +185,7 @@ class CableLayout:
     def _clamps(
         self, segment: grammar.CableSegment, length: float
     ) -> list[tuple[float, model.ImportedComponent]]:
-        """Return the items attached to nodes of a segment, with heights above the lower end of the
-        segment.
-        """
+        """Return the items at the nodes of a segment, with heights above its lower end [m]."""
         heights = _heights(segment, length) if segment.attachments else []
         found = []
         for token, nodes in segment.attachments:
@@ -199,7 +203,7 @@ class CableLayout:
         return self.makers.connector(found)
 
     def _lay(self, layout: grammar.CableItems, start: _End) -> None:
-        """Convert the layout after a terminal or a node, including branches."""
+        """Convert the part of a layout after a terminal or a node, including its branches."""
         segments: list[grammar.CableSegment] = []
         branched = any(isinstance(each, grammar.CableBranch) for each in layout)
         last = layout[-1] if layout else None
@@ -228,7 +232,7 @@ class CableLayout:
             raise last.token.refuse(message) if last else refused(self.problem.path, message)
 
     def _leg(self, start: _End, segments: list[grammar.CableSegment], end: _End) -> None:
-        """Add a leg, reversed if the layout lists it downwards."""
+        """Add a leg to the net; a leg that the layout lists downwards is reversed."""
         items = self._pieces_of(segments)[::-1]
         first, lower, low = self._end(start)
         last, upper, high = self._end(end)
@@ -242,8 +246,9 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Convert an end of the layout: return its pieces, its support, and whether it is a lower
-        end.
+        """Return the pieces at an end of a leg.
+
+        Return also the key of its connection, and whether the leg leads down.
         """
         if isinstance(at, str):
             return [], model.joined_at(at), False
@@ -260,7 +265,7 @@ class CableLayout:
 
 
 def _turned(item: model.ImportedPiece) -> model.ImportedPiece:
-    """Reverse a piece, so that its clamps are counted from the other end."""
+    """Reverse a piece: its clamps are then measured from its other end."""
     clamps = [replace(each, at=item.extent - each.at) for each in item.clamps[::-1]]
     return replace(item, clamps=clamps)
 
@@ -271,7 +276,7 @@ def _similar_drag(one: model.ImportedComponent, other: model.ImportedComponent) 
 
 
 def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
-    """Return node heights above the lower end of a segment [m]."""
+    """Return the heights of the nodes above the lower end of a segment [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
         raise segment.token.refuse("attachments need `nodes = (count, share)`")
@@ -291,7 +296,7 @@ def _defined(
     value: grammar.KeyValue | None,
     token: Token,
 ) -> grammar.CableDefinition:
-    """Return the definition that a value names; errors refer to the value, or to `token`."""
+    """Return the definition with the name in `value`; errors refer to the value, or to `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
     found = definitions.get(value.text)

@@ -1,7 +1,8 @@
 """Resolve comments, macros, conditions and included files of a problem file.
 
-Available libraries for C preprocessing do not limit the expansion of macros within their arguments,
-split numbers such as `6e3` if `e3` is a macro, and accept a comment without an end.
+Existing libraries for C preprocessing are not used: they do not limit the expansion of macros
+within their arguments, they split numbers such as `6e3` if `e3` is a macro, and they accept a
+comment without an end.
 """
 
 import os
@@ -34,7 +35,7 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Resolves comments, macros, conditions and includes like the C preprocessor."""
+    """Resolves comments, macros, conditions and includes as the C preprocessor does."""
 
     options: ImportOptions
     _macros: dict[str, _Macro] = field(default_factory=dict)
@@ -45,9 +46,13 @@ class Preprocessor:
     def read(self, path: Path) -> list[SourceLine]:
         """Return the lines of a file and of its included files.
 
-        Raises InputError if a file cannot be read or may not be included, a directive is invalid,
-        or macros expand without end. Raises UsageError if a macro defined by the user has an
-        invalid name.
+        Raises
+        ------
+        InputError
+            A file cannot be read or may not be included, a directive is invalid, or macros expand
+            without end.
+        UsageError
+            A macro defined by the user has an invalid name.
         """
         for name, value in self.options.defines.items():
             if not _NAME.fullmatch(name):
@@ -162,7 +167,7 @@ class Preprocessor:
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
-        """Expand the macros in a text, except in quoted texts."""
+        """Expand the macros in a text, except inside quotation marks and macros in `hidden`."""
         pieces: list[str] = []
         size, at = 0, 0
         while found := _PIECE.match(text, at):
@@ -197,7 +202,7 @@ class Preprocessor:
 
 
 def _arguments(text: str, at: int) -> tuple[list[str], int]:
-    """Return the arguments in the following parentheses, and the position after them."""
+    """Return the arguments in parentheses at a position, and the position after them."""
     opening = re.compile(r"\s*\(").match(text, at)
     if opening is None:
         return [], at
@@ -216,8 +221,9 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 
 
 def _without_comments(text: str, path: str) -> list[str]:
-    """Remove comments, keeping the number of lines; lines joined by a backslash are moved into the
-    first of them.
+    """Remove comments, keeping the number of lines.
+
+    Lines joined by a backslash are moved to the first of them.
     """
     pieces: list[str] = []
     at = 0

@@ -67,18 +67,19 @@ _Grid = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def is_cbl(content: bytes) -> bool:
-    """Return whether a file looks like a WHOI Cable problem: it has at least two of the section
-    names.
-    """
+    """True if a file looks like a WHOI Cable problem, by at least two of its section names."""
     text = content.decode("latin-1").lower()
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
 
 def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
-    """Read a mooring or a tow.
+    """Read a problem file with a mooring, a net or a tow.
 
-    Raises InputError if the file is invalid or contains features that CALM cannot represent; all
-    undefined names are listed together.
+    Raises
+    ------
+    InputError
+        The file is invalid, or has features that CALM cannot represent. All undefined names are
+        listed together.
     """
     given, missing = dict(options.defines), list[Problem]()
     while True:
@@ -136,7 +137,7 @@ def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
 
 
 def _is_net(problem: CableProblem) -> bool:
-    """Whether a line has branches, or an anchor at each end."""
+    """True if the line has branches, or an anchor at each end."""
     anchored = all("anchor" in end.values for end in problem.terminals)
     branched = any(isinstance(each, CableBranch) for each in problem.layout)
     return problem.kind != "towing" and (branched or anchored)
@@ -202,7 +203,10 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
 def _current(
     axes: list[_Profile | None], angle: float, deepest: float
 ) -> tuple[tuple[float, float, float, float], ...]:
-    """Rows of depth, and speed to the east (x), to the north (y) and up (z), at time 0."""
+    """Return rows of depth [m] and current to the east (x), to the north (y) and up (z) [m/s].
+
+    The current is that at time 0.
+    """
 
     def at(depth: float) -> tuple[float, float, float]:
         x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
@@ -242,7 +246,7 @@ def _profile(environment: KeyValues, axis: str, grid: _Grid | None) -> _Profile 
 
 
 def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[float]) -> list[float]:
-    """Levels between which the current is linear within a tolerance."""
+    """Insert levels until the current is linear between levels, within a tolerance."""
     fastest = max(max(map(abs, at(depth))) for depth in levels)
     for _ in range(_HALVINGS):
         finer = [levels[0]]
@@ -263,11 +267,11 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
 def _gridded_current(
     value: KeyValue, problem: CableProblem, dropped: list[model.Remark]
 ) -> _Grid | None:
-    """Read the currents of a current file; None if the file does not exist.
+    """Read the currents of a current file; return None if the file does not exist.
 
-    The file begins with step, start and count of time, depth, x and y; then follow the speeds in x,
-    y and z, with depth varying fastest, then x, then y, then time. Omissions are added to
-    `dropped`.
+    The file begins with step, start and count of time, depth, x and y. The speeds in x, y and z
+    follow, with depth varying fastest, then x, then y, then time. Parts that are not used are added
+    to `dropped`.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include
@@ -314,7 +318,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Interpolate the grid at 0 along its first axis, or return the value at the closest end."""
+    """Interpolate a grid to 0 along its first axis; beyond its ends the closest value is used."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])

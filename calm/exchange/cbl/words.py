@@ -48,7 +48,10 @@ class Token:
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
     """Yield the tokens of the lines, followed by an ``end``.
 
-    Raises InputError for a character that is not allowed.
+    Raises
+    ------
+    InputError
+        A character is not allowed.
     """
     last = SourceLine("", "", 0)
     for line in lines:

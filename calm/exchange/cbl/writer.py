@@ -29,7 +29,10 @@ _LEAST = 1e-3  # smallest diameter in m and mass in kg
 
 @dataclass
 class _Problem:
-    """Sections of a problem file, built from the lower end up, for water of uniform density."""
+    """Sections of a problem file, collected from the lower end of the line up.
+
+    The water has a uniform density [kg/m³].
+    """
 
     density: float
     materials: dict[str, str] = field(default_factory=dict)
@@ -39,7 +42,7 @@ class _Problem:
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
-        """Add a segment of a material, above the load at its lower end."""
+        """Add a segment on top of the line, after the connector for the load there."""
         if length <= 0.0:
             return
         if self.load is None and self.last[0] == name:
@@ -53,13 +56,13 @@ class _Problem:
         )
 
     def at_a_point(self, part: ExportedPart) -> None:
-        """Add a load at the current end of the line."""
+        """Add a load at the upper end of the line so far."""
         if self.load is None:
             self.load = PartLoad(self.density)
         self.load.add(part)
 
     def _join(self) -> None:
-        """Write the connector for the load at this point, if any."""
+        """Add the connector for the load at the upper end of the line so far, if there is one."""
         if self.load is None:
             return
         load, self.load = self.load, None
@@ -74,7 +77,7 @@ class _Problem:
 
 
 def write_cbl(exported: ExportedDesign) -> Exported:
-    """Write the only leg of a design as a problem file for WHOI Cable."""
+    """Write a design with a single leg as a problem file for WHOI Cable."""
     (design,) = exported.legs
     lost: list[str] = []
     if design.tow is not None:
@@ -117,8 +120,9 @@ def write_cbl(exported: ExportedDesign) -> Exported:
 
 
 def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
-    """Rotate a tow to the axes of the ship, x ahead and y to port, since the statics only use x and
-    z.
+    """Rotate a tow to the axes of the ship, x ahead and y to port.
+
+    The statics of WHOI Cable use only x and z.
     """
     assert design.tow is not None
     speed = hypot(design.tow.east, design.tow.north)
@@ -140,7 +144,7 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
 
 
 def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
-    """Write a part, beginning at its lower end."""
+    """Add a part to the problem, from its lower end up."""
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
         below = part.length
@@ -163,7 +167,7 @@ def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
 
 
 def _link(problem: _Problem) -> str:
-    """Return a stiff material without weight and drag, for rigid pieces."""
+    """Return the name of a stiff material without weight and drag, for rigid pieces."""
     figures = (
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
@@ -172,7 +176,7 @@ def _link(problem: _Problem) -> str:
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
-    """Return the material of a cable, a chain or a cylinder, per metre."""
+    """Return the name of a material with the values per metre of a cable, a chain or a cylinder."""
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or part.area() / per
     normal = part.area(problem.density) / per / across if across else 0.0
@@ -189,7 +193,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
 
 
 def _word(text: str) -> str:
-    """Convert a text to a word of WHOI Cable, which begins with a letter."""
+    """Convert a text to a word of WHOI Cable, which must begin with a letter."""
     word = "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
     return word if word[:1].isalpha() else f"n_{word}"
 
@@ -243,8 +247,9 @@ def _text(design: ExportedLine, problem: _Problem, buoy: str, density: float) ->
 
 
 def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
-    """Return size, mass, buoyancy and drag under the keys of WHOI Cable; losses are added to
-    `lost`.
+    """Return size, mass, buoyancy and drag of a buoy by the keys of WHOI Cable.
+
+    Features that WHOI Cable cannot represent are added to `lost`.
     """
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
@@ -285,7 +290,7 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
 
 
 def _windage(part: ExportedPart, design: ExportedLine) -> str:
-    """Return the wind area of a float, if there is wind or the file specifies it."""
+    """Return the wind area of a float, if there is wind or if the file specifies the area."""
     component = part.component
     if not isinstance(component, Rigid):
         return ""
@@ -297,9 +302,9 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
 
 
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
-    """Factor on the hull drag coefficient, for the same drag as in CALM at the present draft.
+    """Return the factor on a hull's drag coefficient that gives CALM's drag at its draft.
 
-    `net` is its net buoyancy, `most` the buoyancy of its whole displacement [N].
+    `net` is the net buoyancy in use, and `most` the buoyancy of the whole hull [N].
     """
     used, seen = design.riding
     immersed = min(max((mass * design.gravity + used * net) / most, 0.0), 1.0)
@@ -310,7 +315,7 @@ def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most:
 def _turned(form: Displacement) -> tuple[str, list[tuple[float, float, float]]]:
     """Convert a displacement table to levels and diameters of a hull of revolution.
 
-    Also returns the rows of draft [m], displaced volume [m³] and area [m²] of this hull.
+    Also return the rows of draft [m], displaced volume [m³] and area [m²] of this hull.
     """
     table = form.displacement
     if table[0][0] > 0.0:

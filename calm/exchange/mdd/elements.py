@@ -1,6 +1,4 @@
-"""Convert elements of Mooring Design & Dynamics (MDD) to components, with the drag computed by
-MDD.
-"""
+"""Convert elements of Mooring Design & Dynamics (MDD) to components with the same drag."""
 
 from __future__ import annotations
 
@@ -20,7 +18,7 @@ _SLIGHT = 1e-6  # relative excess of hull volume over net buoyancy
 _FLAT = 1e-3  # m: height assumed for a float without one
 _SOFT = 1e10  # Pa: ropes have a lower modulus, wires a higher one
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
-_LARGEST = 1e9  # m, kg: of no piece
+_LARGEST = 1e9  # m, kg: no piece is longer or heavier
 _ROWS = ("B", "Cd", "ME", "Wt")
 GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
 """Library variables that hold elements."""
@@ -42,8 +40,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
     """Convert a rigid or clamped element to a component.
 
     Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
-    whatever its length. It treats one with only a width as a cylinder whose Cd is for flow across
-    it; the end faces have no drag.
+    whatever its length. An element that has only a width is a cylinder, with Cd for flow normal to
+    its axis and without drag on its end faces.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -74,10 +72,10 @@ def rigid(element: MddElement) -> model.ImportedComponent:
 
 
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
-    """Set the hull of a surface float so that draft and drag are proportional to the used share of
-    its buoyancy, as in Mooring Design & Dynamics.
+    """Give a surface float a hull whose draft and drag are proportional to its used buoyancy.
 
-    Its hull displaces only as much as its net buoyancy requires, in proportion to the draft.
+    This is how Mooring Design & Dynamics treats floats. The hull displaces only as much as the net
+    buoyancy requires.
     """
     lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
@@ -94,7 +92,7 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """Return whether a float of this size displaces too little water for its stated buoyancy."""
+    """True if an element is too small to displace the water for its stated buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -103,7 +101,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> model.ImportedComponent:
-    """Convert a wire, rope or chain to a component; its Cd refers to its width."""
+    """Convert a wire, rope or chain to a component, whose Cd refers to its width."""
     figures: dict[str, model.FigureOrWord] = {
         "diameter": element.across,
         "cn": element.cd,
@@ -130,7 +128,7 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Convert the lowest element to an anchor; files give its weight with either sign."""
+    """Convert the lowest element to an anchor; the weight may have either sign in the file."""
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -140,18 +138,18 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """An element: a column of ``H`` and the corresponding values of other variables.
+    """An element of the line: a column of the matrix ``H``, with its values in other variables.
 
     Attributes
     ----------
-    length, width, diameter : sizes [m]; a sphere has a diameter, any other element a width
-    is_line : whether it is a wire, rope or chain, whose figures are per metre
+    length, width, diameter : sizes [m]; a sphere has a diameter, other elements have a width
+    is_line : whether it is a wire, rope or chain, whose values are per metre
     is_fastener : whether it is a shackle, link or swivel
-    lift : net buoyancy [kg], that of a line per metre
+    lift : net buoyancy [kg], for a line per metre [kg/m]
     mass : mass in air [kg]; None if the file has none
     modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if the line does not
         stretch
-    number : its column, counted from 1
+    number : number of the column, from 1
     density : density of the water to which `lift` applies [kg/m³]
     """
 
@@ -177,8 +175,8 @@ class MddElement:
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
     """Read the elements of a line in file order; also return messages about mistakes.
 
-    `suffix` is ``t`` for the matrices of a tow, ``CO`` for clamped elements, and empty for a
-    mooring.
+    `suffix` selects the matrices: ``t`` for those of a tow, ``CO`` for those of clamped elements,
+    and empty for those of a mooring.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
@@ -264,7 +262,7 @@ def _densities(variables: MatVariables, length: RealArray) -> RealArray:
 
 
 def _names(variables: MatVariables, name: str, count: int) -> list[str]:
-    """Return a name for each element; an element without a name is numbered."""
+    """Return the names of the elements; an element without a name gets its number."""
     value = variables.get(name)
     found = names(value)
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
@@ -274,7 +272,10 @@ def _names(variables: MatVariables, name: str, count: int) -> list[str]:
 
 
 def _modulus(value: float) -> float | None:
-    """Return the elastic modulus [Pa]; a small whole number is a material number."""
+    """Return the elastic modulus [Pa].
+
+    A small whole number in the file is the number of a material.
+    """
     if not value > 0.0:
         return None
     return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value

@@ -33,10 +33,13 @@ _NOTE = (
 
 
 def read_mdd(path: Path) -> model.ImportedDesign:
-    """Read a mooring or a tow.
+    """Read a file with a mooring or a tow.
 
-    InputError: the file is damaged, is no Mooring Design & Dynamics file, or has features that CALM
-    cannot represent.
+    Raises
+    ------
+    InputError
+        The file is damaged, is not a Mooring Design & Dynamics file, or has features that CALM
+        cannot represent.
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if variables.row(name).size]
@@ -86,7 +89,7 @@ def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path:
 def _lay_tow(
     design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Add the elements of a tow, which the file lists from the body up to a marker for the ship."""
+    """Add the elements of a tow; the file lists them from the body up to a marker for the ship."""
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
@@ -105,9 +108,7 @@ def _lay_tow(
 def _clamp(
     design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Clamp each clamped element on its piece, at a share of the piece length from the lower
-    end.
-    """
+    """Attach each clamped element to its piece, at a fraction of the length from its lower end."""
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
@@ -129,21 +130,22 @@ def _clamp(
 
 
 def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
-    """Map (element, share of its length) to the piece index and the distance below the upper end of
-    the piece [m].
+    """Return the piece of an element, and the distance of a clamp from its upper end [m].
+
+    `share` is the position of the clamp as a fraction of the length of the element.
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:
         number = count - 1 - number
     if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
-    # a tow is counted from the body up, and shares from the lower end
+    # elements of a tow are numbered from the body up, and shares are from the lower end
     length = design.items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
 def _by_height(items: list[model.ImportedPiece], height: float) -> tuple[int, float] | None:
-    """Return the piece at a height above the seabed, in a tow above the lower end of the body."""
+    """Return the piece at a height above the seabed, or in a tow above the towed body."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
         length = items[number].extent

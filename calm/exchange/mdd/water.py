@@ -13,22 +13,21 @@ _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this a
 def read_water(
     variables: MatVariables, towed: bool, guessed: list[model.Remark]
 ) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
-    """Read the environment of a file; also return the current record if the file has several
-    profiles.
+    """Read the environment of a file, and the current record if the file has several profiles.
 
-    In a mooring `z` is the height above the seabed, and the largest `z` is the depth of the water;
-    in a tow `z` is the depth. The current of the environment is the first profile of the record.
+    In a mooring, `z` is the height above the seabed, and the largest `z` is the water depth; in a
+    tow, `z` is the depth. The current of the environment is the first profile of the record.
 
     Parameters
     ----------
     variables : variables of the file
-    towed : whether it is a tow
+    towed : whether the file is a tow
     guessed : list to which guesses about times and density are added
 
     Raises
     ------
     ValueError
-        The sizes of the variables disagree.
+        The variables have different sizes.
     """
     levels = variables.reals("z").ravel()
     if not np.any(levels > 0.0):
@@ -69,9 +68,7 @@ def read_water(
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
-    """Read current components, shape (levels, times); in the file either dimension may come
-    first.
-    """
+    """Read a current component as (levels, times); in the file either dimension may come first."""
     values = variables.reals(name)
     if values.size == 0:
         return None
@@ -95,7 +92,7 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
 
 
 def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
-    """Return the days, and the date from which they are counted."""
+    """Return the times as days, and the date from which they are counted."""
     if time.size != times:
         guessed.append(model.Remark("record.time", "an hour between profiles, from 2000-01-01"))
         return np.arange(times) / 24.0, "2000-01-01"

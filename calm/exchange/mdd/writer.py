@@ -13,7 +13,7 @@ from calm.units import KILOGRAM_FORCE
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _LONGEST = 32  # characters of a name
-_LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used of
+_LEAST_USED = 1e-3  # smallest used share of the buoyancy of a float, as a divisor
 
 
 def write_mdd(exported: ExportedDesign) -> Exported:
@@ -73,8 +73,9 @@ def write_mdd(exported: ExportedDesign) -> Exported:
 
 
 def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
-    """Return a column of the matrices: length, width, diameter, flag, buoyancy [kg], Cd, modulus
-    and mass.
+    """Return the values of a part in the matrices.
+
+    These are length, width, diameter, flag, buoyancy [kg], Cd, modulus and mass.
     """
     lift = part.net / KILOGRAM_FORCE
     if part.flexible:
@@ -90,7 +91,7 @@ def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
 
 
 def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
-    """Return the width, the diameter and the Cd that give an element the drag of the rigid part."""
+    """Return width, diameter and Cd for which an element has the drag of a rigid part."""
     component = part.component
     if part.kn == 0.0:
         return 0.0, 0.0, 0.0
@@ -110,8 +111,10 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
 
 
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
-    """Return the variables of clamped parts, from the top down: element number and share of the
-    element's length from the lower end.
+    """Return the variables for clamped parts, from the top down.
+
+    The position of a clamp is the number of an element, and the fraction of its length from its
+    lower end.
     """
     rows, names, places = [], [], []
     count = len(design.parts)
@@ -143,15 +146,16 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
 
 
 def _name(part: ExportedPart) -> str:
-    """Return the element name: the component id, plus "chain" for chains, which the program
-    recognises by this word.
+    """Return the name of an element: the component id, preceded by "chain" for chains.
+
+    Mooring Design & Dynamics recognises chains by this word.
     """
     bare = isinstance(part.component, Chain) and "chain" not in part.use
     return (f"chain {part.use}" if bare else part.use)[:_LONGEST]
 
 
 def _texts(texts: list[str]) -> np.ndarray[tuple[int, ...], np.dtype[np.str_]]:
-    """Return texts as a character matrix."""
+    """Convert texts to a character matrix."""
     width = max(len(text) for text in texts)
     plain = [text.encode("ascii", "replace").decode() for text in texts]
     return np.array([text.ljust(width) for text in plain])

@@ -1,4 +1,4 @@
-"""Read and write input files of MoorDyn 2; read the similar files of MoorDyn 1 and MoorPy."""
+"""Import and export of MoorDyn 2 files; import of similar files of MoorDyn 1 and MoorPy."""
 
 from calm.exchange.moordyn.reader import is_moordyn, read_moordyn
 from calm.exchange.moordyn.writer import write_moordyn

@@ -50,11 +50,10 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class _File:
-    """The tables of a file: points and line types by name, the lines, and the lines `at` each
-    point.
+    """Tables of a file: points and line types by name, and the lines.
 
-    `depth` [m] and `gravity` [m/s²] apply to the water; `design` is the design to which pieces are
-    added.
+    `at` has the lines that meet at each point. `depth` [m] and `gravity` [m/s²] are those of the
+    water. Pieces are added to `design`.
     """
 
     points: dict[str, _Row]
@@ -66,9 +65,12 @@ class _File:
     design: model.ImportedDesign
 
     def piece(self, line: _Row) -> model.ImportedPiece:
-        """Return a line as a piece.
+        """Convert a line to a piece.
 
-        InputError: it has no type, or no length.
+        Raises
+        ------
+        InputError
+            The line has no type or no length.
         """
         kind = self.types.get(line.words.get("type", ""))
         if kind is None:
@@ -81,8 +83,9 @@ class _File:
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
     ) -> tuple[list[str], list[_Row]]:
-        """Follow lines from a point to a point in `breaks`; return the points and lines passed, and
-        remove the lines from `left`.
+        """Follow lines from a point to a point in `breaks`, or to the end.
+
+        Return the points and lines passed; these lines are removed from `left`.
         """
         names, lines = [start], list[_Row]()
         while not lines or names[-1] not in breaks:
@@ -98,9 +101,9 @@ class _File:
     def along(
         self, names: list[str], lines: list[_Row], placed: set[str]
     ) -> list[model.ImportedPiece]:
-        """Return lines, and the parts at their points, as pieces in order.
+        """Convert lines, and the parts at their points, to pieces in order.
 
-        A point in `placed` is left out; each point included is added to `placed`.
+        The part at a point in `placed` is omitted. All points are added to `placed`.
         """
         items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):
@@ -115,7 +118,10 @@ class _File:
 def read_moordyn(path: Path) -> model.ImportedDesign:
     """Read a single line from an anchor up to a float, or a net of legs.
 
-    InputError: the file cannot be read, or contains a body or a rod.
+    Raises
+    ------
+    InputError
+        The file cannot be read, or contains a body or a rod.
     """
     tables, options = _read_sections(path)
     for name in ("bodies", "rods"):
@@ -138,7 +144,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     if depth <= 0.0:
         raise refused(path, "has no depth of the water (`WtrDpth`)")
     density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
-    gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
+    gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # MoorDyn's default
     kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
     current = _currents(beside) if kind in _STEADY and beside.is_file() else ()
     water = model.ImportedWater(depth, density, gravity, current)
@@ -165,7 +171,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
 
 
 def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
-    """Return points and lines of a single line from the top down; None for a net."""
+    """Return points and lines of a single line from the top down; return None for a net."""
     points, ends = file.points, [name for name, met in file.at.items() if len(met) == 1]
     if len(ends) != 2 or any(len(met) > 2 for met in file.at.values()):
         return None
@@ -182,12 +188,12 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
 
 
 def _lift(figures: dict[str, model.FigureOrWord]) -> float:
-    """Return the net buoyancy of a point in water, as a mass [kg]."""
+    """Return the net buoyancy of a point in water, expressed as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
 
 def _is_held(point: _Row) -> bool:
-    """Return whether a point is fixed or moves with a vessel."""
+    """True if a point is fixed or moves with a vessel."""
     return not point.words.get("attachment", "").lower().startswith(_FREE)
 
 
@@ -204,16 +210,14 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
         try:
             z, u, v, w = (float(word) for word in line.split()[:4])
         except ValueError:
-            continue  # its head
+            continue  # a line of the header
         if z <= 0.0:
             rows.append((0.0 - z, u, v, w))
     return tuple(sorted(rows))
 
 
 def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
-    """Convert a line type to a cable; weight in water is computed from mass and displaced
-    volume.
-    """
+    """Convert a line type to a cable; its weight in water follows from mass and diameter."""
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
@@ -231,7 +235,7 @@ def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
 
 
 def _point_of(point: _Row) -> model.ImportedPiece | None:
-    """Convert a free point to a part; return None if the point has neither weight nor drag."""
+    """Convert a free point to a part; return None if it has neither mass, volume nor drag."""
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
@@ -252,7 +256,10 @@ def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
 
 
 def _upper_end(top: _Row) -> model.ImportedPiece:
-    """Return the float: a free point, or a point held at the surface that would float there."""
+    """Convert the point at the upper end to a float.
+
+    It must be free, or be held at the surface with enough volume to float.
+    """
     figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free, and does not float")
@@ -265,14 +272,14 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
 
 
 def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
-    """Create an anchor as high as its point is above the seabed."""
+    """Create an anchor, as high as its point is above the seabed."""
     height = depth + point.number("z")
     return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
 @dataclass(frozen=True)
 class _Row:
-    """A table row: its words by heading, and its position in the file."""
+    """A row of a table: its texts by heading, and its position in the file."""
 
     path: str
     line: int
@@ -284,9 +291,12 @@ class _Row:
         return self.words.get("a", ""), self.words.get("b", "")
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a word as a number.
+        """Parse the text of a column as a number.
 
-        InputError: it is missing, or is not a number.
+        Raises
+        ------
+        InputError
+            The text is missing or is not a number.
         """
         text = self.words.get(key)
         if text is None and default is not None:
@@ -300,12 +310,12 @@ class _Row:
         return value
 
     def refuse(self, message: str) -> Exception:
-        """Return a problem in this row."""
+        """Return an error about this row."""
         return refused(self.path, message, line=self.line)
 
 
 def is_moordyn(content: bytes) -> bool:
-    """Return whether a file has the two sections required in every MoorDyn file."""
+    """True if a file has the two sections that every MoorDyn file must have."""
     text = content.decode("latin-1").lower()
     found = {_section(line) for line in text.splitlines() if line.strip().startswith("---")}
     return b"\0" not in content and {"types", "lines"} <= found
@@ -357,10 +367,14 @@ is an anchor.
 
 
 def _lay_net(file: _File, path: Path) -> None:
-    """Divide the lines into legs between points that are held, are free ends, or join three or more
-    lines.
+    """Divide the lines into legs.
 
-    InputError: lines form a ring without a point that is held.
+    A leg ends at a point that is held, that is a free end, or that joins three or more lines.
+
+    Raises
+    ------
+    InputError
+        Lines form a ring without a point that is held.
     """
     breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
     left, placed = list(file.lines), set[str]()

@@ -33,7 +33,7 @@ _LEAST = 1e-3  # kg/m: least mass, and least mass of displaced water, of a line 
 
 @dataclass
 class _Point:
-    """A point of the file, with the load on it, and whether it is fixed."""
+    """A point of the file, with the load on it and its kind ("Fixed" or "Free")."""
 
     place: Coordinates
     load: PartLoad
@@ -42,7 +42,7 @@ class _Point:
 
 @dataclass
 class _Length:
-    """Represent a length of a line type between two points [m]."""
+    """An unstretched length [m] of a line type between two points."""
 
     type: str
     lower: _Point
@@ -52,9 +52,9 @@ class _Length:
 
 @dataclass
 class _System:
-    """Line types, points and lines of the file, collected leg by leg from the lower ends up.
+    """Line types, points and lines of the file, collected leg by leg, each from its lower end up.
 
-    `here` is the point to which the next length is attached.
+    `here` is the point at the upper end so far, to which the next length is attached.
     """
 
     density: float
@@ -66,7 +66,7 @@ class _System:
     here: _Point = field(init=False)
 
     def begin(self, place: Coordinates, kind: str) -> None:
-        """Start at a new point."""
+        """Start a line at a new point."""
         self.here = _Point(place, PartLoad(self.density), kind)
         self.points.append(self.here)
 
@@ -78,7 +78,7 @@ class _System:
         self.here = self.joined[node]
 
     def end_at(self, node: str) -> None:
-        """Join the current point to the point of a node."""
+        """Merge the point `here` with the point of a node."""
         last = self.here
         if node not in self.joined:
             self.joined[node] = last
@@ -91,13 +91,12 @@ class _System:
                 line.upper = self.here
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
-        """Add an unstretched length [m] of a line type from the current point up to another."""
+        """Add an unstretched length [m] of a line type, from the point `here` up to a new point."""
         below, chosen = self.here, unique_name(self.types, name, figures)
         self.begin(to, "Free")
         self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
-        """Return the rows of the point table and of the line table."""
         points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
         for number, point in enumerate(self.points, 1):
             load, (x, y, depth) = point.load, point.place
@@ -112,7 +111,7 @@ class _System:
         return points, lines
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
-        """Return the values of a line type with a given load per metre."""
+        """Return the values of a line type as text, from its load per metre and its EA [N]."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -123,14 +122,14 @@ class _System:
 
 
 def write_moordyn(exported: ExportedDesign) -> Exported:
-    """Write a line or the legs of a net, and the current in a second file.
+    """Write a line or the legs of a net as a MoorDyn file, and the current in a second file.
 
     Raises
     ------
     UsageError
         The design is a tow.
     NoEquilibrium
-        The mooring has no equilibrium, so that the places of its points are not known.
+        The mooring has no equilibrium, so the positions of its points are unknown.
     """
     lines = exported.legs
     deepest = max(lines, key=lambda line: line.depth)
@@ -156,7 +155,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
 
 
 def _lay_line(system: _System, design: ExportedLine) -> None:
-    """Add a line or a leg, beginning at the lower end."""
+    """Add a line or a leg, beginning at its lower end."""
     paths, (top, bottom) = design.paths(), design.ends or (EndKeys(), None)
     if bottom is not None and bottom.join is not None:
         system.begin_at(bottom.join, place_along(paths[-1], 1.0))
@@ -187,7 +186,7 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
 
 
 def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
-    """Add a cable or chain from the lower end up, divided at its clamps.
+    """Add a cable or chain from its lower end up, divided at its clamps.
 
     It is also divided into short lengths, because MoorDyn starts from the shape of each length in
     still water.
@@ -211,7 +210,7 @@ def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
 
 
 def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
-    """Add consecutive rigid pieces, from the lowest up."""
+    """Add consecutive rigid pieces as one stiff length, or as a load if they have no length."""
     load, length = PartLoad(system.density), sum(part.length for part in parts)
     if length <= 0.0:
         load = system.here.load
@@ -224,10 +223,10 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 
 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
-    """Add the uppermost piece: a point above a stiff line whose length is the draft of the piece.
+    """Add the uppermost piece: a point above a stiff length that represents the draft of the piece.
 
-    The length has a share of the piece's mass and is neutral in water, since MoorDyn needs very
-    short time steps for a light length.
+    This length has a share of the mass of the piece and is neutrally buoyant, because MoorDyn needs
+    very short time steps for a light length.
     """
     part = design.parts[0]
     top, bottom = place_along(path, 0.0), place_along(path, 1.0)
@@ -246,7 +245,7 @@ def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
 
 
 def _stiff(length: float) -> float:
-    """Return the EA of a rigid length [N]."""
+    """Return the stiffness EA that represents a rigid length [N]."""
     return _RIGID * min(length / _SHORT, 1.0)
 
 
@@ -288,7 +287,7 @@ def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
 
 
 def _current_profile(design: ExportedLine) -> bytes:
-    """Return the file of the current: heights from below the seabed to above the water."""
+    """Return the content of the current file, from below the seabed to above the water."""
     rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
     rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]
     lines = [

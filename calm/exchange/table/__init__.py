@@ -1,6 +1,4 @@
-"""Read a list of pieces from CSV or a spreadsheet (`table`), and write such a list as CSV
-(`csv`).
-"""
+"""Import of a list of pieces from CSV or a workbook (`table`), and export to CSV (`csv`)."""
 
 from calm.exchange.registry import register_format
 from calm.exchange.table.cells import is_table

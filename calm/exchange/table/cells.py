@@ -87,7 +87,7 @@ SheetRows = list[list[str]]
 
 @dataclass(frozen=True)
 class ColumnUnit:
-    """A unit: its factor to SI, and whether it is per metre.
+    """A unit: its factor to SI, and whether values are per metre.
 
     `by_mass` is true if a force is given in kilograms or pounds.
     """
@@ -100,8 +100,13 @@ class ColumnUnit:
 def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Parse a unit, ignoring words such as *wet*; return None if the text contains no unit.
 
-    The text comes from brackets, a row of units, or a cell with a number; `what` is the quantity of
-    the column. ValueError: the unit does not fit this quantity.
+    The text comes from brackets, a row of units, or a cell with a number. `what` is the quantity of
+    the column.
+
+    Raises
+    ------
+    ValueError
+        The unit does not fit this quantity.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -124,7 +129,10 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
     """Find the unit in a heading, in brackets or as the last word; return None if there is none.
 
-    ValueError: the text in brackets is not a unit, or there are two units.
+    Raises
+    ------
+    ValueError
+        The text in brackets is not a unit, or there are two units.
     """
     if what not in _DIMENSIONS:
         return None
@@ -150,7 +158,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Return the unit that a text names; None if the text is no unit of the column's quantity."""
+    """Parse a text as a unit of the quantity `what`; return None if it is no such unit."""
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),
@@ -170,8 +178,9 @@ def _unit(text: str, what: str) -> ColumnUnit | None:
 
 
 def _factor(text: str, dimension: str) -> float | None:
-    """Return the factor from a unit, in any language and capitalisation, to SI; None if the unit is
-    unknown.
+    """Return the factor from a unit to SI; None if the unit is unknown.
+
+    Units are recognised in several languages, in upper and lower case.
     """
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
         return None
@@ -186,9 +195,9 @@ def _factor(text: str, dimension: str) -> float | None:
 
 
 class CellNumber(NamedTuple):
-    """Number in a cell, its text, and a message if the text cannot be read.
+    """Number in a cell, the text after it, and a message if the cell cannot be read.
 
-    `value` is None if the cell has no number.
+    `value` is None if the cell has no number. `tidied` is true if the cell has other text as well.
     """
 
     value: float | None
@@ -198,7 +207,7 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Parse the number in a cell, with the decimal sign of the file if known, else of the cell."""
+    """Parse the number in a cell; `decimal` is the decimal sign of the file, empty if unknown."""
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
         return CellNumber(None)
@@ -237,9 +246,7 @@ def number(cell: str, decimal: str = "") -> CellNumber:
 
 
 def _signs(digits: str) -> tuple[str, str]:
-    """Return the decimal sign of a numeral, and a sign that separates either decimals or
-    thousands.
-    """
+    """Return the decimal sign of a numeral, and a sign that may mark decimals or thousands."""
     plain = re.sub(r"['’\s]", "", digits)
     present = [sign for sign in ".," if sign in plain]
     if len(present) == 2:
@@ -261,8 +268,12 @@ def _either(digits: str) -> str:
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """Find the decimal sign of a file; also return a remark about commas, empty if there are none.
 
-    `cells` yields the place and the text of each cell that holds a number. ValueError: both signs
-    are used, or numbers such as `1,250` remain ambiguous.
+    `cells` yields the position and the text of each cell that should have a number.
+
+    Raises
+    ------
+    ValueError
+        Both signs are used, or numbers such as `1,250` remain ambiguous.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
@@ -293,12 +304,12 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
 
 
 def is_workbook(content: bytes) -> bool:
-    """Return whether a file is an Excel workbook."""
+    """True if a file is an Excel workbook."""
     return content.startswith(_SPREADSHEETS)
 
 
 def is_table(content: bytes) -> bool:
-    """Return whether a file is a workbook, or text whose lines share a separator."""
+    """True if a file is a workbook, or text whose lines have a common separator."""
     if is_workbook(content):
         return True
     if content.startswith(_UTF_16):
@@ -309,7 +320,7 @@ def is_table(content: bytes) -> bool:
 
 
 class ReadSheets(NamedTuple):
-    """Rows and hidden parts of each sheet, by sheet name."""
+    """Rows of each sheet, and descriptions of hidden parts, by sheet name."""
 
     rows: dict[str, SheetRows]
     hidden: dict[str, str]
@@ -318,8 +329,12 @@ class ReadSheets(NamedTuple):
 def read_sheets(path: Path) -> ReadSheets:
     """Read the rows of each sheet; lines that begin with # are comments.
 
-    A sheet without cells is left out; a text file has one sheet, whose name is empty. InputError:
-    the file cannot be read.
+    A sheet without cells is omitted. A text file has one sheet, whose name is empty.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
     if is_workbook(content):
@@ -334,7 +349,7 @@ def read_sheets(path: Path) -> ReadSheets:
 
 
 def _cleaned(rows: SheetRows) -> SheetRows:
-    """Return the rows without blanks around cells, empty cells at the end, and comments."""
+    """Remove comments, superfluous blanks, and empty cells at the end of rows."""
     cleaned = []
     for row in rows:
         cells = [one if isinstance(one, WorkbookNumber) else " ".join(one.split()) for one in row]
@@ -346,7 +361,7 @@ def _cleaned(rows: SheetRows) -> SheetRows:
 
 
 def _text(path: Path, content: bytes) -> str:
-    """Return the text of a file in UTF-8, in UTF-16 with a byte-order mark, or in Windows-1252."""
+    """Decode a text file in UTF-8, in UTF-16 with a byte-order mark, or in Windows-1252."""
     if content.startswith(_UTF_16):
         return content.decode("utf-16", "replace")
     if b"\0" in content:
@@ -378,7 +393,7 @@ def _sheets(content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
 
 
 def _hidden_within(content: bytes) -> dict[str, str]:
-    """Return the hidden rows and columns of an .xlsx file, by the name of their sheet."""
+    """Describe the hidden rows and columns of an .xlsx file, by sheet name."""
     if not zipfile.is_zipfile(io.BytesIO(content)):
         return {}
     hidden = {}

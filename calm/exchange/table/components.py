@@ -1,4 +1,4 @@
-"""Convert list rows to components, and note guesses for missing values."""
+"""Convert rows of a list to components, and note guesses for missing values."""
 
 import math
 
@@ -16,7 +16,7 @@ _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
-    """Convert a row to a component in SI units; mistakes are added to the `problems` of the row."""
+    """Convert a row to a component; mistakes are added to the `problems` of the row."""
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figure(what) < 0.0:
             row.refuse(f"its {what.replace('_', ' ')} is negative")
@@ -70,7 +70,7 @@ def _rigid(row: ListRow) -> _Definition:
 
 
 def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
-    """Refuse or report a net buoyancy greater than the weight of the water displaced."""
+    """Reject or report a net buoyancy that exceeds the weight of the displaced water."""
     if kind not in ("sphere", "cylinder"):
         return
     volume = math.pi * across**2 * max(across / 6.0, length / 4.0)
@@ -85,7 +85,7 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
-    """Choose the kind of a rigid piece from its size; also return its diameter [m].
+    """Choose the kind of a rigid piece from its size, and return it with its diameter [m].
 
     In a list with both widths and diameters, a piece with a diameter is a sphere. In other lists, a
     float that is hardly longer than wide is a sphere.
@@ -135,15 +135,16 @@ def _line(row: ListRow) -> _Definition:
 
 
 def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
-    """Return the drag coefficient in the list, or a typical value for the kind as a guess."""
+    """Return the drag coefficient in the list, else guess a typical value for the kind."""
     key, guess = "cx" if kind == "sphere" else "cn", f"the usual value for a {kind}"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
 def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
-    """Return mass and other optional values; a mass that is too small for the weight in water is
-    omitted.
+    """Return the mass and other optional values.
+
+    A mass that is too small for the weight in water is omitted.
     """
     mass = row.figure("mass")
     heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)

@@ -87,12 +87,17 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column: its index, heading, and the factor from its numbers to SI.
+    """A column of a list: its index, heading, and the factor from its numbers to SI.
 
-    `by_mass`: forces are in kilograms; `per_metre`: values of lines are per metre; `known`: the
-    heading has a unit; `whole`: according to the heading, values apply to whole pieces; `twin`: a
-    second column of the same quantity (one of the two is per metre, the other per piece); `wrong`:
-    mistake in the heading.
+    Attributes
+    ----------
+    by_mass : whether forces are in kilograms
+    per_metre : whether values of lines are per metre
+    known : whether the heading has a unit
+    whole : whether the heading marks totals: values of all pieces of a row, or of the whole length
+        of a line
+    wrong : mistake in the heading, as a message; empty if there is none
+    twin : second column of the same quantity; one of the two is per metre, the other per piece
     """
 
     index: int
@@ -106,8 +111,9 @@ class ListColumn:
     twin: ListColumn | None = None
 
     def of(self, row: list[str], *, line: bool) -> tuple[ListColumn, str]:
-        """Choose this column or its twin (per metre or per piece) for a row, preferring a value per
-        metre for lines; also return the cell.
+        """Choose this column or its twin for a row, and return it with its cell.
+
+        The column per metre is preferred for lines, and the column per piece for other rows.
         """
         both = [each for each in (self, self.twin) if each and cell_of(row, each)]
         column = min(both, key=lambda each: each.per_metre != line, default=self)
@@ -116,10 +122,7 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """Headings of a sheet: their row, recognised columns, and other headings.
-
-    `problems` are messages about headings that are not understood and cannot be ignored.
-    """
+    """Headings of a sheet: their row, the recognised columns, and the other headings."""
 
     row: int
     columns: dict[str, ListColumn]
@@ -127,7 +130,7 @@ class ListHeadings:
 
     @property
     def problems(self) -> list[str]:
-        """Messages about unknown headings that cannot be ignored, with their positions."""
+        """Messages about headings with mistakes, and about unknown ones that cannot be ignored."""
         beside = "has lines beside other pieces; a line needs a row of its own"
         from_an_end = "counts lengths from an end of the line; give each piece its own length"
         return [
@@ -150,9 +153,10 @@ class ListHeadings:
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """Find the headings of a sheet; None if no row has a name and a length or a force.
+    """Find the headings of a sheet.
 
-    Columns in `given` take precedence over those that are recognised.
+    Return None if no row has headings for a name and a length or a force. Columns in `given` take
+    precedence over those that are recognised.
     """
     best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
@@ -196,8 +200,9 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
 
 def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
-    """Find the columns in a row of headings; the column of names must have words below its
-    heading.
+    """Find the columns in a row of headings.
+
+    The cells below the heading of the names must contain words.
     """
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
@@ -233,7 +238,10 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
 
 
 def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -> ListColumn:
-    """Pair a column with its twin: two columns with the same heading, of which one is per metre."""
+    """Return a column with its twin, if another column has the same heading.
+
+    One of the two must be per metre.
+    """
     taken.add(column.index)
     stem = _UNIT.sub("", _plain(column.heading, keep="/"))
     for i, heading in enumerate(row if what in _MEASURES else ()):
@@ -246,13 +254,16 @@ def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -
 
 
 def _worded(below: SheetRows, index: int) -> bool:
-    """Return whether most cells of a column hold words."""
+    """True if most cells of a column contain words."""
     cells = [row[index] for row in below if index < len(row) and row[index]]
     return 2 * sum(bool(re.search(r"[^\W\d]{2}", cell)) for cell in cells) > len(cells)
 
 
 def _resolve(found: dict[str, ListColumn]) -> None:
-    """Use a height as a missing length, and a weight as that in air if there is a buoyancy."""
+    """Resolve ambiguous headings.
+
+    A height is used as a missing length. A weight is the weight in air if there is also a buoyancy.
+    """
     plain = {what: _plain(column.heading) for what, column in found.items()}
     tall = r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund|above))"
     if "length" not in found and re.match(tall, plain.get("height", "")):
@@ -283,7 +294,7 @@ def _with_units(rows: SheetRows, i: int) -> list[str]:
 
 
 def _is_unit(cell: str) -> bool:
-    """Return whether a cell below a heading is a unit: `(kg)`, `m`, `off btm (m)`."""
+    """True if a cell below a heading is a unit, such as `(kg)`, `m` or `off btm (m)`."""
     inside = re.search(r"[(\[]([^()\[\]]*)[)\]]\s*$", cell)
     for what in ("length", "weight", "area"):
         try:
@@ -295,7 +306,7 @@ def _is_unit(cell: str) -> bool:
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """Return the first column that has no heading and contains words."""
+    """Return the index of the first column of words without a heading; None if there is none."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
@@ -331,7 +342,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """Return a heading in lower case without accents, with blanks in place of most signs."""
+    """Convert a heading to lower case without accents; most signs become blanks."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))
@@ -342,12 +353,12 @@ def _plain(text: str, keep: str = "") -> str:
 
 
 def cell_of(row: list[str], column: ListColumn | None) -> str:
-    """Return the cell of a row in a column; empty if there is none."""
+    """Return the cell of a row in a column; empty if the row has no such cell."""
     return row[column.index] if column and column.index < len(row) else ""
 
 
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
-    """Find the decimal sign of the number columns; also return a remark about commas."""
+    """Find the decimal sign in the columns of numbers; also return a remark about commas."""
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:
         return decimal_sign(

@@ -38,8 +38,12 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    The first of several elements with the same name is used. InputError: the file cannot be read,
-    or holds no elements.
+    The first of several elements with the same name is used.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or contains no elements.
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
@@ -50,9 +54,7 @@ def read_library(path: Path) -> Library:
 
 
 def is_library(sheets: Mapping[str, SheetRows]) -> bool:
-    """Return whether sheets form a library: several sheets with headings, or the table of
-    moords.
-    """
+    """True if sheets form a library: several have headings, or one is the table of moords."""
     headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
     moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
     return len(headed) >= _SHEETS or any(
@@ -66,13 +68,13 @@ def key_of(name: str) -> str:
 
 
 def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
-    """Fill missing values in rows from the element of the same name.
+    """Fill missing values in rows from the library element of the same name.
 
     Parameters
     ----------
     rows : rows of the list; they are changed
     library : the library
-    source : name of the library, for hints
+    source : name of the library, for hints to the user
     """
     for row in rows:
         element = library.get(key_of(row.name))
@@ -93,9 +95,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
 
 def _of_matrices(path: Path) -> list[ListRow]:
-    """Return the elements of character matrices with a row for each element, as in
-    `mdcodes.mat`.
-    """
+    """Return the elements in character matrices, one in each row, as in `mdcodes.mat`."""
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
         entry
@@ -109,9 +109,7 @@ def _of_matrices(path: Path) -> list[ListRow]:
 
 
 def _width(variables: MatVariables) -> int:
-    """Return the width of the name column in bytes; the variable `format` gives the columns of all
-    values.
-    """
+    """Return the width of the column of names in bytes, from the variable `format`."""
     try:
         columns = variables.reals("format")
     except ValueError:
@@ -162,7 +160,7 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
 
 
 def _is_line(row: ListRow, title: str) -> bool:
-    """Return whether an element is a line, with values per metre."""
+    """True if an element is a line, with values per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False

@@ -34,9 +34,12 @@ _NAMES = 3  # least number of names in a list that has only names
 
 
 def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
-    """Read a CSV file or a workbook.
+    """Read a CSV file or a workbook as a design.
 
-    InputError: no headings are recognised, a figure is missing, or no end is an anchor.
+    Raises
+    ------
+    InputError
+        No headings are recognised, a value is missing, or no end of the list is an anchor.
     """
     columns, elements = options.columns, options.elements
     sheets, hidden = read_sheets(path)
@@ -96,7 +99,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
 def _named(
     sheets: Mapping[str, SheetRows], name: str | None, path: Path
 ) -> Mapping[str, SheetRows]:
-    """Return the sheet of a name alone, or all sheets without a name."""
+    """Return only the sheet of a given name; return all sheets if no name is given."""
     if name is None:
         return sheets
     if name not in sheets:
@@ -108,11 +111,15 @@ def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
     path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return name, cells and headings of the only sheet with headings; None if there is none.
-    Hidden sheets count only if no visible sheet has headings.
+    """Return name, cells and headings of the only sheet with headings.
 
-    Remarks about hidden sheets and parts are added to `remarks`. InputError: several visible sheets
-    have headings.
+    Return None if no sheet has headings. A hidden sheet is used only if no visible sheet has
+    headings. Remarks about hidden sheets and parts are added to `remarks`.
+
+    Raises
+    ------
+    InputError
+        Several visible sheets have headings.
     """
     found = [
         (name, cells, headings)
@@ -137,7 +144,7 @@ def _headed(
 
 
 def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
-    """Return a summary: the number of pieces, their total length, and the columns used."""
+    """Summarise how the list was read: number of pieces, total length, and columns used."""
     pieces = [row for row in rows if "at" not in row.figures]
     length = sum(row.count * row.figure("length") for row in pieces)
     columns = ", ".join(
@@ -162,9 +169,10 @@ def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
 def _names(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
 ) -> list[ListRow]:
-    """Return the rows of the longest sheet, for a list that contains only names.
+    """Read a list that contains only names, from its longest sheet.
 
-    The first row is the name of the mooring, unless the library has an element of that name.
+    The first name is that of the mooring, unless the library has an element of that name. The
+    values of the pieces are those of the library.
     """
     longest = max(sheets.values(), key=len, default=[])
     rows = _names_in(longest)
@@ -187,7 +195,7 @@ def _names(
 
 
 def _names_in(cells: SheetRows) -> list[ListRow]:
-    """Return a row for each name in the column with the most words, for a sheet of names alone."""
+    """Return a row for each name, from the column of a sheet with the most words."""
     words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
     counts = Counter(words)
     best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
@@ -228,8 +236,9 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 
 
 def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
-    """Sort rows from the top down, with clamps after their piece; the list may have either
-    direction.
+    """Sort rows from the top of the line down, with clamps after their piece.
+
+    The list may have either direction.
     """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
@@ -259,15 +268,13 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
 
 
 def _go_down(rows: list[ListRow]) -> bool:
-    """Return whether depths are positions on the line, which differ and increase from piece to
-    piece.
-    """
+    """True if depths are positions on the line: they differ, and never decrease from row to row."""
     depths = [row.figures["depth"] for row in rows if "depth" in row.figures]
     return len({*depths}) > 1 and all(upper <= lower for upper, lower in pairwise(depths))
 
 
 def _planned_depth(row: ListRow, component: model.ImportedComponent) -> float | None:
-    """Depth in the list of a single float, instrument or clamp [m]."""
+    """Return the depth that the list gives for a single float, instrument or clamp [m]."""
     of_its_own = "at" in row.figures or component.figures.get("role") in ("float", "instrument")
     return row.figures.get("depth") if of_its_own and row.count == 1 else None
 

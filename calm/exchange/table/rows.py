@@ -1,4 +1,4 @@
-"""Read list rows in SI units, and note how each row was interpreted."""
+"""Read the rows of a list in SI units, with notes on how each was interpreted."""
 
 import math
 import re
@@ -36,10 +36,14 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 
 @dataclass(eq=False)
 class ListRow:
-    """A list row: name, values, count, and guesses.
+    """A row of a list: name, values in SI units, count, and guesses.
 
-    `metre`: names of values per metre; `line`: whether the row is a cable or chain (None: to be
-    decided by its name); `hint`: advice on missing values; `problems`: messages about mistakes.
+    Attributes
+    ----------
+    metre : names of the values that are per metre
+    line : whether the row is a cable or chain; None if its name decides
+    hint : advice on missing values
+    problems : messages about mistakes
     """
 
     place: int
@@ -65,7 +69,7 @@ class ListRow:
         self.problems.append(f"{self.where}: {problem}")
 
     def figure(self, what: str) -> float:
-        """Return a value; 0 if the list has none."""
+        """Return a value of the row; 0 if the list has none."""
         return self.figures.get(what, 0.0)
 
     @property
@@ -75,7 +79,7 @@ class ListRow:
 
     @property
     def sinks(self) -> bool:
-        """Whether the row is a line, an anchor, or a part that sinks according to its name."""
+        """Whether the row is a line or an anchor, or its name is that of a part that sinks."""
         named = is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
@@ -105,7 +109,8 @@ def rows_of(
     Parameters
     ----------
     guessed : list to which guesses are added
-    bare : whether a row with only this name is a piece, because a library has its figures
+    bare : returns whether a row that has only this name is a piece, because a library has its
+        values
     """
     rows: list[ListRow] = []
     known = headings.columns
@@ -144,7 +149,7 @@ def rows_of(
 
 
 def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
-    """Convert the cells of a row to words and values."""
+    """Convert the cells of a row to texts and values."""
     row.label, row.kind, row.role = (
         cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
     )
@@ -187,7 +192,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
 
 
 def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide totals in a row by its count; the headings show which values are totals."""
+    """Divide values by the count of pieces in a row, if the heading shows that they are totals."""
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
@@ -201,7 +206,7 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
     """Return messages about cumulative or implausibly large lengths.
 
-    Lengths that grow from piece to piece, up to an end of the line, are distances from its other
+    Lengths that grow from piece to piece, up to one end of the line, are distances from the other
     end.
     """
     pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
@@ -227,9 +232,9 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Convert weights to net buoyancy, positive up.
 
-    Weights are positive down, or positive up if sinking parts have negative weights. If sinking
-    parts have positive buoyancies and all other parts negative buoyancies, the column holds
-    weights.
+    Weights are positive down, unless most sinking parts have negative weights. A column of
+    buoyancies holds weights if all sinking parts have positive values and all other parts negative
+    values.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
@@ -256,7 +261,7 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) ->
 
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
-    """Convert values of lines to values per metre if the list gives values for the whole line."""
+    """Convert values of lines to values per metre, if the list gives them for the whole line."""
     lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
@@ -282,8 +287,9 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """Return whether equally named lines of different length have equal values, which must then be
-    per metre.
+    """True if lines of the same name have equal values although their lengths differ.
+
+    Such values are per metre.
     """
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:

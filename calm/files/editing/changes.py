@@ -1,4 +1,4 @@
-"""Edit a YAML text by location: compute text patches, and the data expected after the change."""
+"""Edit a YAML text at a location: compute the text patches, and the data after the change."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,11 +20,11 @@ NAMED = ("components", "environments")
 
 
 class EditError(CalmError):
-    """A change cannot be made to the present text."""
+    """The requested change cannot be made to the present text."""
 
 
 class Page:
-    """An editable text that ends with a line break, with its parsed nodes and its writing style."""
+    """An editable text that ends with a line break, with its nodes and its writing style."""
 
     def __init__(self, text: str, root: Node, style: WritingStyle) -> None:
         self.text = text
@@ -39,7 +39,7 @@ class Page:
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """Set the value at a location, and add missing mappings above it."""
+        """Return the patches that set the value at a location; missing mappings are added."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
@@ -71,7 +71,7 @@ class Page:
         return [writing.set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
-        """Remove a key."""
+        """Return the patches that remove a key."""
         outer = self.node(location[:-1])
         assert outer is not None
         if len(outer.keys) == 1:
@@ -81,7 +81,6 @@ class Page:
         return [items.patch()]
 
     def _add_entry(self, mapping: Node, name: str, value: Value, *, open: bool) -> Patch:
-        """Add a key with a value to a mapping, in the key order of the format."""
         inside = f"{written(name, flow=True)}: {inline(value)}"
         if not mapping.keys:
             return Patch(mapping.start, mapping.end, f"{{{inside}}}")
@@ -106,7 +105,13 @@ class Page:
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
-        """Return the valid indices among the given ones, sorted and without repetitions."""
+        """Sort the indices of list items and remove repetitions.
+
+        Raises
+        ------
+        EditError
+            An item does not exist.
+        """
         node = self.node(location)
         count = len(node.children) if node is not None and node.kind == "sequence" else 0
         known = sorted(set(indices))
@@ -117,7 +122,7 @@ class Page:
         return known
 
     def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:
-        """Return the text of list items with their comments, one text per item."""
+        """Return the texts of list items, each with its comments."""
         known = self.known(location, indices)
         node = self.node(location)
         if not known or node is None:
@@ -129,13 +134,13 @@ class Page:
         return tuple(snippet_of(items.texts[i], items.column) for i in known)
 
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
-        """Insert new items into a list, which is created if necessary.
+        """Return the patches that insert items into a list, which is created if necessary.
 
         Parameters
         ----------
         location : location of the list
         index : index of the first new item
-        values : the items; those of `Worded` keep their text
+        values : the items; items in `Worded` keep their text
         """
         node = self.node(location)
         if node is None or not node.children:
@@ -157,7 +162,7 @@ class Page:
         return inline(value) if items.is_flow else self.style.item(value, items.column, block=block)
 
     def rows(self, location: Location, rows: Sequence[Value]) -> list[Patch]:
-        """Replace the items of a list; existing items keep their text."""
+        """Return the patches that replace the items of a list; unchanged items keep their text."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
@@ -176,7 +181,7 @@ class Page:
 
 
 def _opens(location: Location, node: Node) -> bool:
-    """Return whether a new definition in a section is written with one key per line."""
+    """True if a new definition in a section is to be written with one key per line."""
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
@@ -191,7 +196,7 @@ def nested(location: Location, value: Value) -> dict[str, Value]:
 
 
 def data_of(value: Value) -> Any:
-    """Return the data that a value becomes when it is written to a file and read again."""
+    """Return the data that result if a value is written to a file and read again."""
     if value is None or isinstance(value, str):
         return value
     if isinstance(value, Mapping):
@@ -204,13 +209,13 @@ REMOVED = object()
 
 
 def with_value(data: Any, location: Location, value: Any) -> Any:
-    """Return data with another value at a location; missing mappings above it are added.
+    """Return a copy of data with another value at a location; missing mappings are added.
 
     Parameters
     ----------
     data : data, as in `Node.data`
     location : keys and indices that lead to the value
-    value : Value, or `GONE`
+    value : the value, or `REMOVED` to remove the key
     """
     if not location:
         return data_of(value)
@@ -224,7 +229,7 @@ def with_value(data: Any, location: Location, value: Any) -> Any:
 
 
 def has_control(data: Any) -> bool:
-    """Return whether any text in the data contains control characters."""
+    """True if any text in the data contains control characters."""
     if isinstance(data, str):
         return any(category(sign) in ("Cc", "Cf") for sign in data if sign not in "\t\n\r")
     parts = [*data, *data.values()] if isinstance(data, dict) else data or ()
@@ -234,9 +239,9 @@ def has_control(data: Any) -> bool:
 def cells_that_differ(
     old: Any, new: Sequence[Sequence[str | None]]
 ) -> list[tuple[int, int, str]] | None:
-    """List the changed cells (row, column, text) between two tables of equal shape.
+    """List the changed cells (row, column, text) of a table.
 
-    Returns None if the shapes differ, or if a value is removed.
+    Return None if the tables have different shapes, or if a value is removed.
     """
     rows = old if isinstance(old, list | tuple) else []
     if [len(row) if isinstance(row, list | tuple) else -1 for row in rows] != [*map(len, new)]:
@@ -255,7 +260,7 @@ _ENDINGS = ("\r\n", "\n", "\r")
 
 
 class EndedLine(NamedTuple):
-    """Text and line break of a line; the break of the last line is empty."""
+    """A line as its text and its line break, which is empty for the last line."""
 
     text: str
     line_break: str
@@ -271,11 +276,10 @@ def lines_of(text: str) -> list[EndedLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """Replace the lines of a text by the lines of a text editor, and keep the line breaks of the
-    file.
+    """Replace the lines of a text by those of a text editor, keeping the file's line breaks.
 
-    Unchanged lines keep their line breaks, and so do lines that replace another one. New lines have
-    the usual line break of the file.
+    Unchanged and replaced lines keep their line breaks. Added lines have the usual line break of
+    the file.
     """
     old = lines_of(text)
     usual = WritingStyle.of(text, None).line_break
@@ -291,8 +295,9 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Match new lines to old lines; return the index of the equal or replaced old line, or None for
-    an added line.
+    """Return for each new line the index of the old line that it equals or replaces.
+
+    The index is None for an added line.
     """
     # Comparing is slow, and most often only a line differs.
     head = _common_start(old, new)
@@ -307,6 +312,5 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
 
 
 def _common_start(old: Sequence[str], new: Sequence[str]) -> int:
-    """Count the equal lines at the beginning."""
     pairs = enumerate(zip(old, new, strict=False))
     return next((i for i, (one, other) in pairs if one != other), min(len(old), len(new)))

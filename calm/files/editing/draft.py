@@ -1,5 +1,6 @@
-"""An editable mooring or tow file, as text, with its undo history. Unedited parts are kept byte for
-byte.
+"""An editable mooring or tow file, as text, with its undo history.
+
+Parts that are not edited are kept byte for byte.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ line: []                              # top to bottom
 
 
 def clamps_of(item: int) -> Location:
-    """Return the location of the clamps on an item."""
+    """Return the location of the list of clamps of an item."""
     return (*LINE, item, "clamps")
 
 
@@ -46,9 +47,8 @@ class Draft:
     """A mooring or tow file as text.
 
     Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks and
-    a byte-order mark are kept; new text follows the style of the file. A comment directly above an
-    item belongs to the item. The changed text is read again, to check that nothing else has
-    changed.
+    a byte-order mark are kept. New text follows the style of the file. A comment directly above an
+    item belongs to the item. The changed text is read again to check that nothing else has changed.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Draft:
 
     @classmethod
     def empty(cls) -> Draft:
-        """Return the text of a mooring without pieces."""
+        """Return a draft of a mooring without pieces."""
         return cls(_EMPTY)
 
     @cached_property
@@ -76,8 +76,9 @@ class Draft:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """Return the reasons why the file can be edited only as plain text; the `path` of each is
-        empty.
+        """Problems of the YAML text, because of which the file can only be edited as plain text.
+
+        The `path` of each problem is empty.
         """
         if self._root is not None:
             return ()
@@ -89,7 +90,7 @@ class Draft:
 
     @cached_property
     def items(self) -> tuple[LineItem, ...]:
-        """Return the items of `line`, neither expanded nor validated."""
+        """Items of `line`, as written: neither expanded nor validated."""
         text, found = self._padded, []
         for rows, _ in self.lists.all if self._root is not None else ():
             node = self._page.node(rows)
@@ -103,17 +104,18 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Return the location of each line item; indices in `LINE` run on across legs."""
+        """Locations of the line items. An index in `LINE` counts through all legs."""
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
     def is_tow(self) -> bool:
-        """Return whether the text describes a tow; False if it cannot be read."""
+        """Whether the text describes a tow; False if it cannot be parsed."""
         return isinstance(self.value(()), dict) and "tow" in self.value(())
 
     def value(self, location: Location) -> Any:
-        """Return the text, mapping or list at a location; None if there is none, or if there are
-        `problems`.
+        """Return the text, mapping or list at a location.
+
+        Return None if there is none, or if the text has `problems`.
         """
         if self._root is None:
             return None
@@ -128,13 +130,16 @@ class Draft:
     def insert(
         self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert a new item with the given values above an item, or below the last.
+        """Insert a new item above the item at an index, or below the last item.
 
         Parameters
         ----------
-        rows : the list, here and below: the line, `clamps_of` an item, or another list
-        above : for an index between two legs, whether the item is the first of the lower leg
-            instead of the last of the upper leg
+        index : index of the new item
+        values : keys and values of the new item
+        rows : location of the list, here and in other methods: the line, `clamps_of` an item, or
+            another list
+        above : at an index between two legs, whether the item becomes the first of the lower leg;
+            otherwise it becomes the last of the upper leg
         """
         self._check_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
@@ -168,9 +173,12 @@ class Draft:
         ----------
         index : index of the item
         to : its new index
-        rows : the list
+        rows : location of the list
 
-        EditError: the two places are in different legs.
+        Raises
+        ------
+        EditError
+            The two indices are in different legs.
         """
         places = [self.lists.place_in(rows, each, above=True) for each in (index, to)]
         if places[0][0] != places[1][0]:
@@ -188,19 +196,19 @@ class Draft:
         return self._changed([items.patch()], rows, data)
 
     def copy(self, indices: Iterable[int], rows: Location = LINE) -> tuple[str, ...]:
-        """Return the text of items, with their comments, each on its own."""
+        """Return the texts of items, each with its comments."""
         lists = self.lists.grouped(indices, rows)
         return tuple(text for own, each in lists for text in self._page.copy(own, each))
 
     def paste(
         self, index: int, snippets: Iterable[str], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert items, as returned by `copy`, above an item or below the last.
+        """Insert items that `copy` returned, above the item at an index or below the last item.
 
         Parameters
         ----------
         index : index of the first new item
-        snippets : items as returned by `copy`
+        snippets : texts of the items, as returned by `copy`
         rows, above : as in `insert`
         """
         self._check_item(rows)
@@ -216,7 +224,7 @@ class Draft:
         index : index of the item
         key : the key
         value : the value; None removes the key
-        rows : the list
+        rows : location of the list
         """
         own, number = self.lists.place_in(rows, index, above=True)
         self._page.known(own, [number])
@@ -225,8 +233,8 @@ class Draft:
     def put_at(self, location: Location, value: Value | None) -> Draft:
         """Set the value at a location, and add missing mappings above it.
 
-        None removes a key, and also the mappings above it that become empty, except `environment`
-        and the named environments.
+        The value None removes the key. Mappings above it that become empty are removed as well,
+        except for `environment` and the named environments.
         """
         page, location = self._page, self.lists.real(location)
         if value is not None:
@@ -245,7 +253,7 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """Replace a table; existing rows keep their text.
+        """Replace a table; unchanged rows keep their text.
 
         Parameters
         ----------
@@ -268,7 +276,7 @@ class Draft:
         return draft.put_rows(place, rows)
 
     def put_rows(self, location: Location, rows: Sequence[Value]) -> Draft:
-        """Replace the items of a list; existing items keep their text."""
+        """Replace the items of a list; unchanged items keep their text."""
         return self._changed(self._page.rows(location, rows), location, rows)
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
@@ -294,7 +302,7 @@ class Draft:
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
-        """Apply patches, and check that the data have changed only at the location."""
+        """Apply patches to the text, and check that its data have changed at the location only."""
         data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break
@@ -323,7 +331,7 @@ class Draft:
 
 
 def _worded(snippets: Iterable[str]) -> Worded:
-    """Read items as returned by `Draft.copy`."""
+    """Parse items that `Draft.copy` returned."""
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
         raise changes.EditError("the pasted text is not a list of items")
@@ -347,16 +355,19 @@ class History:
 
     @property
     def changed(self) -> bool:
-        """Return whether the draft differs from the saved text."""
+        """Whether the draft differs from the saved text."""
         return self.draft.text != self.saved_text
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """Return the labels of the changes that can be undone, the latest first."""
+        """Labels of the changes that can be undone, the latest first."""
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """Apply a change: make a draft current, and label the step; an equal draft adds no step."""
+        """Make a draft current, as a step with a label that can be undone.
+
+        A draft that equals the current one adds no step.
+        """
         if draft.text == self.draft.text:
             return
         self._done.append((label, self.draft.text))

@@ -1,7 +1,7 @@
 """Cut, copy, insert and move the items of YAML lists and mappings as text.
 
-The items of a mapping are its entries. An item of a list can be copied to a text of its own and
-pasted from one.
+The items of a mapping are its entries. Items of a list can also be copied to a separate text and
+pasted from it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 class LineLists:
     """Locations of the line items: in a single list, or in one list per leg of a net.
 
-    An index in `LINE` counts through all lists.
+    An index in `LINE` counts through all lists ("line index").
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class LineLists:
 
     @classmethod
     def of(cls, data: Any) -> LineLists:
-        """Return the lists in the data of a file."""
+        """Find the lists in the data of a file."""
         data = data if isinstance(data, dict) else {}
         legs = data.get("legs")
         if "line" in data or not isinstance(legs, dict):
@@ -54,23 +54,22 @@ class LineLists:
 
     @property
     def legs(self) -> list[str]:
-        """Name of the leg that contains each item; empty for a single line."""
+        """Name of the leg of each item; empty names for a single line."""
         names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
         return [name for name, count in names for _ in range(count)]
 
     def real(self, location: Location) -> Location:
-        """Convert a location with an index that runs on across legs to the location in the text."""
+        """Convert a location with a line index to the location in the text."""
         if location[:1] != LINE or len(location) == 1:
             return location
         rows, index = self.place(int(location[1]), above=True)
         return (*rows, index, *location[2:])
 
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the list that contains an index running on across legs, and the index in that
-        list.
+        """Return the list that contains a line index, and the index in this list.
 
-        For an index between two legs this is the first item of the lower leg with `above`,
-        otherwise the end of the upper leg.
+        An index between two legs is the first item of the lower leg if `above`, else the end of the
+        upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
@@ -79,13 +78,13 @@ class LineLists:
         return self.all[-1][0], index
 
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
-        """Locate a line index as `place` does; return indices of other lists unchanged."""
+        """Locate a line index as `place` does; an index in another list is unchanged."""
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
     def grouped(
         self, indices: Iterable[int], rows: Location
     ) -> Iterator[tuple[Location, list[int]]]:
-        """Group item indices by list; yield each list with its indices."""
+        """Group indices of items by list; yield the location of each list and its indices."""
         if rows != LINE:
             yield self.real(rows), [*indices]
             return
@@ -100,11 +99,12 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : place of the item, counted from 1, also that of its pieces when read
-    values : keys with plain values, as written; empty for a key without value. A
-        `length_at` is written as `480 m at 2 kN`.
+    line, column : position of the item in the text, counted from 1; pieces read from it have the
+        same
+    values : keys and their plain values, as written; the text of a key without value is empty. The
+        mapping `length_at` becomes a text such as `480 m at 2 kN`
     clamps : its clamps
-    text : its lines, with the comments that belong to it
+    text : its lines in the file, including the comments that belong to it
     """
 
     line: int
@@ -121,7 +121,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
     ----------
     node : node of the item
     text : text that contains the node
-    lines : its lines, if they contain more than the node
+    lines : lines of the item, if they contain more than the node
     """
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
@@ -139,12 +139,12 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
 
 def snippet_of(text: str, column: int) -> str:
-    """Return the text of an item as a block list with this single item, starting in column 1.
+    """Return the text of an item as a block list with this item only, starting in column 1.
 
     Parameters
     ----------
     text : text of the item
-    column : column of its dash, from 1; 0 for an item in brackets
+    column : column of the dash of the item, from 1; 0 for an item in brackets
     """
     text = _LINE_BREAK.sub("\n", text)
     if not column:
@@ -153,7 +153,7 @@ def snippet_of(text: str, column: int) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """Parse a text from `snippet_of` to an item; None unless it contains exactly one item."""
+    """Parse the text that `snippet_of` returned; return None unless it has exactly one item."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
@@ -172,12 +172,12 @@ class Items:
 
     Attributes
     ----------
-    start, end : span of the text that is replaced
+    start, end : span of the collection in the text, which `patch` replaces
     is_flow : whether the collection is in brackets
-    column : column of the dashes, or of the items if there are none, counted from 1
-    texts : text of each item: its lines with its comments, or in brackets the text
-        between its commas
-    gaps : text before each item that does not belong to it, such as a comment further left
+    column : column of the dashes, or of the keys of a mapping, counted from 1
+    texts : text of each item: its lines with its comments, or for a collection in brackets the text
+        between commas
+    gaps : text before each item that belongs to none, such as a comment further left
     rest : text after the last item
     separator : text between two items in brackets
     on_a_dash : whether the first entry of the mapping is on the line of a dash or of a `?`
@@ -203,7 +203,6 @@ class Items:
         return text
 
     def insert(self, index: int, text: str) -> None:
-        """Insert an item."""
         self.texts.insert(index, text)
         self.gaps.insert(index, "")
         if index == 0 and len(self.gaps) > 1:
@@ -217,7 +216,7 @@ class Items:
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Divide a collection into items; None if it shares lines with other text.
+    """Divide a collection into items; return None if it shares lines with other text.
 
     The text must end with a line break.
     """
@@ -258,7 +257,7 @@ def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
 
 
 def _flow(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
-    """Divide a collection in brackets into items; None if there are comments between them."""
+    """Divide a collection in brackets into items; return None if it contains comments."""
     between = [text[one[1] : other[0]] for one, other in pairwise(spans)]
     if any("#" in each for each in between):
         return None

@@ -12,15 +12,13 @@ from calm.files.editing.working_file import Keeper, state_folder
 
 
 class Presence:
-    """Entry in the state folder for the file that this process has open."""
+    """Record in the state folder of the file that this process has open."""
 
     def __init__(self) -> None:
         self._place: Path | None = None
 
     def announce(self, path: Path | None) -> list[int]:
-        """Record a file (or None) as open; return the ids of other processes that have this file
-        open.
-        """
+        """Record a file (or None) as open; return the ids of other processes that have it open."""
         if self._place is not None:
             with suppress(OSError):
                 self._place.unlink(missing_ok=True)
@@ -48,8 +46,9 @@ _MOST_RECENT = 40
 
 
 class Remembered:
-    """Component ids of recent choices and favourites, latest first; both are empty if their file
-    cannot be read.
+    """Ids of favourite and recently used components, latest first.
+
+    Both lists are empty if their file cannot be read.
 
     Attributes
     ----------
@@ -67,18 +66,18 @@ class Remembered:
         self.favourites, self.recent = ids
 
     def take(self, id: str) -> None:
-        """Record the choice of a component until the builder ends, without saving it."""
+        """Record the choice of a component for this session, without saving it."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         with suppress(OSError):
             self._keep()
 
     def mark(self, id: str) -> bool:
-        """Mark a favourite, or remove the mark; return whether it is now a favourite.
+        """Mark a component as favourite, or remove the mark; return whether it is a favourite now.
 
         Raises
         ------
         OSError
-            The mark could not be saved, and lasts until the builder ends.
+            The mark could not be saved; it lasts until the builder ends.
         """
         is_new = id not in self.favourites
         self.favourites = [each for each in self.favourites if each != id]

@@ -1,7 +1,7 @@
-"""The file that a user is editing, and the copies of its unsaved text.
+"""The file that a user is editing, and backup copies of its unsaved text.
 
-A copy is the text below a first line, a comment, which records the host, the process and a digest
-of the file when the work began. Each session uses its own file name.
+The first line of a copy is a comment with the host, the process, and a digest of the file when the
+work began. The text follows below. Each session uses its own file name.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ class NotWritten(CalmError):
 
 
 class WorkingFile:
-    """A mooring file that is being edited, and the copy of its unsaved text.
+    """A mooring file that is being edited, and the backup copy of its unsaved text.
 
-    The copy belongs to this builder. Copies of other builders are read, and removed only after
-    their work was adopted by `adopt` or discarded.
+    The copy belongs to this session. Copies of other sessions are read, and are removed only after
+    their work was taken over by `adopt` or discarded.
 
     Parameters
     ----------
-    path : path of the file; None if it has no name yet, in which case its copy is in the user's
-        state folder (`XDG_STATE_HOME`), as are copies that cannot be written next to the file
+    path : path of the file; None if it has no name yet. Its copy is then in the user's state folder
+        (`XDG_STATE_HOME`), as are copies that cannot be written next to the file
 
     Attributes
     ----------
@@ -62,9 +62,12 @@ class WorkingFile:
         self._lock = RLock()  # a signal handler may use the copy while it is being removed
 
     def read(self) -> str:
-        """Return the text of the file, with its byte-order mark and line breaks.
+        """Read the text of the file, with its byte-order mark and line breaks.
 
-        InputError: it cannot be read, or is not text.
+        Raises
+        ------
+        InputError
+            The file cannot be read or is not text.
         """
         assert self.path is not None
         content = read_content(self.path)
@@ -74,13 +77,14 @@ class WorkingFile:
         return text
 
     def save(self, text: str) -> str:
-        """Write the file; a reader sees either the old or the new text.
+        """Write the file. Other programs see either the old or the new text.
 
-        Its permissions are kept, and a symbolic link still points to the same file.
+        Its permissions are kept. A symbolic link still points to the same file.
 
         Returns
         -------
-        str : message about attributes of the file that could not be kept, usually empty
+        str
+            Message about attributes of the file that could not be kept, usually empty.
 
         Raises
         ------
@@ -101,21 +105,20 @@ class WorkingFile:
 
     @property
     def is_protected(self) -> bool:
-        """Return whether the file exists and may not be written."""
+        """True if the file exists and may not be written."""
         path = self.path
         return path is not None and _status(path) is not None and not os.access(path, os.W_OK)
 
     @property
     def stamp(self) -> Stamp | None:
-        """Return values that identify the state of the file on the disk; None without a file."""
+        """Return values that identify the state of the file on disk; None if there is no file."""
         status = None if self.path is None else _status(self.path)
         return status and (status.st_mtime_ns, status.st_size, status.st_ino)
 
     def changed_on_disk(self) -> bool:
-        """Return whether the file has changed since it was last read or saved; it may have been
-        removed.
+        """True if the file has changed, or was removed, since it was last read or saved.
 
-        The content is read only if the time or size has changed, and only from a regular file.
+        The content is read only if time or size have changed, and only from a regular file.
         """
         if self.path is None:
             return False
@@ -128,11 +131,14 @@ class WorkingFile:
         return self._differs
 
     def keep(self) -> Path | None:
-        """Write `unsaved` text to the backup copy, and return the copy's path; may be called from
-        any thread.
+        """Write `unsaved` to the backup copy and return its path; any thread may call this.
 
-        The copy of this builder is removed if the text is saved. NotWritten: the copy can be
-        written neither next to the file nor in the state folder.
+        If nothing is unsaved, the copy of this session is removed.
+
+        Raises
+        ------
+        NotWritten
+            The copy can be written neither next to the file nor in the state folder.
         """
         with self._lock:
             if self.unsaved is None:
@@ -141,15 +147,16 @@ class WorkingFile:
             return self._keep(self.unsaved)
 
     def forget(self) -> None:
-        """Delete the backup copy and any adopted copy, after the work was saved or discarded."""
+        """Delete the backup copy and any adopted copy, because the work was saved or discarded."""
         with self._lock:
             self.unsaved = None
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
             self._adopted = None
 
     def recoverable_work(self) -> KeptWork | None:
-        """Return the latest unsaved work of a session that has ended, if it differs from the
-        file.
+        """Return the latest unsaved work of a session that has ended.
+
+        Return None if there is none, or if it equals the file.
         """
         content = self._content()
         found = []
@@ -163,27 +170,27 @@ class WorkingFile:
         return max(found, key=lambda each: each.at, default=None)
 
     def is_open_elsewhere(self) -> bool:
-        """Return whether another running session has unsaved work on this file."""
+        """True if another running session has unsaved work on this file."""
         if self.path is None:
             return False
         own = set(self._places)
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
     def is_of_another(self, kept: KeptWork) -> bool:
-        """Return whether the file has changed since the recovered work began."""
+        """True if the file has changed since the recovered work began."""
         return self.path is not None and kept.base != _digest(self._content())
 
     def adopt(self, kept: KeptWork) -> None:
         """Continue with recovered work; its copy is deleted when the work is saved or discarded.
 
-        If the file has changed since that work began, it is reported by `changed_on_disk`.
+        If the file has changed since that work began, `changed_on_disk` is then true.
         """
         self._adopted = kept.place
         if self.is_of_another(kept):
             self._remember(_UNREADABLE)
 
     def discard(self, kept: KeptWork) -> None:
-        """Delete a copy of unwanted work."""
+        """Delete the backup copy of work that the user does not want to keep."""
         self._drop(kept.place)
 
     def _remember(self, content: bytes) -> None:
@@ -198,9 +205,7 @@ class WorkingFile:
             return _UNREADABLE if _status(self.path) else None
 
     def _folders(self) -> list[tuple[Path, str]]:
-        """Return candidate folders for the backup copy, the best first, with the beginning of the
-        copy's name.
-        """
+        """Return folders for the backup copy, the best first, and how its file name begins."""
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
@@ -246,7 +251,7 @@ def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
 
 
 def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
-    """Return a message about file attributes that were lost when the file was replaced."""
+    """Return a message about file attributes that were lost in replacing the file."""
     if before is None or after is None:
         return ""
     losses = []
@@ -271,13 +276,13 @@ _TOKEN = re.compile(r"\.[0-9a-f]{8}" + re.escape(SUFFIX))
 
 @dataclass(frozen=True)
 class Keeper:
-    """Process that writes a backup copy.
+    """Process that wrote a backup copy.
 
     Attributes
     ----------
     host : name of the machine
     process : process number
-    started : its starting time in the units of that machine; empty if unknown
+    started : start time of the process in units of that machine; empty if unknown
     """
 
     host: str
@@ -314,13 +319,13 @@ class Keeper:
 
 @dataclass(frozen=True)
 class KeptWork:
-    """Unsaved work found in a copy.
+    """Unsaved work found in a backup copy.
 
     Attributes
     ----------
     place : path of the copy
     text : text of the mooring file
-    keeper : process that keeps it
+    keeper : process that wrote the copy
     base : `_digest` of the content of the file when the work began
     at : time of the copy [s since 1970]
     """
@@ -359,9 +364,10 @@ def _read(place: Path) -> KeptWork:
 
 
 def _started(process: int) -> str:
-    """Return the start time of a process in ticks since the machine was booted; empty if unknown.
+    """Return the start time of a process in ticks since the machine was booted.
 
-    It is unknown for a process that has ended, even if its parent has not yet collected its status.
+    It is empty if unknown, and for a process that has ended even if its parent has not yet
+    collected its status.
     """
     try:
         stat = Path(f"/proc/{process}/stat").read_text()

@@ -1,8 +1,8 @@
 """Write values as YAML in the style of a file, with keys in the order of the models.
 
-A word is written without quotes if it can be read back without them. The text is never emitted
-again by a YAML library, because that would lose part of its layout, such as aligned columns and
-Windows line ends; even ruamel.yaml, which preserves most comments, does.
+Text is written without quotes if it can be read back without them. A file is never written as a
+whole by a YAML library, because that would lose part of its layout, such as aligned columns and
+Windows line ends. This is true even of ruamel.yaml, which preserves most comments.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 
 
 class Wording(NamedTuple):
-    """A list item and its text.
+    """A list item with the text by which it is written.
 
     Attributes
     ----------
-    value : Value
-    lines : its lines in a block list in column 1, with its comments
+    value : value of the item
+    lines : its lines in a block list that starts in column 1, with its comments
     inline : its text in brackets, without comments
     """
 
@@ -49,7 +49,7 @@ class Wording(NamedTuple):
 
 
 class Worded(list[Value]):
-    """List items that keep their text."""
+    """List items that are written with their own text."""
 
     def __init__(self, wordings: Iterable[Wording]) -> None:
         self.wordings = tuple(wordings)
@@ -82,9 +82,9 @@ class WritingStyle:
 
     Attributes
     ----------
-    line_break : str
-    step : number of columns by which values below a key are indented
-    dash : the same for the dashes of a list below a key
+    line_break : line break of the file
+    step : number of columns by which keys below a key are indented
+    dash : number of columns by which the dashes of a list below a key are indented
     """
 
     line_break: str = "\n"
@@ -113,7 +113,7 @@ class WritingStyle:
         Parameters
         ----------
         name : the key
-        value : Value
+        value : the value
         column : column of the key, from 1
         open : whether a mapping is written below its key even if it is short
         """
@@ -127,7 +127,7 @@ class WritingStyle:
         Parameters
         ----------
         name : the key
-        value : Value
+        value : the value
         column : column of the key, from 1
         open : as for `entry`
         """
@@ -149,7 +149,7 @@ class WritingStyle:
         return "", "".join(self.item(one, column + self.dash) for one in value)
 
     def moved(self, lines: str, column: int) -> str:
-        """Indent lines that start in column 1, so that they start in another column."""
+        """Indent lines that start in column 1 to another column."""
         indented = re.sub(r"^(?=[^\n])", " " * (column - 1), lines, flags=re.MULTILINE)
         return indented.replace("\n", self.line_break)
 
@@ -158,9 +158,9 @@ class WritingStyle:
 
         Parameters
         ----------
-        value : Value
+        value : value of the item
         column : column of the dash, from 1
-        block : whether keys are written one per line, as for an item with items of its own
+        block : whether to write one key per line; mappings that contain collections always are
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):
@@ -194,8 +194,9 @@ def read_inline(text: str) -> Value:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Return the index at which a new key is inserted among the existing keys: in the order of the
-    format, or at the end.
+    """Return the index at which to insert a new key among the existing keys.
+
+    The keys are in the order of the format; other keys are last.
     """
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
@@ -209,7 +210,7 @@ def place_of(name: str, names: Sequence[str]) -> int:
 
 
 def _is_deep(value: Mapping[str, Value]) -> bool:
-    """Return whether a mapping contains more than texts and short lists of texts."""
+    """True if a mapping contains more than texts and lists of texts."""
     return any(
         isinstance(one, Mapping)
         or (one is not None and not isinstance(one, str) and any(map(_is_long, one)))
@@ -222,7 +223,7 @@ def _is_long(value: Value) -> bool:
 
 
 def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
-    """Yield each block collection below a key, with the mapping of the key."""
+    """Yield each block collection below a key, preceded by the mapping that has the key."""
     for child in node.children:
         if child.style == "block":
             if node.kind == "mapping":
@@ -235,9 +236,9 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
 
     Parameters
     ----------
-    text : str
-    flow : whether it is in brackets, where commas and brackets end a plain text
-    quote : the present quotation mark, which is kept
+    text : the text
+    flow : whether the scalar is in brackets, where commas and brackets end a plain text
+    quote : present quotation mark, which is kept; empty if there is none
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
@@ -268,7 +269,7 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """Apply patches to a text; two patches at one position are applied in the given order."""
+    """Apply patches to a text; patches at the same position are applied in the given order."""
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -283,13 +284,13 @@ def line_start(text: str, place: int) -> int:
 
 
 def line_end(text: str, place: int) -> int:
-    """Return the index at which the next line begins."""
+    """Return the index at which the line after a position begins."""
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
 
 def first_on_line(text: str, place: int) -> bool:
-    """Return whether only blanks precede a position on its line."""
+    """True if only blanks precede a position on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
@@ -299,8 +300,9 @@ def own_end(text: str, place: int, column: int) -> int:
     Parameters
     ----------
     text : the text, which ends with a line break
-    place : the end of the value
-    column : column of the item, from 1; comments below it and further right belong to it
+    place : index at which the value of the item ends
+    column : column of the item, from 1; comments below the item and to the right of this column
+        belong to it
     """
     end = line_end(text, place)
     while (comment := _COMMENT.match(text, end)) and end < len(text):
@@ -316,9 +318,10 @@ def own_start(text: str, place: int, least: int, column: int | None = None) -> i
     Parameters
     ----------
     text : the text, which ends with a line break
-    place : the beginning of the item, the first on its line
-    least : comments before this index do not belong to it
-    column : comments to the right of this column, from 1, do not belong to it, either
+    place : index at which the item begins, the first on its line
+    least : comments before this index do not belong to the item
+    column : comments to the right of this column, from 1, do not belong to the item; None for no
+        limit
     """
     start = line_start(text, place)
     while start > least:
@@ -346,7 +349,7 @@ def set_value(
     text : the text, which ends with a line break
     mapping : the mapping that contains the key
     at : index of the entry
-    value : Value
+    value : the new value
     style : style of the file
     open : whether a mapping is written below its key even if it is short
     """
@@ -362,7 +365,7 @@ def set_value(
         head, below = style.parts(key.data, value, mapping.column, open=open)
     assert colon is not None
     if mapping.style == "block" and old.line > key.line:
-        # Lines below the key: a comment behind the key stays.
+        # The value is in lines below the key, so a comment after the key is kept.
         start, end = line_end(text, colon), own_end(text, old.end, old.column - 1)
         return [Patch(colon, colon, head), Patch(start, end, below)]
     patches = [Patch(colon, old.end, head)]
@@ -379,15 +382,13 @@ def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
     ----------
     old : the scalar
     value : the new text
-    flow : whether it is in brackets
+    flow : whether the scalar is in brackets
     """
     quote = old.style if old.style in "'\"" else ""
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))
 
 
 def _colon(text: str, place: int) -> int | None:
-    """Return the index after the colon of a key that ends at a given index; None if there is no
-    colon.
-    """
+    """Return the index after the colon of a key that ends at `place`; None if there is no colon."""
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None
