@@ -48,8 +48,10 @@ def set_row(rows: Any, i: int, row: Any) -> None:
 
 
 class Compiled:
-    """A compiled law. All its arguments must have the kinds of the first ones, which saves time in
-    short solves.
+    """A compiled law.
+
+    The kinds of the arguments are checked only in the first call, which saves time in short solves.
+    All later arguments must have the same kinds.
     """
 
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
@@ -61,7 +63,7 @@ class Compiled:
         self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the law; other threads continue meanwhile."""
+        """Call the law without blocking other threads."""
         result = ctypes.create_string_buffer(self._result.size)
         self._call(self._given.written(arguments), result)
         return None if self._nothing else self._result.read(result.raw)
@@ -83,7 +85,7 @@ class Addressed:
         )
 
     def __call__(self, task: Any, x: float) -> float:
-        """Call the law; other threads continue meanwhile."""
+        """Call the law without blocking other threads."""
         found: float = self._call(self._task.written(task), x)
         return found
 

@@ -63,8 +63,8 @@ def _functions_in(path: str) -> dict[str, ast.FunctionDef]:
 
 
 def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
-    """Return the names that are read, and those that one statement sets, before all statements that
-    read them.
+    """Return two sets of names: the names that are read, and the names that a single statement sets
+    before all statements that read them.
     """
     set_at: dict[str, list[Any]] = {each.arg: [((0, -1),)] for each in tree.args.args}
     read_at: dict[str, list[Any]] = {}
@@ -132,8 +132,8 @@ class Program:
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function that other programs call: of the address of the arguments, and of the
-        address to which a result of a wanted kind is written.
+        """Add a function with two arguments: the address of the law's arguments, and the address to
+        which it writes a result of the wanted kind.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)
@@ -315,7 +315,7 @@ class _Body(Instructions):
         return True
 
     def put(self, target: Any, value: Any) -> None:
-        """Set a variable, an element, or each of a tuple of them."""
+        """Set a variable, an element of a sequence, or a tuple of both."""
         if isinstance(target, ast.Name):
             self.bind(target.id, value)
         elif isinstance(target, ast.Tuple):
@@ -509,7 +509,7 @@ class _Body(Instructions):
         return ArrayView(array, address, shape)
 
     def element(self, node: Any, owner: Any = None) -> tuple[Array, str]:
-        """Return what is left of a sequence after indexing, and the address."""
+        """Return the kind and the address of an element, or of a row of elements."""
         view = self.viewed(owner or self.of(node.value))
         indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         unit, address = size_of(view.kind.item), view.data
@@ -672,12 +672,12 @@ class _Body(Instructions):
         return self.lesser(self.value(WHOLE, f"sub nsw i64 0, {value.text}"), value, "sgt")
 
     def lesser(self, one: Number, other: Number, order: str) -> Number:
-        """Return the first of two numbers if it comes before the other."""
+        """Return the number that comes first in an order."""
         test = self.value(TRUTH, f"icmp {order} i64 {one.text}, {other.text}")
         return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
 
     def call_max(self, function: Any, *given: Any) -> Number:
-        """Return the first of the greatest values, or of the least: as CPython does with NaN."""
+        """Return the greatest or the least number, chosen among equal numbers and NaN as by CPython."""
         kind = given[0].kind
         for each in given:
             kind = common(kind, each.kind)

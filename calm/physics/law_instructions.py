@@ -19,7 +19,7 @@ from calm.physics.law_kinds import (
 
 
 class Number(NamedTuple):
-    """A number, as LLVM writes it; with its value if it is known."""
+    """A number in LLVM's notation, and its value if the compiler knows it."""
 
     kind: str
     text: str
@@ -75,7 +75,7 @@ MOST_COPIED_ONE_BY_ONE = 8
 
 
 class Instructions:
-    """Instructions one after the other, and the memory that they reserve."""
+    """A sequence of instructions, and the memory that the instructions reserve."""
 
     def __init__(self, program: Any) -> None:
         self.program = program
@@ -112,7 +112,7 @@ class Instructions:
         return name
 
     def read(self, kind: Any, address: str, passing: bool = False) -> Any:
-        """Return the value at an address; a row stays there."""
+        """Return the value at an address. A row is not copied."""
         if isinstance(kind, Row):
             return Held(kind, address, passing)
         if isinstance(kind, Array):
@@ -204,7 +204,7 @@ class Instructions:
         return address
 
     def call_law(self, law: Any, given: list[Any]) -> tuple[Any, Any]:
-        """Call a law; return the kind of its result, and the result."""
+        """Call a law, and return the kind of its result and the result."""
         names = law.__code__.co_varnames[: law.__code__.co_argcount]
         for i, name in enumerate(names):
             hint = law.__annotations__.get(name)

@@ -38,7 +38,7 @@ NOTHING = Row(None, ())
 
 @cache
 def size_of(kind: Any) -> int:
-    """Return how many numbers a value takes."""
+    """Return the size of a value, in numbers."""
     if isinstance(kind, Row):
         return sum(map(size_of, kind.members))
     return 1 + kind.dimensions if isinstance(kind, Array) else 1
@@ -52,7 +52,7 @@ def places_of(row: Row) -> tuple[int, ...]:
 
 @cache
 def wanted_by(named: Any) -> tuple[Any, ...]:
-    """Return the kinds that a named tuple asks of its members, None where it leaves them open."""
+    """Return the kinds that a named tuple declares for its members; None for other types."""
     return tuple(BY_NAME.get(hint) for hint in get_type_hints(named).values())
 
 
@@ -163,8 +163,8 @@ def _address_of_array(array: Any) -> int:
 
 _pointer_at = ctypes.c_void_p.from_address
 _DATA = object.__basicsize__
-"""Where an array object has the address of its data: numpy's C interface fixes it as the first
-field. `ctypes.data` takes thirty times as long, for the thirty arrays of a short solve.
+"""Offset of the address of the data in an array object. numpy's C interface fixes it as the first
+field. The attribute `ctypes.data` takes thirty times as long, and a solve passes thirty arrays.
 """
 _NAMES = {"address_of": _address_of_array}
 
