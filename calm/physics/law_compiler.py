@@ -677,7 +677,7 @@ class _Body(Instructions):
         return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
 
     def call_max(self, function: Any, *given: Any) -> Number:
-        """Return the greatest or the least number, chosen among equal numbers and NaN as by CPython."""
+        """Return the greatest or least number; equal numbers and NaN are treated as by CPython."""
         kind = given[0].kind
         for each in given:
             kind = common(kind, each.kind)

@@ -1,4 +1,4 @@
-"""Attributes with a defined meaning: CF standard names, cell methods, frames and the datum.
+"""Attributes with a defined meaning: CF standard names, cell methods, coordinate frames and north.
 
 CALM does not interpret free text (titles, comments, long names). The card of `calm.records.card`
 quotes it for the reader.
@@ -48,20 +48,20 @@ _MOVING = 0.1  # m/s over the ground: median speeds above this exclude a mooring
 
 
 def words_in(text: str) -> str:
-    """Return the lower-case words of a text, separated by single blanks."""
+    """Return a text in lower case, with a single blank between its words and no punctuation."""
     return re.sub(r"[\W_]+", " ", text.lower()).strip()
 
 
 def words_of(variable: xr.DataArray, *attributes: str) -> str:
-    """Return the words of the given attributes of a variable."""
+    """Join the values of the named attributes of a variable, in the form of `words_in`."""
     return words_in(" ".join(str(variable.attrs.get(name, "")) for name in attributes))
 
 
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
-    """Return why a variable holds no measured or modelled values; None if it may.
+    """Return the reason why a variable holds no value of one time and depth, or None.
 
-    Reasons are its cell methods (a spread, a climatology, a mean over depth), or a packing that
-    makes all values equal.
+    The reason is either its cell methods (a spread, a climatology, a mean over depth) or a scale
+    factor of zero.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Return why velocities are not to the east and north; None if they may be.
+    """Return a message if velocities are not towards east and north, else None.
 
-    The evidence is the coordinate system in the attributes of a dataset or a variable.
+    The message quotes the coordinate system that the attributes of a dataset or variable state.
     """
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
@@ -92,10 +92,10 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def moving_platform(dataset: xr.Dataset) -> str | None:
-    """Explain why a dataset comes from a moving ship; None if it may come from a mooring.
+    """Return a message if a dataset comes from a moving ship, None if it may come from a mooring.
 
-    Reasons are its `source_program`, or a median platform speed over the ground (from bottom track
-    or position) above that of any mooring.
+    A ship is recognised by the `source_program`, or by a median platform speed over the ground
+    (from bottom track or position) above that of any mooring.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
@@ -122,12 +122,12 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
 
 
 def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
-    """Return whether attributes of the variable or dataset refer directions to true north."""
+    """Return whether attributes state that directions are relative to true north."""
     return "true" in _norths(variable, dataset)
 
 
 def _norths(variable: xr.DataArray, dataset: Mapping[Any, Any]) -> Iterator[str]:
-    """Yield the north, `magnetic` or `true`, that each attribute states."""
+    """Yield ``"magnetic"`` or ``"true"`` for each attribute that states the reference north."""
     for name, value in (*variable.attrs.items(), *dataset.items()):
         text = str(value)
         if _UNTURNED.fullmatch(str(name)):
@@ -144,10 +144,10 @@ def _is_magnetic_text(text: str) -> bool:
 
 
 def sense_of_direction(variable: xr.DataArray) -> str | None:
-    """Return the convention of a direction that has no standard name.
+    """Return whether a current flows ``"to"`` a direction or comes ``"from"`` it.
 
-    By its long name and comment, the current flows ``"to"`` this direction or comes ``"from"`` it;
-    None without a clear statement.
+    The answer is based on the long name, standard name and comment of the direction variable. It is
+    None if these give no sense, or contradict each other.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

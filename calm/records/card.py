@@ -1,7 +1,7 @@
 """Summary card of a file: its texts, variables, levels, times, flags and declination.
 
-The user reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
-values are in their declared units.
+The user reads the card to confirm that the file is the intended one. It quotes texts verbatim and
+gives values in their declared units.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _TEXTS = {
 class VariableSummary:
     """Name, declared unit, minimum, median and maximum of a variable.
 
-    `description` quotes its long name and comment. The three figures are NaN for a variable without
+    `description` quotes its long name and comment. The three values are NaN for a variable without
     finite values.
     """
 
@@ -43,7 +43,7 @@ class VariableSummary:
 
     @classmethod
     def of(cls, name: str, units: str, values: Any, description: str = "") -> VariableSummary:
-        """Compute the figures from the finite elements of an array."""
+        """Summarise an array by its finite elements."""
         values = np.asarray(values, np.float64).ravel()
         known = values[np.isfinite(values)]
         if not known.size:
@@ -54,13 +54,13 @@ class VariableSummary:
 
 @dataclass(frozen=True, eq=False)
 class ReadCard:
-    """Contents of a file, in summary.
+    """Summary of the contents of a file.
 
     Attributes
     ----------
     file : name of the file
     texts : title, summary and comment, quoted
-    variables : variables by their role, such as east, north, depth
+    variables : summaries of the variables by role, such as east, north, depth
     levels : number of levels or of instruments
     times : (n,) in rising order; empty for a profile without a time
     clock : name and unit of the time variable
@@ -78,13 +78,13 @@ class ReadCard:
     declination: float | None = None
 
     def sentence(self) -> str:
-        """Format the card as a line of the `history` attribute."""
+        """Format the card as a single line for the `history` attribute."""
         rows = card_rows(self.to_dict())
         texts = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
         return f"read {self.file}: {texts}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object: times in ISO 8601, the step in seconds."""
+        """Return the card as a JSON object, with times in ISO 8601 and the time step in seconds."""
         step, gaps, longest = None, [], None
         if self.times.size > 1:
             median, at = gaps_of(self.times)
@@ -115,14 +115,17 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of several quantities of a file."""
+    """Merge the cards of several quantities from one file."""
     variables = {role: one for card in cards for role, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)
 
 
 def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of a file's instruments; a median is that of the instruments' medians."""
+    """Merge the cards of a file's instruments.
+
+    The median of a variable is the median of the instruments' medians.
+    """
     variables = {}
     for role in {role: None for card in cards for role in card.variables}:
         each = [card.variables[role] for card in cards if role in card.variables]
@@ -201,12 +204,12 @@ def texts_in(attributes: Mapping[Any, Any]) -> dict[str, str]:
 
 
 def cut(text: str) -> str:
-    """Return a text of at most `LONGEST` characters."""
+    """Shorten a text to at most `LONGEST` characters."""
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
 
 
 def description_of(attributes: Mapping[Any, Any]) -> str:
-    """Return the long name and the comment of a variable."""
+    """Join the long name and comment of a variable's attributes, at most `LONGEST` characters."""
     texts = (str(attributes.get(name, "")).strip() for name in ("long_name", "comment"))
     return cut("; ".join(filter(None, texts)))
 

@@ -1,7 +1,7 @@
 """Access to CF datasets: opening, values, units, times and labels.
 
-xarray opens NetCDF 3 and 4 and zarr, with undecoded times and lazily read values. Faults of a file
-raise `UnreadableError`, which `reading` converts to `InputError`.
+xarray opens NetCDF 3 and 4 and zarr; times are left undecoded and values are read lazily. Faults of
+a file raise `UnreadableError`, which `reading` converts to `InputError`.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _MOST_LISTED = 5
 MOST_VALUES = 50_000_000
-"""Maximum number of values read at once: readings every second for a year and a half."""
+"""Maximum number of values read at once, enough for a reading every second for 18 months."""
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )
@@ -63,13 +63,13 @@ _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 
 class UnreadableError(Exception):
-    """Error of a file that holds no readable current; the text gives the reason."""
+    """Error of a file whose contents cannot be used; the message gives the reason."""
 
 
 def holds_arrays(path: Path) -> bool:
-    """Return whether a path is NetCDF, instrument text or a zarr store; other files are CSV.
+    """Return whether a path is NetCDF, zarr or the text file of an instrument, rather than CSV.
 
-    InputError: another kind of folder, or a file of a known but unsupported kind.
+    Raise InputError for any other folder, or for a file of a known but unsupported kind.
     """
     if path.is_dir():
         if not is_zarr(path):
@@ -91,7 +91,7 @@ def is_zarr(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Convert errors in reading a file to InputError."""
+    """Convert any error while a file is read to InputError."""
     try:
         yield
     except (CalmError, TimeChoiceError, ModuleNotFoundError):
@@ -107,7 +107,7 @@ def reading(path: Path) -> Iterator[None]:
 
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a dataset; its errors are InputErrors that list the contents of the file."""
+    """Open a dataset; any error becomes an InputError that lists the contents of the file."""
     if not path.exists():
         raise refused(path, no_such_file(path))
     if not holds_arrays(path):
@@ -118,7 +118,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
 
 @contextmanager
 def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
-    """Append a list of the dataset's contents to any UnreadableError."""
+    """Append a list of the dataset's variables to the message of any UnreadableError."""
     try:
         yield
     except UnreadableError as error:
@@ -126,7 +126,7 @@ def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
 
 
 def open_current(path: Path) -> xr.Dataset:
-    """Open a dataset with lazily read values and undecoded times."""
+    """Open a dataset of currents with lazily read values and undecoded times."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -139,12 +139,10 @@ def open_current(path: Path) -> xr.Dataset:
 
 
 def _refuse_large(path: Path, engine: str) -> None:
-    """Reject a file that declares more values than may be read at once.
+    """Raise UnreadableError if a variable has more values than may be read at once.
 
-    The check precedes all reading. One-dimensional variables are read whole, others by their
-    chunks. Classic NetCDF files are safe, as their size limits the number of values.
-
-    UnreadableError: names the variable.
+    The check reads only the declared shapes: one-dimensional variables are read whole, others chunk
+    by chunk. Classic NetCDF files need no check, as their size limits the number of values.
     """
 
     def check(name: str, array: Any) -> None:
@@ -173,13 +171,13 @@ def _refuse_many(name: object, count: int) -> None:
 
 
 def engine_of(path: Path) -> str:
-    """Return the xarray engine for a NetCDF file by its first bytes, or an empty text."""
+    """Return the xarray engine for a NetCDF file by its first bytes, or "" for any other file."""
     with path.open("rb") as file:
         return _ENGINES.get(file.read(4), "")
 
 
 def holdings(dataset: xr.Dataset) -> str:
-    """Return the variables of a dataset with their dimensions, units and standard names."""
+    """List the variables of a dataset with their dimensions, units and standard names."""
     listed = []
     # most dimensions first: probably the variable that the user wants
     for name, variable in sorted(dataset.variables.items(), key=lambda each: -each[1].ndim):
@@ -201,7 +199,7 @@ def holdings(dataset: xr.Dataset) -> str:
 
 
 def groups_of(path: Path) -> list[str]:
-    """Return the names of the groups of a NetCDF 4 file, or an empty list."""
+    """Return the names of the groups of a NetCDF 4 file, or an empty list for any other file."""
     import h5netcdf
 
     if not path.is_file() or engine_of(path) != "h5netcdf":
@@ -211,9 +209,9 @@ def groups_of(path: Path) -> list[str]:
 
 
 def factor_of(variable: xr.DataArray, dimension: str) -> float:
-    """Return the factor from the unit of a variable to SI (angles: degrees).
+    """Return the factor that converts the unit of a variable to SI (angles: degrees).
 
-    UnreadableError: it has no unit, or a unit of another dimension.
+    Raise UnreadableError if the variable has no unit, or a unit of another dimension.
     """
     unit = str(variable.attrs.get("units", ""))
     plain = {"db": "dbar"}.get(unit.strip(), _NORTH_NAMED.sub("", unit.strip()))
@@ -229,9 +227,9 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
 
 
 def converted(variable: xr.DataArray, values: Floats, wanted: str) -> Floats:
-    """Convert values of a variable to another unit, in pint notation.
+    """Convert values from the unit of a variable to a wanted unit, given in pint notation.
 
-    UnreadableError: it has no unit, or a unit of another dimension.
+    Raise UnreadableError if the variable has no unit, or a unit of another dimension.
     """
     unit = str(variable.attrs.get("units", "")).strip()
     if not unit:
@@ -248,7 +246,7 @@ _PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", 
 
 
 def refuse_other_salinity(variable: xr.DataArray) -> None:
-    """Reject a salinity with a unit other than those of practical salinity (UnreadableError)."""
+    """Raise UnreadableError if the unit of a salinity is not a unit of practical salinity."""
     unit = str(variable.attrs.get("units", "")).strip()
     if unit.lower() not in _PRACTICAL:
         reason = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
@@ -256,15 +254,15 @@ def refuse_other_salinity(variable: xr.DataArray) -> None:
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Return the names that the dataset contains, without duplicates."""
+    """Return the names that are variables of the dataset, in order and without duplicates."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
     """Return the values of a variable in its declared unit, NaN outside its valid range.
 
-    `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: they refer to packed
-    values if they have the packed type.
+    `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: limits of the packed
+    type refer to packed values.
     """
     _refuse_many(variable.name, variable.size)
     values = np.array(variable.values, np.float64)
@@ -275,7 +273,7 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
 
 
 def valid_range(variable: xr.DataArray) -> tuple[float, float]:
-    """Return the minimum and maximum valid value, unpacked."""
+    """Return the minimum and maximum valid value of a variable, unpacked; ±inf without a limit."""
     low, high = (variable.attrs.get(name) for name in ("valid_min", "valid_max"))
     both = variable.attrs.get("valid_range")
     if both is not None and len(both) == 2:
@@ -297,13 +295,13 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
 
 
 def texts_of(variable: xr.DataArray) -> list[str]:
-    """Return the values of a variable as texts."""
+    """Return the values of a variable as stripped strings."""
     values = np.atleast_1d(variable.values).tolist()
     return [(one.decode() if isinstance(one, bytes) else str(one)).strip() for one in values]
 
 
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
-    """Return the text labels along a dimension; None if it has none."""
+    """Return the text labels of a dimension; None if the dataset has none."""
     for name in first_present(dataset, (*_LABELS, dimension)):
         variable = dataset[name]
         if variable.dims == (dimension,) and variable.dtype.kind in "SUO":
@@ -312,15 +310,13 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Return the nominal depths of the instruments along a dimension, or of one instrument [m].
-
-    Heights above the seabed are converted with `seabed`.
+    """Return the nominal depths of instruments [m]; None if the dataset has none.
 
     Parameters
     ----------
     dataset : dataset of the instruments
     dimension : dimension of the instruments; None for a single instrument
-    seabed : water depth, for heights above the seabed [m]
+    seabed : water depth, to convert heights above the seabed [m]
     """
     dims = () if dimension is None else (dimension,)
     for names, sign, start in ((_HEIGHTS, -1.0, seabed), (_DEPTHS, 1.0, 0.0)):
@@ -340,7 +336,7 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
 def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
     """Return the name of the time variable of a velocity; None if it has none.
 
-    Any dimension of the time variable is also a dimension of the velocity.
+    The time variable has no dimension that the velocity lacks.
     """
     axes, coordinates = dataset.cf.axes, dataset.cf.coordinates
     units = {name: str(one.attrs.get("units", "")) for name, one in dataset.variables.items()}
@@ -348,15 +344,15 @@ def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
     names = [*axes.get("T", []), *coordinates.get("time", []), *_TIME_NAMES, *map(str, since)]
     dims = set(dataset[velocity].dims)
     fitting = [name for name in first_present(dataset, names) if set(dataset[name].dims) <= dims]
-    # a dimension of times before a single date, such as that of a forecast
+    # prefer a time dimension to a single date, such as the start of a forecast
     return min(fitting, key=lambda name: not dataset[name].dims, default=None)
 
 
 def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
-    """Return the times to the nanosecond, one-dimensional, in the order of the file.
+    """Return the times of a variable as (n,) datetime64[ns], in the order of the file.
 
-    UnreadableError: the values are not times, are missing, or follow a calendar that differs from
-    the real one.
+    Raise UnreadableError if a value is missing or is no time, or if the calendar differs from the
+    real one.
     """
     times = dataset[name]
     calendar = str(times.attrs.get("calendar", "standard")).lower()
@@ -376,7 +372,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return a notice if an attribute of the times names a zone other than UTC."""
+    """Return a notice if an attribute of the times or the file names a zone other than UTC."""
     for attributes in (dataset[name].attrs, dataset.attrs):
         for key in _ZONED:
             zone = str(attributes.get(key, "")).strip()
@@ -420,7 +416,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
 
 
 def _no_date(times: xr.DataArray) -> UnreadableError:
-    """Build the error for times whose unit is valid but whose values lie outside the range."""
+    """Build the error for times with a valid unit but values outside the supported years."""
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(

@@ -1,4 +1,4 @@
-"""Dataset of currents as arrays of depth, u, v and w, for one or many profiles, read lazily."""
+"""Datasets of currents, read lazily as arrays of depth, u, v and w for one or many profiles."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ SAMPLED = 64_000_000
 class CurrentDataset:
     """A dataset of currents with its velocity, levels, times and place identified.
 
-    Current values are read later, and times are undecoded. UnreadableError: no readable current;
-    the message gives the reason and the contents of the file.
+    Values of the current are read later. Raise UnreadableError if no current can be read; the
+    message gives the reason and the contents of the file.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class CurrentDataset:
     notices : remarks to read before the data are used
     turned : notice of the rotation from magnetic to true north, if any
     rules : rules by which the file was read
-    source : names of the variables, and the place of the column
+    source : names of the variables, and the position of the grid column
     labels : see `Record`
     """
 
@@ -91,12 +91,12 @@ class CurrentDataset:
 
     @property
     def moves(self) -> bool:
-        """Whether the levels move with time."""
+        """Whether the depths of the levels change with time."""
         return self._levels is not None and self._levels.vary_in(self._time)
 
     @property
     def chunk(self) -> int:
-        """Number of times that the file compresses together; 1 without compression."""
+        """Number of times in a compressed chunk of the file; 1 without compression."""
         variable = self._parts[0][0]
         chunks: dict[str | None, int] = variable.encoding.get("preferred_chunks", {})
         return chunks.get(self._time, 1)
@@ -109,10 +109,10 @@ class CurrentDataset:
         return 8 * levels * (len(self._parts) + self.moves)
 
     def read(self, index: Index) -> Levels:
-        """Return the profiles at the given time indices, or all profiles if there is no time.
+        """Read the profiles at the given time indices, or the only profile of a file without times.
 
-        Depths are (k,), or (n, k) if levels move. Currents are inf if the file has a negative speed
-        or a direction outside -360 to 360°.
+        Return depth (k,) [m], or (n, k) if the levels move, u and v (n, k) [m/s], and w (n, k) or
+        None. Currents are inf if the file has a negative speed or a direction outside -360 to 360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor
@@ -134,7 +134,7 @@ class CurrentDataset:
         return depth, first, second, up[0] if up else None
 
     def flags(self, index: Index) -> NDArray[np.int8] | None:
-        """Return (n, k) the worse of the quality flags of both components; None without flags."""
+        """Return quality flags (n, k), the worse of both components; None without flags."""
         if not self._flags:
             return None
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
@@ -148,7 +148,7 @@ class CurrentDataset:
         Parameters
         ----------
         file : name of the file
-        index : indices of the times, rising
+        index : increasing indices of the times
         """
         every, times = self.times, None
         notes: list[str] = []
@@ -210,14 +210,17 @@ class CurrentDataset:
 
     @property
     def _taken(self) -> tuple[str, ...]:
-        """Role of each variable of the current."""
+        """Roles of the variables of the current, in their order."""
         components = self._velocity.turn is None
         return ("east", "north", "up") if components else ("speed", "direction", "up")
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
     ) -> Any:
-        """Return times by levels, contiguous so that equal values give equal results."""
+        """Read a variable as a contiguous array of times by levels.
+
+        Contiguity makes sums over equal values equal to the last bit.
+        """
         like = self._parts[0][0]
         if set(variable.dims) != set(like.dims):
             variable = variable.broadcast_like(like)
@@ -229,14 +232,15 @@ class CurrentDataset:
 
 
 def share_of(good: Floats) -> Floats:
-    """Convert shares of good pings to fractions; values are percentages if any exceeds 1."""
+    """Return shares of good pings as fractions; values above 1 mean that they are percentages."""
     return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
 def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
-    """Return the notice on a current relative to magnetic north, if it was rotated.
+    """Return a notice if a current is rotated from magnetic to true north.
 
-    UnreadableError: the declination is missing, or the current is relative to true north already.
+    Raise UnreadableError if the declination is missing, or if it is given although the current is
+    relative to true north already.
     """
     counted = current.names if current.turn is None else current.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
@@ -259,7 +263,7 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
 def _single_levels(
     dataset: xr.Dataset, current: velocity.Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
-    """Return the dimension of the levels, and the dataset without dimensions of length one."""
+    """Drop dimensions of length one, and return the level dimension and the reduced dataset."""
     name = current.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))
@@ -309,19 +313,20 @@ class ArrayRecord(Record):
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """See `Record`."""
         first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
         depth = depth[mine] if self._current.moves else depth
         return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """See `Record`."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
-        """Return the range of profiles that are decompressed together, and these profiles."""
+        """Return a range of profiles that includes `start` to `stop`, and its values.
+
+        The range extends to the end of a compressed chunk, which is thus decompressed only once.
+        """
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead
         self._ahead = None
@@ -333,7 +338,7 @@ class ArrayRecord(Record):
         return window
 
     def _end_of_chunk(self, start: int) -> int:
-        """Return the index of the first profile after the compressed chunk with `start`."""
+        """Return the index of the first profile after the compressed chunk that holds `start`."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step
@@ -341,5 +346,4 @@ class ArrayRecord(Record):
         return start + min(chunk, READ_AHEAD // max(self._current.size, 1))
 
     def close(self) -> None:
-        """See `Record`."""
         self._dataset.close()

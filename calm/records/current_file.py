@@ -1,8 +1,8 @@
 """Currents from a file of measurements or of a model: NetCDF, zarr or CSV.
 
-A text table has the columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A record
-has a first column `time` and a row for each time and depth; the rows of one time must be adjacent.
-A level without a value (blank, `nan` or `NA`) is omitted.
+A CSV profile has the columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A CSV
+record has a first column `time` and a row for each time and depth; the rows of one time must be
+adjacent. A level without a value (blank, `nan` or `NA`) is omitted.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ EXAMPLE = "depth[m],u[m/s],v[m/s]"
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a file at a time, and the notices on it.
+    """Return the profile of a file at a time, and notices about this profile.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
     ----------
     path, terms : path of the record, and options for reading its currents
     time : first and last time, see `parse_period`
-    every : read one profile in this number
+    every : read every n-th profile only
 
     Raises
     ------
@@ -172,7 +172,7 @@ def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], 
 
 
 def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
-    """Return the time of a row; None if it has none, with the mistake added to `problems`."""
+    """Return the time of a row; if it has none, add a mistake to `problems` and return None."""
     try:
         return current_terms.parse_time(row.cells[0])
     except TimeChoiceError as error:
@@ -198,7 +198,7 @@ class CsvRecord(Record):
     def _inspect(
         self, header: CurrentHeader, period: Period | None, every: int, path: Path
     ) -> list[str]:
-        """Return doubts about the values of a period, and store their card."""
+        """Set the card of the profiles in a period, and return doubts about their values."""
         mine = self._index
         self._index = choose_profiles(self._times, period, 1, path)[0] if every > 1 else mine
         times = self._times[self._index]
@@ -256,7 +256,6 @@ class CsvRecord(Record):
         return header
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """See `Record`."""
         chosen = np.arange(len(self._times))[part(self._index, start, stop)]
         first, behind = self._first[chosen], self._first[chosen + 1]
         levels = first[:, np.newaxis] + np.arange(self._most)
@@ -267,14 +266,13 @@ class CsvRecord(Record):
         return depth, u, v, (w if self._has_w else None)
 
     def close(self) -> None:
-        """See `Record`."""
         self._rows = np.empty((0, COLUMNS))
 
 
 def _card_of(
     header: CurrentHeader, values: CurrentValues, times: NDArray[np.datetime64], terms: Terms
 ) -> ReadCard:
-    """Return the card of a table: the comments above it, and the current in SI."""
+    """Return the card of a CSV file, with the comments above its header as text."""
     with header.row.path.open("rb") as file:
         above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
         comment = " ".join(line.lstrip("# ") for line in above if line.startswith("#"))
@@ -298,7 +296,7 @@ def _card_of(
 
 
 def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[list[CellRow]]:
-    """Yield the rows of whole profiles, in batches of about `AT_ONCE` rows.
+    """Yield rows in batches of at least `AT_ONCE`, without splitting a profile.
 
     Adjacent rows with the same time form a profile.
     """
@@ -313,7 +311,7 @@ def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[
 
 
 def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0) -> None:
-    """Raise InputError if there are more than `at_least` mistakes, or any in the header."""
+    """Raise InputError if there are more than `at_least` mistakes, or if any is in the header."""
     in_header = [problem for problem in problems if problem.line == header.row.number]
     if in_header:
         raise InputError(abridged(in_header))
@@ -323,7 +321,7 @@ def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0
 
 @dataclass(frozen=True)
 class CurrentHeader:
-    """Columns of a table of currents after its time column, if any."""
+    """Header of a table of currents, with or without a time column."""
 
     row: CellRow
 
@@ -333,12 +331,12 @@ class CurrentHeader:
 
     @property
     def timed(self) -> bool:
-        """Whether the file is a record."""
+        """Whether the first column holds times, which makes the file a record."""
         return is_time(self.row.cells[0])
 
     @property
     def columns(self) -> list[str]:
-        """Column names with their units, without the time column."""
+        """Column headings without the time column."""
         return list(self.row.cells[int(self.timed) :])
 
     def currents(
@@ -348,7 +346,7 @@ class CurrentHeader:
         terms: Terms,
         profile: Integers | None = None,
     ) -> Floats:
-        """Return (n, 4) depth [m], u, v and w [m/s] of rows.
+        """Convert rows to an array (n, 4) of depth [m], u, v and w [m/s].
 
         If any row is wrong, the array is empty and the mistakes are added to `problems`.
 

@@ -28,12 +28,12 @@ class Terms:
     Attributes
     ----------
     water_depth : water depth, to convert heights above the seabed [m]; inf if unknown
-    place : position of the wanted grid column, for a file with several
+    place : position whose nearest grid column is read
     declination : magnetic declination, positive to the east [degrees]; rotates currents that the
         file refers to magnetic north
     maximum_speed : speed above which a current is a mistake of the file [m/s]
-    on_the_line : whether levels may be labels of parts of a line, and bad currents are kept with
-        their flags; both are excluded otherwise
+    on_the_line : whether the file holds instruments on a mooring line. Level labels may then name
+        parts of the line, and bad currents are kept with their flags instead of being excluded
     """
 
     water_depth: float = inf
@@ -44,11 +44,12 @@ class Terms:
 
 
 def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
-    """Return a message if a current exceeds the maximum plausible speed, else None.
+    """Return a message if the speed of a current exceeds the maximum plausible speed, else None.
 
     Parameters
     ----------
-    u, v, w : [m/s]
+    u, v, w : components of the current [m/s]
+    maximum_speed : maximum plausible speed [m/s]
     """
     speed = hypot(u, v, w)
     if isinf(speed):
@@ -77,13 +78,13 @@ _PART_OF_HOUR = re.compile(r"[^\d.,:]\d\d(?::?\d\d)?[.,]")
 
 
 class TimeChoiceError(ValueError):
-    """Error of a requested time: invalid, outside the record, or missing although needed."""
+    """Error of a requested time that is invalid, outside the record, or missing although needed."""
 
 
 def parse_time(text: str) -> np.datetime64:
-    """Parse an ISO 8601 time [µs]; UTC is the default zone.
+    """Parse an ISO 8601 time to datetime64[us]; a time without a zone is UTC.
 
-    TimeChoiceError: the text is not a valid time.
+    Raise TimeChoiceError if the text is not a valid time.
     """
     try:
         if _PART_OF_HOUR.search(text):
@@ -103,8 +104,8 @@ def time_text(time: np.datetime64) -> str:
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
     """Return the index of the time nearest to the requested one, and a notice if they differ.
 
-    TimeChoiceError: the file has no times, it has several and none is requested, or the request
-    lies outside the record.
+    Raise TimeChoiceError if the file has no times, if a choice between several times is missing, or
+    if the requested time lies outside the record.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

@@ -1,7 +1,7 @@
 """Tables in text: separators, quotes, decimal commas and the position of each cell.
 
-Cells are separated by tabs, semicolons, commas or blanks, whichever divides the lines most evenly;
-cells may be quoted. Empty lines and text after ``#`` are ignored.
+Cells are separated by tabs, semicolons, commas or blanks, whichever divides the lines most evenly,
+and may be quoted. Empty lines and text after ``#`` are ignored.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ NumberedLine = tuple[int, str]
 
 
 class NoTableError(ValueError):
-    """Error of a text that is not a table; the message gives the line and the fault."""
+    """Error of copied text that is not a table; the message gives the line and the fault."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Dialect:
 
     Attributes
     ----------
-    separator : tab, semicolon, comma or blank; a blank means any run of blanks
+    separator : tab, semicolon, comma or blank; a blank stands for any number of blanks
     decimal : a point or a comma
     """
 
@@ -70,7 +70,7 @@ class Dialect:
     decimal: str = "."
 
     def cells(self, line: str) -> list[str]:
-        """Return the cells of a line, stripped and unquoted, with decimal points."""
+        """Split a line into stripped, unquoted cells, and convert decimal commas to points."""
         if '"' in line:
             found = [text for _, text in self._placed(line)]
         elif self.separator == " ":
@@ -81,17 +81,16 @@ class Dialect:
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
-        """Return the column at which a cell begins in its line, from 1; 1 for a missing cell."""
+        """Return the position in a line, from 1, at which a cell begins; 1 for a missing cell."""
         placed = self._placed(line)
         return placed[cell][0] + 1 if cell < len(placed) else 1
 
     def with_point(self, cell: str) -> str:
-        """Replace the decimal comma of a number by a point; other cells are unchanged."""
+        """Replace the decimal comma of a number by a point, and return other cells unchanged."""
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
     def _placed(self, line: str) -> list[tuple[int, str]]:
-        """Return the position and text of each cell of a line."""
         if self.separator == " ":
             return [(one.start(), _unquoted(one[0])) for one in _WORDS.finditer(line)]
         pattern, at, found = _CELLS[self.separator], 0, []
@@ -112,8 +111,9 @@ class CellRow(NamedTuple):
     path : path of the file
     number : line number
     line : original text of the line
-    cells : cells of the line, without the first `skipped` cells
+    cells : cells of the line after the skipped ones
     dialect : dialect of the table
+    skipped : number of cells skipped at the start of the line
     """
 
     path: Path
@@ -124,12 +124,12 @@ class CellRow(NamedTuple):
     skipped: int = 0
 
     def problem(self, message: str, cell: int | None = None) -> Problem:
-        """Return a mistake located at a cell of the line, or at the start of the line."""
+        """Return a mistake located at a cell of the line, or at the start of the line if None."""
         at = 1 if cell is None else self.dialect.column(self.line, cell + self.skipped)
         return Problem(str(self.path), self.number, at, message)
 
     def mixed_decimals(self) -> list[Problem]:
-        """Return a mistake for each number with a point in a table of decimal commas."""
+        """Return a mistake for each number with a decimal point in a table of decimal commas."""
         if self.dialect.decimal != ",":
             return []
         mixed = "has a decimal point, and the numbers before it have commas"
@@ -140,7 +140,7 @@ class CellRow(NamedTuple):
         ]
 
     def below(self, number: int, line: str) -> CellRow:
-        """Divide a line below this header into cells.
+        """Split a line below this header into cells.
 
         In tables separated by blanks, a time may consist of two words: a date and a clock time.
         """
@@ -152,13 +152,16 @@ class CellRow(NamedTuple):
 
 @dataclass(frozen=True)
 class TextTable:
-    """Table of a file: its header, and the rows below."""
+    """Header and rows of a table in a file."""
 
     header: CellRow
     rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
-        """Return the rows with as many cells as the header; the others are added to `problems`."""
+        """Return the rows with as many cells as the header.
+
+        Mistakes in other rows are added to `problems`.
+        """
         whole = []
         for row in self.rows:
             problems += row.mixed_decimals()
@@ -178,7 +181,7 @@ class CopiedTable:
     Attributes
     ----------
     headings : column headings; None if the first line holds numbers
-    rows : stripped cells, as many in each row as there are columns
+    rows : stripped cells; all rows have the same number of cells
     """
 
     headings: tuple[str, ...] | None
@@ -209,9 +212,9 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
 def table_lines(
     path: Path, lines: Iterable[NumberedLine], example: str
 ) -> tuple[CellRow, Iterator[NumberedLine]]:
-    """Return the header of a table and an iterator over the lines below.
+    """Return the header of a table and an iterator over the lines below it.
 
-    An unnamed first column holds row numbers, as from R and pandas, and is skipped.
+    A first column without a heading holds row numbers, as written by R and pandas, and is skipped.
 
     Parameters
     ----------
@@ -247,8 +250,9 @@ def table_lines(
 def copied_table(text: str) -> CopiedTable:
     """Parse a table copied from a spreadsheet, a file or a web page.
 
-    A first line without a number is a header. `calm.records.profile_tables` interprets the cells.
-    NoTableError: there are no rows, or rows differ in length.
+    The first line is a header unless a cell of it begins with a number.
+    `calm.records.profile_tables` interprets the cells. Raise NoTableError if there are no rows, or
+    if rows differ in length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])
@@ -269,7 +273,7 @@ def copied_table(text: str) -> CopiedTable:
 
 
 def cells_in(text: str) -> list[list[str]]:
-    """Return the cells of a text that may lack a header; decimal signs are unchanged."""
+    """Split a text with or without a header into rows of cells; decimal signs are unchanged."""
     lines = [line for _, line in _content(enumerate(text.splitlines(), 1))]
     dialect = Dialect(dialect_of(lines[:_SAMPLE], words=True).separator)
     return [dialect.cells(line) for line in lines]
@@ -278,11 +282,13 @@ def cells_in(text: str) -> list[list[str]]:
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     """Find the separator and the decimal sign of a table.
 
-    The separator divides most lines into the same number of cells.
+    The separator is the one that divides most lines into the same number of cells. The decimal sign
+    is a comma if a number has a comma that cannot separate thousands, and no number has a point.
 
-    The lines must be neither empty nor comments. If `words`, cells may contain several words, and
-    blanks are no separator. The decimal sign is a comma if a number has a comma that cannot
-    separate thousands, and no number has a point.
+    Parameters
+    ----------
+    lines : lines that are neither empty nor comments
+    words : whether cells may contain several words, so that blanks do not separate cells
     """
     best, most = ",", 0
     for separator in _SEPARATORS:
@@ -315,7 +321,7 @@ def is_gap(cell: str | None) -> bool:
 
 
 def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
-    """Convert cells to numbers, NaN for missing values; None if any cell is not a plain number."""
+    """Convert cells to numbers, NaN for missing values; None if a cell is not a plain number."""
     try:
         found = np.array([float(cell) for cell in cells], np.float64)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -325,7 +331,10 @@ def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:
-    """Return the first mistakes in the order of the file, and a count of further mistakes."""
+    """Return the first `MOST_PROBLEMS` mistakes in file order.
+
+    If there are more, the last entry states their number.
+    """
     ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
     hidden = len(ordered) - MOST_PROBLEMS
     if hidden <= 0:
@@ -335,7 +344,10 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Yield lines with content, with quoted cells that span lines joined into one line."""
+    """Yield the lines that are not empty.
+
+    A quoted cell that spans several lines becomes a single line.
+    """
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):
@@ -361,7 +373,6 @@ def _unquoted(cell: str) -> str:
 
 
 def _begins_with_number(cell: str) -> bool:
-    """Return whether a cell is a number, with or without a unit."""
     cell = Dialect(";", ",").with_point(cell)
     number = NUMBER.match(cell)
     rest = cell[number.end() :] if number else "?"

@@ -1,4 +1,4 @@
-"""Records given in Python: paths, datasets of xarray, tables of pandas."""
+"""Records passed to the Python interface: paths, xarray datasets and pandas tables."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 def is_record(given: Any) -> bool:
-    """Return whether a value is a path, a dataset or a table, not an array of numbers."""
+    """Return whether a value is a path, a dataset or a table rather than an array of numbers."""
     return isinstance(given, str | Path) or type(given).__name__ in ("Dataset", "DataFrame")
 
 
 @contextmanager
 def as_file(given: Given) -> Iterator[Path]:
-    """Yield the path of a record, which for a dataset or table is a temporary file."""
+    """Yield the path of a record; a dataset or a table is written to a temporary file."""
     with TemporaryDirectory() as folder:
         yield Path(as_files(given, Path(folder), "record")[0])
 
@@ -30,18 +30,19 @@ def as_file(given: Given) -> Iterator[Path]:
 def as_files(given: Any, folder: Path, name: str) -> list[str]:
     """Write datasets and tables to a folder, and return the paths of all records.
 
-    Datasets need the same contents as a NetCDF file for CALM. Tables need the columns of a CSV
-    file; their index may hold the times.
+    A dataset must have the contents that CALM expects of a NetCDF file, and a table the columns
+    that it expects of a CSV file. The index of a table may hold the times.
 
     Parameters
     ----------
-    given : a record, several, or a mapping from labels to records, which gives ``LABEL=PATH``
+    given : a record, several records, or a mapping from labels to records; for a mapping,
+        ``LABEL=PATH`` is returned
     folder, name : output folder, and prefix of the file names
 
     Raises
     ------
     TypeError
-        A record is not a path, nor an object of xarray or pandas.
+        A record is neither a path nor an object of xarray or pandas.
     """
     if isinstance(given, Mapping) and not is_record(given):
         each = [as_files(one, folder, f"{name}-{i}") for i, one in enumerate(given.values())]

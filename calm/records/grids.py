@@ -1,4 +1,4 @@
-"""Gridded data at a place: the nearest column of currents with water, and the seabed depth.
+"""Gridded data at a position: the nearest column of currents with water, and the seabed depth.
 
 Seabed depths may come from GEBCO, EMODnet or a survey.
 """
@@ -38,13 +38,13 @@ _PLACES = {
 
 @dataclass(frozen=True)
 class GridColumn:
-    """A column of water in a dataset.
+    """A water column in a gridded dataset.
 
     Attributes
     ----------
     index : index along every horizontal dimension
-    place : position of the column, None if the file does not give it
-    notes : remarks on the choice
+    place : position of the column; None if the file does not give it
+    notes : remarks on the choice of the column
     """
 
     index: dict[str, int]
@@ -70,6 +70,7 @@ def choose_column(
     ----------
     velocity : names of the two velocity variables, which must have values in the column
     time : dimension of the times
+    wanted : latitude and longitude; None selects the only column
 
     Raises
     ------
@@ -138,7 +139,7 @@ def _named(dataset: xr.Dataset, coordinate: str) -> list[str]:
 
 
 def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
-    """Return latitude and longitude over the given dimensions; None if either is missing."""
+    """Return the latitude and longitude variables over the given dimensions, or None."""
     found = []
     for coordinate in _PLACES:
         named = [dataset[name] for name in _named(dataset, coordinate)]
@@ -154,7 +155,7 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
 def _box(
     latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
 ) -> dict[str, NDArray[Any]]:
-    """Return the part of the grid around the place: indices by dimension."""
+    """Return the indices of the grid points around a position, by dimension."""
     if len(horizontal) == 1:  # a list of places, in any order
         return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
     north = latitude.values.astype(np.float64) - wanted[0]
@@ -172,9 +173,14 @@ def _box(
 
 
 def _nearest(away: Floats) -> NDArray[Any]:
-    """Return the indices of the nearest points of an axis, `REACH` on each side, in axis order.
+    """Return the indices, in axis order, of the points of an axis nearest to a position.
 
-    On a global longitude axis they may include both ends.
+    There are up to ``2 REACH + 1`` of them. On a longitude axis around the globe they may include
+    both ends.
+
+    Parameters
+    ----------
+    away : (n,) signed distances of the points from the position [degrees]
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
@@ -183,7 +189,7 @@ def _nearest(away: Floats) -> NDArray[Any]:
 def _wet(
     near: xr.Dataset, velocity: tuple[str, str], time: str | None, horizontal: list[str]
 ) -> NDArray[Any]:
-    """Return a mask of the columns with a nonzero current; some models have zero on land.
+    """Return a mask of the columns with a nonzero current, as some models have zeros on land.
 
     The first, middle and last times are tested, as any one time may be a gap.
     """
@@ -213,14 +219,14 @@ def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]
 
 
 def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...]) -> float:
-    """Return the distance from a column to its farthest neighbour [km]."""
+    """Return the distance from a grid point to the farthest adjacent point [km]."""
     around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
     place = float(latitude[at]), float(longitude[at])
     return float(np.nanmax(kilometres_from(latitude[around], longitude[around], place)))
 
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
-    """Return notices on a record of changing position, such as a drifter's."""
+    """Return notices about a record whose position changes with time, such as a drifter's."""
     found = []
     for coordinate in _PLACES:
         moving = [name for name in _named(dataset, coordinate) if dataset[name].dims == (time,)]
@@ -257,7 +263,6 @@ def _turned(degrees: Any) -> Any:
 
 
 def _signed(longitude: float) -> float:
-    """Return a longitude between −180° and 180°."""
     return longitude if -180.0 <= longitude <= 180.0 else float(_turned(longitude))
 
 
@@ -273,7 +278,7 @@ class SeabedGrid:
     ----------
     path, sha256 : path and checksum of the file
     latitude, longitude : origin of the mooring's coordinates [degrees]
-    reach : distance up to which nodes are read, east and north [m]
+    reach : nodes are read up to this distance east, west, north and south of the origin [m]
     east, north : offset of the point from the origin [m]
     """
 
@@ -287,9 +292,9 @@ class SeabedGrid:
 
     @classmethod
     def of_file(cls, path: Path, latitude: float, longitude: float, reach: float) -> SeabedGrid:
-        """Open the grid of a file around a position.
+        """Open the seabed grid in a file around a position.
 
-        InputError: the file is unreadable, or has no positive depth at the position.
+        Raise InputError if the file is unreadable, or has no positive depth at the position.
         """
         if path.suffix.lower() in (".tif", ".tiff"):
             turn = f"gdal_translate -of netCDF {path.name} {path.stem}.nc"
@@ -307,7 +312,7 @@ class SeabedGrid:
         return grid
 
     def at(self, east: float, north: float) -> SeabedGrid:
-        """Return the grid around another point, given by its offset from this point [m]."""
+        """Return the grid centred on another point, given by its offset from this point [m]."""
         return replace(self, east=self.east + east, north=self.north + north)
 
     @property
@@ -316,27 +321,32 @@ class SeabedGrid:
         return float(self._depths(np.zeros((1, 2)))[0])
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the depths (n,) at places (n, 2), minus the depth of the point [m].
+        """Return the depths (n,) at places minus the depth of the point [m].
 
-        Places are given by their distances east and north of the point [m].
+        Parameters
+        ----------
+        places : (n, 2) distances east and north of the point [m]
         """
         return self._depths(places) - self.depth
 
     @property
     def slope(self) -> float:
-        """Steepest slope of the seabed, over one node spacing [degrees]."""
+        """Slope of the seabed at the point [degrees].
+
+        It is computed from the steepest gradients over one node spacing.
+        """
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Depth gradient to the east and to the north [-], over one node spacing on each side."""
+        """Depth gradient towards east and towards north at the point [-], by central difference."""
         east, north = self._falls.mean(axis=1).tolist()
         return east, north
 
     @property
     def _falls(self) -> Floats:
-        """One-sided depth gradients along east (2,) and north (2,), over one node spacing [-]."""
+        """Depth gradients (2, 2) over one node spacing [-]: along east and north, on both sides."""
         step = float(np.diff(_nodes(self.at(-self.east, -self.north))[0]).mean())
         rises = self.deeper(step * np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
         falls = rises.reshape(2, 2) * np.array([1.0, -1.0]) / step
@@ -353,7 +363,7 @@ class SeabedGrid:
 
 @lru_cache(maxsize=4)
 def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
-    """Return east (n,) and north (m,) coordinates of the nodes, and the depths (m, n) there [m]."""
+    """Return east (n,) and north (m,) coordinates of the nodes, and their depths (m, n) [m]."""
     latitude, longitude = grid.latitude, grid.longitude
     with cf_files.open_current(Path(grid.path)) as dataset:
         name = next((each for each in (*_UP, *_DOWN) if each in dataset.data_vars), None)

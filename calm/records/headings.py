@@ -1,7 +1,7 @@
 """Column headings of text tables: a name and its unit, in the common notations.
 
-``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]``, ``time (UTC)``. A name of
-several words needs brackets around its unit, or a known unit.
+Examples are ``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]`` and ``time (UTC)``.
+A name of several words needs brackets around its unit, or a known unit.
 """
 
 import re
@@ -28,15 +28,18 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and unit; the unit is empty if missing.
 
-    If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a name of several words ends where
-    a known unit begins, preferably one of these dimensions.
+    Without brackets, and if `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a name of
+    several words ends where a known unit begins, preferably a unit of one of these dimensions.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
     if bracketed:
         return bracketed[1], bracketed[2].strip()
     words = text.split(" ")
-    for wanted in (dimensions, DIMENSIONS if dimensions else ()):  # a wrong unit is one too
+    for wanted in (
+        dimensions,
+        DIMENSIONS if dimensions else (),
+    ):  # a unit of another dimension also ends the name
         for first in range(1, len(words)):
             unit = " ".join(words[first:])
             if any(_is_unit(unit, dimension) for dimension in wanted):
@@ -51,16 +54,16 @@ def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
 def column_unit(
     column: str, unit: str, dimensions: Sequence[str], usual: str = ""
 ) -> tuple[str, float]:
-    """Return the dimension of a column and its factor to SI (degrees).
+    """Return the dimension of a column, and the factor from its unit to SI (angles: degrees).
 
-    Latitudes and longitudes need no unit: they are in degrees, or in degrees and minutes.
+    Latitudes and longitudes need no unit. They are in degrees, or in degrees and minutes.
 
     Parameters
     ----------
     column : heading of the column, for messages
     unit : unit in the heading, may be empty
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
-    usual : unit to suggest; by default that in SI
+    usual : unit to suggest; by default the SI unit
 
     Raises
     ------
@@ -86,12 +89,12 @@ def column_unit(
 
 
 def is_time(column: str) -> bool:
-    """Return whether a heading is the heading of the time column."""
+    """Return whether a heading names the time column."""
     return heading(column)[0].lower() == "time"
 
 
 def zone_complaint(column: str) -> str | None:
-    """Return a message if the heading of a time column names a zone other than UTC, else None."""
+    """Return a message if a time heading names a zone other than UTC, else None."""
     zone = heading(column)[1]
     if not zone or zone.upper() in ZONES_OF_UTC:
         return None
@@ -102,14 +105,16 @@ def zone_complaint(column: str) -> str | None:
 
 
 def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
-    """Return headings without the word ``magnetic``, and the names of the columns that had it."""
+    """Remove the word ``magnetic`` from headings.
+
+    Return the plain headings, and the names of the columns whose heading changed.
+    """
     plain = [_without_north(column) for column in columns]
     pairs = zip(columns, plain, strict=True)
     return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
 
 
 def _without_north(column: str) -> str:
-    """Return a heading without the word ``magnetic`` at the end of its unit."""
     name, unit = heading(column)
     plain = _MAGNETIC.sub("", unit)
     return column if plain == unit else f"{name} {plain}".strip()
@@ -128,11 +133,11 @@ _INFINITE = ("inf", "infinity")
 
 @dataclass(frozen=True)
 class NamedColumns:
-    """Rows of a table with its known columns identified by name.
+    """Rows of a table, with known columns identified by name.
 
     Attributes
     ----------
-    factors : factors to SI (degrees) of the known columns present
+    factors : factor to SI (angles: degrees) of each known column that is present
     places : index of each known column in a row
     rows : rows with as many cells as the header
     others : headings of the other columns
@@ -146,7 +151,7 @@ class NamedColumns:
     header: delimited.CellRow
 
     def lacks(self, name: str, unit: str) -> Problem:
-        """Return the mistake of a missing column, with a suggested unit."""
+        """Return the mistake that a column is missing, with a suggested unit."""
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
         return self.header.problem(message)
 
@@ -158,7 +163,8 @@ class TimeColumns:
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    names, dimensions : labels and dimensions of the columns; keys of `calm.units.DIMENSIONS`
+    names : label of each column
+    dimensions : dimension of each column, a key of `calm.units.DIMENSIONS`
     values : (n, c) in SI, NaN in gaps
     """
 
@@ -175,14 +181,14 @@ def read_named_columns(
     *,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
-    """Find the known columns of a table; mistakes of form are added to `problems`.
+    """Find the known columns of a table, and add mistakes in headings and rows to `problems`.
 
     Parameters
     ----------
     table : table of a file
-    known : dimension of each known column by name; spaces in names are read as underscores
+    known : dimension of each known column by name; spaces in headings are read as underscores
     problems : list to which mistakes are added
-    other_names : alternative names of columns
+    other_names : known name for each alternative name of a column
     """
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
@@ -261,9 +267,9 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
 
 
 def _number_of(cell: str, factor: float, quantity: QuantityRange) -> float:
-    """Return a cell in SI, NaN for a gap.
+    """Convert a cell to SI, or a gap to NaN.
 
-    QuantityError: the cell is not a quantity.
+    Raise QuantityError if the cell is not a quantity.
     """
     if delimited.NUMBER.fullmatch(cell):
         return float(cell) * factor

@@ -1,8 +1,8 @@
 """Time series from the instruments of a mooring: temperature, salinity, velocity.
 
-A file holds several instruments along a dimension, as for `calm motion`, or a single instrument, as
-in archives (OceanSITES, IMOS). The file identifies an instrument by a label, a serial number or a
-nominal depth.
+A file holds either several instruments along a dimension, as for `calm motion`, or a single
+instrument, as in archives (OceanSITES, IMOS). The file identifies an instrument by a label, a
+serial number or a nominal depth.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 
 @dataclass(frozen=True)
 class Identity:
-    """Identity of an instrument, from its file.
+    """Identity of an instrument, as stated in its file.
 
     Attributes
     ----------
     label, serial : label and serial number; empty if missing in the file
     nominal : nominal depth [m]; NaN if missing in the file
-    source : name of its file
+    source : name of the file
     """
 
     label: str
@@ -67,12 +67,12 @@ class Identity:
 
     @property
     def known(self) -> bool:
-        """Whether the file identifies the instrument."""
+        """Whether the file states a label, a serial number or a nominal depth."""
         return bool(self.label or self.serial) or np.isfinite(self.nominal)
 
     @property
     def named(self) -> str:
-        """Name of the instrument for display."""
+        """Label of the instrument, else its serial number, else its file name."""
         return self.label or self.serial or self.source
 
 
@@ -102,12 +102,12 @@ class InstrumentSeries(Identity):
     called: str = ""
 
     def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
-        """Return the series without impossible values, with the doubts added to its note.
+        """Return the series with impossible values replaced by NaN and doubts added to its note.
 
         Parameters
         ----------
         quantity : name of the quantity
-        variable : source variable
+        variable : name of the source variable
         notes : further remarks
 
         Raises
@@ -138,16 +138,16 @@ def read_series(
     seabed: float,
     usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
-    """Read the series of several quantities from files; the keys are the names of the quantities.
+    """Read time series of several quantities from files; return lists by quantity name.
 
     Parameters
     ----------
     given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders of such files
-    names : keys of `QUANTITIES_MEASURED`
+    names : names of the quantities, keys of `QUANTITIES_MEASURED`
     flags : accepted quality flags, for files with flags; 8 is never accepted
-    seabed : water depth, for nominal heights above the seabed [m]; NaN if unknown
-    usual : depth of each part of the line by label [m], for a file without pressures and nominal
-        depth
+    seabed : water depth, to convert nominal heights above the seabed [m]; NaN if unknown
+    usual : depth of each part of the line by label [m], for files that have neither pressures nor a
+        nominal depth
 
     Raises
     ------
@@ -174,9 +174,9 @@ def read_series(
 
 
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
-    """Return the files of the arguments, each with its given label or ``""``.
+    """Return the files named by the arguments, each with its label, which may be empty.
 
-    InputError: a file does not exist, or a folder has no NetCDF files.
+    Raise InputError if a file does not exist, or if a folder has no data files.
     """
     found: list[tuple[str, Path]] = []
     problems = []
@@ -197,7 +197,7 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
 
 
 def split_label(text: str) -> tuple[str, Path]:
-    """Split ``LABEL=PATH`` into label and path; the label is empty for a path alone."""
+    """Split ``LABEL=PATH`` into label and path; the label is empty if only a path is given."""
     label, equals, path = text.partition("=")
     if equals and not Path(text).exists():
         return label.strip(), Path(path)
@@ -226,7 +226,7 @@ def _of_file(
 
 
 def with_one_card(series: Sequence[InstrumentSeries]) -> list[InstrumentSeries]:
-    """Return the series of a file with one card for all its instruments."""
+    """Return the series of a file, all with one card that covers all instruments."""
     cards = [*{id(one.card): one.card for one in series if one.card is not None}.values()]
     if len(cards) < 2:
         return [*series]
@@ -245,14 +245,15 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 
 
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
-    """Split a dataset whose instruments follow each other along one dimension.
+    """Split a dataset in which the readings of several instruments share one dimension.
 
-    In CF's indexed ragged arrays, an index with `instance_dimension` assigns each reading to an
-    instrument, as in the aggregated and hourly products of IMOS. In contiguous ragged arrays,
-    counts with `sample_dimension` give the number of readings. Readings without an instrument are
-    excluded. A dataset without such a variable is returned alone.
+    In CF's indexed ragged arrays, a variable with the attribute `instance_dimension` gives the
+    instrument of each reading, as in the aggregated and hourly products of IMOS. In contiguous
+    ragged arrays, a variable with `sample_dimension` gives the number of readings of each
+    instrument. Readings without an instrument are excluded. A dataset without such a variable is
+    returned as the only part.
 
-    UnreadableError: the index or the counts do not fit the dimensions.
+    Raise UnreadableError if the variable does not fit the dimensions.
     """
     for name, index in dataset.variables.items():
         instances = index.attrs.get("instance_dimension")
@@ -287,7 +288,7 @@ PRESSURE = (
 """Standard and usual names of quantities used to compute others."""
 PASCALS_PER_DBAR = 1e4
 _LATITUDE = 45.0  # default; it changes the pressure at a depth by 0.3 % at most
-_FEWEST = 6  # least length of a series of zeros alone that is a fault
+_FEWEST = 6  # a series of zeros alone is a fault from this length on
 
 
 @dataclass(frozen=True)
@@ -343,7 +344,7 @@ class _SeriesFile:
         who: Sequence[Identity],
         current: velocity.Velocity | None,
     ) -> tuple[Floats, list[str]]:
-        """Return values (n, k) in the unit of the quantity, and notes on their computation."""
+        """Return values (n, k) in the unit of the quantity, and notes on how they were computed."""
         first = self.dataset[next(iter(taken.values()))]
         if current is not None:
             dimensions = ("speed", "speed" if current.turn is None else "angle")
@@ -386,9 +387,9 @@ class _SeriesFile:
         return current
 
     def _bins(self, along: str, time: str) -> Floats:
-        """Return the depths of a profiler's bins below it [m].
+        """Return the depths of a profiler's bins relative to the instrument [m], positive below.
 
-        UnreadableError: the dimension is not one of bins.
+        Raise UnreadableError if the dimension does not hold bins.
         """
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
@@ -399,10 +400,10 @@ class _SeriesFile:
 
 
 def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the variables from which salinity is computed, by quantity.
+    """Return the names of the variables from which salinity can be computed, by quantity.
 
-    They are conductivity, temperature and, if present, pressure. The result is empty unless the
-    dataset has the first two.
+    The quantities are conductivity, temperature and, if present, pressure. The result is empty
+    unless the dataset has both conductivity and temperature.
     """
     temperature = QUANTITIES_MEASURED["temperature"]
     sought = {
@@ -418,13 +419,13 @@ def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
 def practical_salinity(
     dataset: xr.Dataset, taken: Mapping[str, str], values: Sequence[Floats], depth: Floats
 ) -> Floats:
-    """Compute practical salinity (PSS-78) by TEOS-10.
+    """Compute practical salinity (PSS-78) from conductivity with the TEOS-10 library.
 
     Parameters
     ----------
     taken : variables as returned by `conductivity_in`
     values : values of these variables in their file units, with equal shapes
-    depth : depth for a missing pressure [m]; an error of 10 m changes salinity by 0.004
+    depth : depth used if a pressure is missing [m]; an error of 10 m changes salinity by 0.004
     """
     import gsw
 
@@ -449,7 +450,7 @@ _FRESH = 5.0
 
 
 def _salinity_notes(salinity: Floats, taken: Mapping[str, str]) -> Iterator[str]:
-    """Yield how a salinity was computed, and doubts about the unit of the conductivity."""
+    """Yield remarks on the computed salinity, and any doubt about the unit of conductivity."""
     if not np.isfinite(salinity).any():
         yield "salinity is not computed: there is neither a pressure nor a nominal depth"
         return
@@ -463,10 +464,11 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 
 
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
-    """Return the variables with the first standard name present, else with a usual name.
+    """Return the variables with the first standard name that is present.
 
-    UnreadableError: there are several, and none has a usual name; or a variable with a usual name
-    has another standard name.
+    If none is present, return the variables with a usual name. Raise UnreadableError if several
+    variables have the standard name and none of them a usual name, or if a variable with a usual
+    name has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
@@ -492,7 +494,8 @@ class Readings:
     Attributes
     ----------
     time : (n,) rising
-    axis, along : dimensions of the times and of the instruments; None for a single instrument
+    axis : dimension of the times
+    along : dimension of the instruments; None for a single instrument
     values : (n, k) of each variable, in file units
     dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the times
@@ -508,7 +511,7 @@ class Readings:
     flags: dict[str, int]
 
     def series(self, value: Floats, who: Sequence[Identity]) -> list[InstrumentSeries]:
-        """Build the series of each instrument from values (n, k) that were computed from these."""
+        """Build one series per instrument from values (n, k) derived from these readings."""
         counts = self.dropped.sum(axis=0).tolist()
         return [
             InstrumentSeries(**vars(one), time=self.time, value=column, dropped=count)
@@ -611,7 +614,6 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
 
 
 def _serials(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
-    """Return the serial numbers along the given dimensions; empty if the file has none."""
     for name in first_present(dataset, _SERIALS):
         if dataset[name].dims == dims:
             # IMOS has `deployment; model; serial number` in `instrument_id`

@@ -1,8 +1,8 @@
-"""Text files of one instrument, converted to datasets in the form of archives.
+"""Text files of single instruments, converted to datasets as found in archives.
 
 RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
-columns in known units. Sea-Bird's `.cnv` files and the tables of RBR's library name each column and
-its unit in their headers, and so do plain tables such as ``time,temperature[degC],salinity[PSU]``.
+columns with fixed units. Sea-Bird's `.cnv` files, the tables of RBR's RSKtools library and plain
+tables such as ``time,temperature[degC],salinity[PSU]`` name each column and its unit in the header.
 """
 
 from __future__ import annotations
@@ -69,9 +69,9 @@ def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
     """Return the reader for a text file of an instrument; None for any other file.
 
     The reader returns a dataset with the names and attributes of OceanSITES. Times are seconds
-    since 1970, and missing values are NaN. A current has its depth in `INSTRUMENT_DEPTH`, computed
-    from pressure by TEOS-10, else nominal. InputError: the file is unreadable, has no times, or has
-    an invalid row.
+    since 1970, and missing values are NaN. For currents, `INSTRUMENT_DEPTH` is computed from
+    pressure by TEOS-10, or is the nominal depth. The reader raises InputError if the file is
+    unreadable, has no times, or has an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
@@ -90,7 +90,7 @@ def _dataset(
     latitude: float = math.nan,
     serial: str = "",
 ) -> xr.Dataset:
-    """Build a dataset from columns, with (quantity, unit) as keys."""
+    """Build a dataset from columns, whose keys are (quantity, unit)."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -122,7 +122,7 @@ def _dataset(
 def _depths(
     columns: dict[tuple[str, str], Floats], count: int, nominal: float, latitude: float
 ) -> Floats:
-    """Return depths [m] from pressures, or the nominal depth in their gaps."""
+    """Convert pressures to depths [m], and gaps to the nominal depth."""
     import gsw
 
     pressure = columns.get(("pressure", "dbar"), np.full(count, np.nan))
@@ -204,7 +204,7 @@ def _cnv(path: Path) -> xr.Dataset:
 
 
 def _rbr(path: Path) -> xr.Dataset:
-    """Read a table of RSKtools; its `pressure` includes the pressure of the air."""
+    """Read a table written by RSKtools, whose `pressure` includes air pressure."""
     lines = _lines(path)
     first = sum(1 for line in lines if line.startswith("//") or not line.strip())
     head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
@@ -237,9 +237,9 @@ _IN_TABLES = {
 
 
 def read_plain_table(path: Path) -> xr.Dataset:
-    """Read a table over time of one instrument, with columns such as ``temperature[degC]``.
+    """Read a time table of one instrument, with columns such as ``temperature[degC]``.
 
-    InputError: the table has mistakes, or a column with another name.
+    Raise InputError if the table has mistakes, or a column that is not a known quantity.
     """
     table = read_time_columns(path, tuple(_IN_TABLES), "temperature[degC]")
     names = {archive: what for what, (archive, _) in _WHAT.items()}
@@ -253,7 +253,7 @@ def read_plain_table(path: Path) -> xr.Dataset:
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
-    """Return the `count` columns of the lines with content."""
+    """Convert the non-empty lines from `first` on to an array with `count` columns."""
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:

@@ -1,4 +1,4 @@
-"""Depths of the levels of a current: given as depths, heights, or distances from an instrument."""
+"""Depths of current levels, which a file may give as heights or distances from an instrument."""
 
 from __future__ import annotations
 
@@ -35,13 +35,15 @@ _STANDARD_DEPTH = "depth"
 
 @dataclass(frozen=True)
 class LevelDepths:
-    """Levels at depths ``start + sign * values``, positive down, with `values` in metres.
+    """Levels of a current at depths ``start + factor * variable``, positive down [m].
+
+    If `instrument` is set, its depth is added.
 
     Attributes
     ----------
     variable : level variable; it has no dimension that the velocity lacks
-    factor : factor to metres with sign, negative if values increase upwards
-    start : depth of the zero of `values` [m]
+    factor : signed factor to metres; negative if values increase upwards
+    start : depth at which the values are zero [m]
     instrument : depth variable of the instrument from which levels are counted, and its factor to
         metres
     notes : remarks on assumptions
@@ -54,12 +56,12 @@ class LevelDepths:
     notes: tuple[str, ...]
 
     def vary_in(self, time: str | None) -> bool:
-        """Return whether the levels move with time."""
+        """Return whether the depths of the levels change with time."""
         moving = [self.variable, *([self.instrument[0]] if self.instrument else [])]
         return any(time in one.dims for one in moving)
 
     def depths(self, time: str | None, index: Any) -> NDArray[Any]:
-        """Return the depths [m] as times by levels, or as levels alone if these never move."""
+        """Return depths (n, k) [m] at the given time indices, or (k,) if the levels never move."""
 
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
@@ -78,7 +80,7 @@ class LevelDepths:
 def find_levels(
     dataset: xr.Dataset, level: str | None, time: str | None, water_depth: float
 ) -> LevelDepths:
-    """Find the levels of a velocity with the dimensions `level` and `time`, either of them None.
+    """Find the levels of a velocity.
 
     Levels that move with time are preferred to fixed levels.
 
@@ -87,12 +89,12 @@ def find_levels(
     dataset : dataset of the velocity
     level : level dimension of the velocity, None if it has none
     time : time dimension of the velocity, None if it has none
-    water_depth : water depth, the zero of heights above the seabed [m]
+    water_depth : water depth, to convert heights above the seabed [m]
 
     Raises
     ------
     UnreadableError
-        There are no levels, or the file does not define their direction.
+        There are no levels, or the file does not state whether they increase upwards or downwards.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [
@@ -120,7 +122,7 @@ def find_levels(
 
 @dataclass(frozen=True)
 class _Levels:
-    """Level variable of a dataset and the evidence for its reference."""
+    """A level variable, and the context needed to find its zero and direction."""
 
     dataset: xr.Dataset
     variable: xr.DataArray
@@ -164,18 +166,18 @@ class _Levels:
 
     @property
     def _sign(self) -> int:
-        """Sign that all nonzero values of the first time share, else 0."""
+        """Common sign of all nonzero values at the first time, or 0 if the signs differ."""
         moving = self.time in self.variable.dims
         first = self.variable.isel({self.time: slice(1)}) if moving else self.variable
         values = known_values(first)
         return int((values > 0).any()) - int((values < 0).any())
 
     def _from_instrument(self, orientation: str) -> LevelDepths:
-        """Return levels counted from an instrument that looks up or down.
+        """Return levels that are counted from an instrument looking up or down.
 
         MHKiT adds the height of the instrument above the seabed to `range` if the user supplies
-        this height. For an instrument that looks down it adds the instrument's depth, and calls the
-        water depth `depth`.
+        this height. For an instrument that looks down, MHKiT adds its depth instead, and stores the
+        water depth as `depth`.
         """
         name, factor = self.variable.name, self.factor if orientation == "down" else -self.factor
         if orientation not in ("up", "down"):
@@ -207,7 +209,7 @@ class _Levels:
         return LevelDepths(self.variable, factor, 0.0, zero, (note,))
 
     def _stated_orientation(self, words: str) -> str:
-        """Return the orientation of an instrument, ``"up"`` or ``"down"``; empty if unstated."""
+        """Return the stated orientation of an instrument, ``"up"`` or ``"down"``, else ""."""
         for word, orientation in (("above", "up"), ("below", "down")):
             if word in words.split():
                 return orientation

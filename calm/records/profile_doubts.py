@@ -1,4 +1,4 @@
-"""Doubtful values in one profile of currents, from a record or a mooring file."""
+"""Tests for doubtful values in one profile of currents, from a record or a mooring file."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ are shallower."""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
-    """Yield a remark if directions seem to be radians or velocities.
+    """Yield a remark if directions seem to be in radians, or to be velocities.
 
     Parameters
     ----------
-    directions : directions in which currents flow, in the original unit
+    directions : directions towards which currents flow [degrees]
     name : name of the column or key
     """
     if not directions or max(map(abs, directions)) > _TURN:
@@ -58,12 +58,14 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 
 
 def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
-    """Yield remarks on doubtful levels of one profile, without a full stop.
+    """Yield remarks on doubtful levels of one profile.
+
+    The remarks do not end with a full stop.
 
     Parameters
     ----------
     depth : (n,) rising [m]
-    u, v : (n,) to the east and to the north [m/s], without gaps
+    u, v : (n,) eastward and northward components, without gaps [m/s]
     water_depth : water depth [m]; inf if unknown
     """
     speed, toward = np.hypot(u, v), np.degrees(np.arctan2(u, v))
@@ -78,9 +80,9 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
 
 
 def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[str]:
-    """Yield levels whose current is opposite to both neighbours, with a speed between theirs.
+    """Yield a remark on each level whose current opposes the currents above and below.
 
-    An undercurrent is usually slower or faster than both neighbours.
+    Its speed must lie between theirs. A real undercurrent is usually slower or faster than both.
     """
     for i in range(1, len(depth) - 1):
         three = speed[i - 1 : i + 2]
@@ -95,12 +97,11 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
 
 
 def _between(one: float, other: float) -> float:
-    """Compute the angle between two directions [degrees]."""
     return float(abs((one - other + 180.0) % 360.0 - 180.0))
 
 
 def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
-    """Yield a remark if currents are stronger than any that was measured at such depths.
+    """Yield a remark if currents are stronger than any measured in deep water.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tables of quantities by depth: named columns, each with its unit, and rows of numbers, in SI."""
+"""Tables of quantities by depth, as text with a unit in each heading, converted to SI."""
 
 import math
 import re
@@ -21,17 +21,20 @@ from calm.records.profile_doubts import direction_doubts
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
-"""Function from a place, ``("columns", j)`` or ``("rows", i, j)``, and a message to a problem."""
+"""Function that builds a problem from a place and a message.
+
+A place is ``("columns", j)`` or ``("rows", i, j)``.
+"""
 
 
 @dataclass(frozen=True)
 class QuantityTable:
-    """A table of quantities as text, with the destination of its mistakes.
+    """A table of quantities as text, and a list that collects its mistakes.
 
     Attributes
     ----------
-    columns : names with their units, ``"depth m"`` or ``"depth[m]"``; without a unit, each value
-        has its own
+    columns : names with their units, ``"depth m"`` or ``"depth[m]"``; if a heading has no unit,
+        each value of the column has its own
     rows : numbers, or quantities with a unit, as text
     report : function that builds a mistake from a place and a message
     problems : list to which mistakes are added
@@ -43,7 +46,7 @@ class QuantityTable:
     problems: list[Problem]
 
     def refuse(self, place: Sequence[str | int], message: str) -> None:
-        """Add a mistake."""
+        """Add a mistake at a place of the table."""
         self.problems.append(self.report(place, message))
 
 
@@ -54,7 +57,11 @@ _AMBIGUOUS = ("direction", "dir", "heading", "bearing")
 def read_columns(
     table: QuantityTable, known: Mapping[str, QuantityRange], gaps: Booleans | None = None
 ) -> dict[str, Floats]:
-    """Return the known columns in SI, by name; wrong values and missing ones in `gaps` are NaN."""
+    """Convert the known columns of a table to SI; return arrays by name.
+
+    Wrong values become NaN and are added to the table's problems. `gaps` is a mask of rows in which
+    a value may be missing.
+    """
     columns, rows = table.columns, table.rows
     units = _read_headings(table, known)
     if len(units) == len(columns) and "depth" not in units:
@@ -104,7 +111,7 @@ def _bare(cells: Sequence[str | None]) -> bool:
 def _read_together(
     cells: Sequence[str | None], unit: str, quantity: QuantityRange, gaps: bool
 ) -> Floats | None:
-    """Return a column in SI; None if a cell is not a plain number, or exceeds the limits."""
+    """Convert a column to SI; None if a cell is not a plain number within the limits."""
     numbers = plain_numbers(cells) if unit else None
     if numbers is None or (not gaps and np.isnan(numbers).any()):
         return None
@@ -148,9 +155,14 @@ def check_depths(
     rows: Integers,
     profile: Integers | None = None,
 ) -> None:
-    """Check that depths are not negative, and increase within each profile.
+    """Check that depths are not negative and increase within each profile.
 
-    Only the given `rows` are checked.
+    Parameters
+    ----------
+    table : table that collects the mistakes
+    values : columns in SI by name
+    rows : indices of the rows to check
+    profile : index of the profile of each row; None if all rows form one profile
     """
     if "depth" not in values:
         return
@@ -208,11 +220,13 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 
 @dataclass(frozen=True)
 class CurrentTable:
-    """A current: east, north and upward speeds [m/s] at increasing depths [m].
+    """A current profile: eastward, northward and upward velocity [m/s] at increasing depths [m].
 
-    `record` holds the path of a record from which the profile was read, and the options for reading
-    it. `doubts` lists unusual features of its directions, and `card` summarises the contents of its
-    file.
+    Attributes
+    ----------
+    record : path of the record from which the profile was read, and the options for reading it
+    doubts : remarks on suspicious directions
+    card : summary card of the file
     """
 
     depth: tuple[float, ...]
@@ -226,7 +240,7 @@ class CurrentTable:
 
 @dataclass(frozen=True)
 class DepthTable:
-    """A quantity at increasing depths [m], linear in between and constant beyond the ends."""
+    """A quantity at increasing depths [m], interpolated linearly and constant beyond the ends."""
 
     depth: tuple[float, ...]
     value: tuple[float, ...]
@@ -234,7 +248,7 @@ class DepthTable:
 
 @dataclass(frozen=True)
 class SeaWater:
-    """In-situ temperature [°C] and practical salinity of sea water."""
+    """Profiles of the in-situ temperature [°C] and the practical salinity of sea water."""
 
     temperature: DepthTable
     salinity: DepthTable
@@ -247,9 +261,10 @@ def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> Current
 
     Parameters
     ----------
-    table : with `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
-        unit such as ``"deg magnetic"`` marks a column as relative to magnetic north.
-    terms : options: the declination for columns relative to magnetic north, and the maximum speed
+    table : has the column `depth`, either `u` and `v` or `speed` with `toward` or `from`, and
+        optionally `w`. A unit such as ``"deg magnetic"`` marks a column as relative to magnetic
+        north.
+    terms : options, of which the declination and the maximum speed are used
     """
     found = read_currents(table, terms)
     if found is None:
@@ -259,7 +274,6 @@ def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> Current
 
 
 def _direction_doubts(table: QuantityTable) -> tuple[str, ...]:
-    """Return remarks on the column of directions of a valid table."""
     plain, _ = magnetic_columns(table.columns)
     quiet = replace(table, columns=plain, problems=[])
     values = read_columns(quiet, _CURRENT)
@@ -273,15 +287,15 @@ def _direction_doubts(table: QuantityTable) -> tuple[str, ...]:
 def read_currents(
     table: QuantityTable, terms: Terms, profile: Integers | None = None
 ) -> Floats | None:
-    """Return (n, 4) depths [m] and u, v, w [m/s] of a table in the form for `read_current`.
+    """Convert a table of currents to an array (n, 4) of depth [m] and u, v, w [m/s].
 
     If the table has mistakes, they are added to its `problems`, and None is returned.
 
     Parameters
     ----------
-    table, terms : see `read_current`
-    profile : (n,) increasing index of the profile of each row of a record, in which gaps become
-        NaN; None if all rows form one profile
+    table, terms : as in `read_current`
+    profile : for a record, the index of the profile of each row (n,), increasing; values missing in
+        a record become NaN. None if all rows form one profile
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -329,7 +343,7 @@ def read_currents(
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
-    """Return the notice on columns that were rotated from magnetic to true north, if any."""
+    """Return a notice if columns were rotated from magnetic to true north."""
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
@@ -337,7 +351,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
 
 
 def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str], float]:
-    """Return the columns without ``magnetic``, and their rotation [degrees]."""
+    """Return the headings without ``magnetic``, and the rotation to true north [degrees]."""
     columns = table.columns
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
@@ -365,11 +379,14 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
 def read_water(
     table: QuantityTable, density: QuantityRange = WATER_DENSITY
 ) -> DepthTable | SeaWater | None:
-    """Read densities [kg/m³], or sea water, from a table; if it has mistakes, report them and
-    return None.
+    """Read a profile of density [kg/m³], or of temperature and salinity, from a table.
 
-    Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
-    plausible range of the fluid.
+    If the table has mistakes, they are added to its `problems`, and None is returned.
+
+    Parameters
+    ----------
+    table : has the columns `depth`, and either `density` or `temperature` and `salinity`
+    density : plausible range of the density
     """
     values = _by_depth(table, {**_WATER, "density": density})
     if values is None:
@@ -391,7 +408,7 @@ def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
 def _by_depth(
     table: QuantityTable, known: Mapping[str, QuantityRange]
 ) -> dict[str, DepthTable] | None:
-    """Return the water properties of a table by name.
+    """Return the known quantities of a table by name, each as a profile.
 
     If the table has mistakes, they are added to its `problems`, and None is returned.
     """
@@ -413,23 +430,32 @@ def _by_depth(
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
-    """Return the east and north parts of a speed that flows toward a direction [deg from north]."""
+    """Return the eastward and northward components of a flow.
+
+    Parameters
+    ----------
+    speed : speed of the flow
+    toward : direction towards which it flows, clockwise from north [degrees]
+    """
     angle = math.radians(toward)
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
 def turned_by(angle: float, u: Speed, v: Speed) -> tuple[Speed, Speed]:
-    """Rotate a flow, u to the east and v to the north, clockwise by an angle [degrees].
+    """Rotate a velocity clockwise.
 
     Parameters
     ----------
-    angle : clockwise [degrees]
-    u, v : velocity to the east and to the north [m/s]
+    angle : angle of rotation, clockwise [degrees]
+    u, v : eastward and northward components [m/s]
     """
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     return u * cosine + v * sine, v * cosine - u * sine
 
 
 def speed_and_direction(u: float, v: float) -> tuple[float, float]:
-    """Return the speed and direction [deg from north, 0 to 360] of a flow by its parts."""
+    """Convert eastward and northward components to speed and direction of flow.
+
+    The direction is clockwise from north, 0 to 360 degrees.
+    """
     return math.hypot(u, v), bearing_of(u, v)

@@ -1,6 +1,7 @@
-"""Records of currents in NetCDF, zarr or CSV: many profiles, read lazily.
+"""Records of currents in NetCDF, zarr or CSV, with many profiles that are read lazily.
 
-The synthetic example record has thirty days with a tide, a mean flow and a storm surge.
+The module also makes a synthetic example record: thirty days with a tide, a mean flow and a storm
+surge.
 """
 
 from __future__ import annotations
@@ -52,9 +53,10 @@ class Record(ABC):
     ----------
     time : (n,) to the nanosecond, rising
     notes : rules by which the record was read, and doubts about it
-    source : file, variables and place, by name
+    source : names of the file and its variables, and the position
     cards : summary card of each file
-    labels : parts of a line at which the levels are placed (without depths), else empty
+    labels : names of the parts of a line that carry the instruments, if the levels have no depths;
+        else empty
     """
 
     time: NDArray[np.datetime64]
@@ -70,14 +72,14 @@ class Record(ABC):
 
     @abstractmethod
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of profiles, NaN in gaps.
+        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of m profiles, NaN in gaps.
 
-        The depths are positive down, in any order; `w` is None if the record lacks it. InputError:
-        the file is damaged in this range.
+        Depths are positive down, in any order; w is None if the record has no vertical velocity.
+        Raise InputError if the file is damaged in this range.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return (m, k) quality flags of currents; None if the record has no flags."""
+        """Return quality flags (m, k) of m profiles; None if the record has no flags."""
         return None
 
     @abstractmethod
@@ -92,10 +94,11 @@ class Record(ABC):
 
 
 def parse_period(text: str) -> Period:
-    """Parse a period ``A/B`` of ISO times. A year, month or day as B is included in full.
+    """Parse a period ``A/B`` of ISO 8601 times.
 
-    Either end may be empty or two points: ``2026-03/``, ``../2026-03-31``. UsageError: the text is
-    not a period, or ends before it begins.
+    If B is a year, a month or a day, the period includes it completely. Either end may be missing,
+    as in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or ends
+    before it begins.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -107,10 +110,10 @@ def parse_period(text: str) -> Period:
 
 
 def parse_place(text: str) -> Place:
-    """Parse a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+    """Parse a position ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
-    Both may be in degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is not a
-    place, or not on the earth.
+    Both may be in degrees and minutes, as in ``57 28.84 N, 19 10.2 W``. Raise UsageError if the
+    text is not a position on the earth.
     """
     parts = text.split(",")
     try:
@@ -132,7 +135,7 @@ def choose_profiles(
     ----------
     times : (n,) in the order of the file
     period : first and last time to read; None for all
-    every : read one profile in this number
+    every : read every n-th profile only
     path : path of the record, for messages
 
     Raises
@@ -172,12 +175,12 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return a range of the chosen profiles as indices.
+    """Return the file indices of a range of the chosen profiles.
 
     Parameters
     ----------
-    index : indices of the chosen profiles
-    start, stop : range of the chosen profiles
+    index : file indices of the chosen profiles
+    start, stop : range within the chosen profiles
     """
     if not isinstance(index, slice):
         return index[start:stop]
@@ -185,13 +188,13 @@ def part(index: Index, start: int, stop: int) -> Index:
 
 
 def _end(text: str, *, whole: bool) -> np.datetime64 | None:
-    """Parse one end of a period [ns]."""
+    """Parse one end of a period to datetime64[ns]; None if it is open."""
     text = text.strip()
     if text in ("", ".."):
         return None
     try:
         if _PART_OF_A_DATE.fullmatch(text):
-            date: Any = np.datetime64(text) + int(whole)  # unit: a year, a month or a day
+            date: Any = np.datetime64(text) + int(whole)  # adds one year, month or day
             return _in_reach(date.astype("M8[us]")) - np.timedelta64(int(whole), "ns")
         return _in_reach(parse_time(text))
     except TimeChoiceError as error:
@@ -227,7 +230,7 @@ _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """Return the synthetic record as a classic NetCDF file, identical on all platforms."""
+    """Return the synthetic record as bytes of a classic NetCDF file, identical on all platforms."""
     import xarray as xr
 
     hours = np.arange(24 * DAYS)
@@ -267,7 +270,7 @@ def made_record() -> bytes:
 
 
 def _currents(hours: Any) -> tuple[Any, Any]:
-    """Return currents to the east and to the north [m/s], as times by levels."""
+    """Return the eastward and northward currents [m/s], as times by levels."""
     hours = hours[:, np.newaxis].astype(np.float64)
     depth = np.array(DEPTHS)
     # slower near the seabed: 1/7 power law of the height

@@ -38,7 +38,7 @@ UNSEEN = 1e-3
 """Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
 PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
-"""The ratio follows from the moments of the forms: 1.408 and 1.286."""
+"""Ratios of the peak period to Tz, from the spectral moments: 1.408, and 1.286 for jonswap."""
 
 SHARES = 0.02
 """Tolerance for the sum of shares of time, which may be rounded."""
@@ -64,7 +64,7 @@ A sea of the shortest period has a hundredth of its variance above that frequenc
 
 @dataclass(frozen=True)
 class SpectralForm:
-    """A spectrum in the form of its law and parameters, so that equal seas compare equal."""
+    """A spectrum as a law with its parameters, so that equal seas compare equal."""
 
     law: Callable[..., Floats]
     figures: tuple[Any, ...]
@@ -81,9 +81,9 @@ class SeaState:
     ----------
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
-    density : one-sided spectrum of the elevation over angular frequency [rad/s], [m² s/rad]
+    density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
     share : share of the time, for one of several seas
-    longest, shortest : longest and shortest peak period of a sea of several parts [s]; for a
+    longest, shortest : longest and shortest peak period of a sea with several components [s]; for a
         measured sea, `longest` is the period of its longest relevant waves
     """
 
@@ -96,18 +96,21 @@ class SeaState:
 
     @property
     def cut_off(self) -> float:
-        """Highest frequency of the solution [rad/s]."""
+        """Highest angular frequency at which the response to waves is computed [rad/s]."""
         peak = 2.0 * pi / (self.shortest or self.peak_period)
         return min(BETWEEN[1] * peak, LARGEST_FREQUENCY)
 
     def frequencies(self, count: int) -> Floats:
-        """Return angular frequencies for the solution [rad/s], with logarithmic spacing."""
+        """Return `count` angular frequencies at which the response is computed [rad/s].
+
+        The spacing is logarithmic.
+        """
         first = 2.0 * pi / (self.longest or self.peak_period)
         return np.geomspace(BETWEEN[0] * first, self.cut_off, count)
 
 
 def bretschneider(height: float, period: float) -> Density:
-    """Return the spectrum of a growing or a full sea, by Hs [m] and Tp [s].
+    """Return the spectrum of a growing or fully developed sea, by Hs [m] and Tp [s].
 
     S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴): Bretschneider 1959, the ITTC spectrum of two parameters.
     """
@@ -115,13 +118,14 @@ def bretschneider(height: float, period: float) -> Density:
 
 
 def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
-    """Return the spectrum of swell and sea together; Ochi and Hubble 1976.
+    """Return the combined spectrum of swell and wind sea of Ochi and Hubble 1976.
 
     S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴).
 
     Parameters
     ----------
-    parts : Hs [m], Tp [s] and λ of each; λ of 1 is Bretschneider's form, more is narrower
+    parts : Hs [m], Tp [s] and λ of each component; λ = 1 is Bretschneider's form, and the spectrum
+        narrows as λ grows
     """
     terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
     return SpectralForm(_gamma_form, (terms,))
@@ -136,10 +140,10 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 
 
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
-    """Return the spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
+    """Return the JONSWAP spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
 
-    Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), σ 0.07 below the peak and 0.09 above it
-    (Hasselmann and others 1973), normalised so that Hs is kept.
+    It is Bretschneider's spectrum times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), with σ = 0.07 below the
+    peak and 0.09 above it (Hasselmann and others 1973), normalised to the given Hs.
     """
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
@@ -154,17 +158,21 @@ def _peaked(height: float, peak: float, gamma: float, omega: Floats) -> Floats:
 
 
 def full_sea_period(height: float) -> float:
-    """Return Tp of a fully grown sea by Hs [s]; Pierson and Moskowitz 1964: ωp² = 0.16 g/Hs."""
+    """Return Tp [s] of a fully developed sea by Hs [m], from Pierson and Moskowitz 1964.
+
+    The law is ωp² = 0.16 g/Hs.
+    """
     return 2.0 * pi / sqrt(0.16 * 9.80665 / height)
 
 
 def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3.3) -> SeaState:
-    """Return the sea of a named spectrum.
+    """Return the sea state of a named spectrum.
 
     Parameters
     ----------
     kind : name of the spectrum, from `SPECTRA`
-    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, None selects their own period
+    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, a period of None selects the
+        period that follows from the height
     gamma : peakedness of "jonswap"
 
     Raises
@@ -185,7 +193,7 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3
 
 
 def _impossible(height: float, period: float) -> str | None:
-    """Return why a height [m] and peak period [s] are impossible or unsupported, else None."""
+    """Return a message if a height [m] and peak period [s] are impossible or unsupported."""
     length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
         return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
@@ -200,8 +208,8 @@ def _impossible(height: float, period: float) -> str | None:
 def doubted(sea: SeaState) -> str | None:
     """Return a remark if a sea is steeper than measured seas, else None.
 
-    Hs over the length of waves of Tp is 1/15 at most up to a Tp of 8 s, falling to 1/25 at 15 s
-    (DNV-RP-C205, steepness criteria).
+    The limit on the ratio of Hs to the length of waves of period Tp is 1/15 up to a Tp of 8 s, and
+    falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
     """
     height, period = sea.significant_height, sea.peak_period
     steepness = 2.0 * pi * height / (9.80665 * period**2)
@@ -217,9 +225,9 @@ def doubted(sea: SeaState) -> str | None:
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     """Add a swell of Hs [m] and Tp [s], in the same direction, to a sea.
 
-    The swell has the narrow form of Ochi and Hubble, with λ of 3; variances add up.
-
-    UsageError: the swell is higher, longer or steeper than any real swell, or shorter than the sea.
+    The swell has the narrow form of Ochi and Hubble with λ = 3, and the variances add up. Raise
+    UsageError if the swell is higher, longer or steeper than any real swell, or shorter than the
+    sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -241,11 +249,10 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 
 
 def _most_probable(height: float) -> SeaState:
-    """Return the most probable Ochi-Hubble (1976) swell and sea for a significant height.
+    """Return the most probable sea state of Ochi and Hubble (1976) for a significant height [m].
 
-    The constants are from secondary sources, not from the paper itself.
-
-    UsageError: the height exceeds that of any real sea.
+    It consists of a swell and a wind sea. The constants are from secondary sources, not from the
+    original article. Raise UsageError if the height exceeds that of any real sea.
     """
     if height > HIGHEST:
         raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
@@ -258,12 +265,11 @@ def _most_probable(height: float) -> SeaState:
 
 
 def measured_spectrum(path: Path) -> SeaState:
-    """Read a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
+    """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    NetCDF files follow NDBC or WAVEWATCH III, for a single place; the highest sea of several times
-    is used.
-
-    InputError: the file is not a spectrum, or its frequencies do not increase.
+    NetCDF files follow NDBC or WAVEWATCH III, for a single position. If they hold several times,
+    the highest sea is used. Raise InputError if the file is not a spectrum, or if its frequencies
+    do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -273,7 +279,10 @@ def measured_spectrum(path: Path) -> SeaState:
 
 
 def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int] = ()) -> SeaState:
-    """Return the sea with densities [m²/Hz] at frequencies [Hz], from these lines of a table."""
+    """Return the sea state with given densities [m²/Hz] at frequencies [Hz].
+
+    `lines` gives the file line of each value, for messages.
+    """
     falls = np.diff(frequency, prepend=-1e-12) <= 0.0
     problems = [
         Problem(str(path), lines[int(row)] if lines else 0, column, message)
@@ -311,7 +320,7 @@ def _between(omega: Sequence[float], spectral: Sequence[float], at: Floats) -> F
 
 
 def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
-    """Return frequencies [Hz] and densities [m²/Hz] of a dataset, over all directions."""
+    """Read frequencies [Hz] and densities summed over all directions [m²/Hz] from NetCDF."""
     with reading(path), open_current(path) as data:
         names = [
             str(name)
@@ -343,11 +352,10 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 
 
 def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
-    """Return the seas of a scatter table, each with its share of the time.
+    """Return the sea states of a scatter table, each with its share of the time.
 
     The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
-
-    InputError: lists all mistakes with their lines.
+    Raise InputError with all mistakes and their lines.
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":
@@ -381,7 +389,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
 
 
 def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float, ...]]]:
-    """Return the rows of a table by the names of its columns, with their lines."""
+    """Return the line number and the values of the named columns of each row."""
     example = ",".join(names)
     table = read_table(path, example)
     header = [cell.strip() for cell in table.header.cells]

@@ -1,7 +1,7 @@
-"""General tests of measured values: each yields sentences that count the suspicious values.
+"""General tests of measured values, which yield sentences about suspicious values.
 
-The tests use values alone and ignore free text. A person settles the doubts: the tests neither
-exclude nor reject values.
+The tests use values alone and ignore free text. They do not exclude or reject values, but leave
+this decision to the user.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the depth, and depth [m], that a profile may omit at either end, or lie below."""
+"""Share of the water depth, and depth [m].
+
+A profile may omit the larger of the two at either end, and a level may be as far below the seabed.
+"""
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""
 MANY = 50
@@ -36,7 +39,7 @@ UNCHANGED = 0.1
 """Share of a record beyond which a series with a constant value is doubtful."""
 _FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
-_SLOWEST = np.timedelta64(3, "h")  # longest step at which a tide does not mimic two series
+_SLOWEST = np.timedelta64(3, "h")  # at longer steps, a tide looks like two interleaved series
 _BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # fill value: ratio to the others, distinct others, repeats
 _DAY = np.timedelta64(1, "D")
 _FIRST_YEAR = 1950
@@ -51,7 +54,7 @@ class CurrentValues:
     Attributes
     ----------
     depth : (k,) or (n, k) [m]; NaN if unknown
-    u, v : (n, k) to the east and to the north [m/s]; NaN in gaps
+    u, v : (n, k) eastward and northward components [m/s]; NaN in gaps
     times : (n,) rising; None for a single profile
     water_depth : water depth [m]; inf if unknown
     unit, factor : declared unit of speed and its factor to m/s
@@ -97,7 +100,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
 
 
 def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
-    """Yield levels below the seabed, levels without a value, and water without a level.
+    """Yield doubts about levels below the seabed, levels without values, and water without levels.
 
     Parameters
     ----------
@@ -133,7 +136,6 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
 
 
 def _levels(depth: Floats, known: NDArray[np.bool_]) -> Floats:
-    """Return the median depth (k,) of each level [m]; NaN if unknown."""
     return np.array([*map(_median, np.broadcast_to(depth, known.shape).T)])
 
 
@@ -143,11 +145,11 @@ def _median(values: Floats) -> float:
 
 
 def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
-    """Name the part of the water column that a profile does not cover; empty if it covers all.
+    """Return a message on the part of the water column that a profile does not cover, if any.
 
     Parameters
     ----------
-    top, bottom : first and last level of the profile [m]
+    top, bottom : depths of the first and last level of the profile [m]
     water_depth : water depth [m]; inf if unknown
     what : quantity of the profile
     """
@@ -164,7 +166,12 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
 
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
-    """Yield a doubt if speeds (n,) [m/s] are too small for their declared unit."""
+    """Yield a doubt if all speeds (n,) [m/s] are too small for their declared unit.
+
+    Parameters
+    ----------
+    unit, factor : declared unit, and its factor to m/s
+    """
     strongest = float(speed.max(initial=0.0))
     if speed.size < _VARIED or not 0.0 < strongest < WEAK:
         return
@@ -180,8 +187,11 @@ def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Itera
 
 
 def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield a doubt if the directions of currents (n,) [m/s] lie in a narrow sector beginning at
-    north.
+    """Yield a doubt if all currents flow towards a narrow sector that begins at north.
+
+    Parameters
+    ----------
+    u, v : (n,) eastward and northward components [m/s]
     """
     moving = (u != 0.0) | (v != 0.0)
     if moving.sum() < MANY:
@@ -195,7 +205,7 @@ def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield a likely fill value: a recurring value [m/s] far above all others."""
+    """Yield a doubt if the largest value [m/s] recurs and far exceeds all others: a fill value?"""
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -208,7 +218,7 @@ def _recurring(values: Floats, side: str) -> Iterator[str]:
 
 
 def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield missing, equal and zero components of currents (n, k) [m/s]."""
+    """Yield doubts about currents (n, k) [m/s] with a missing, equal or zero component."""
     known = np.isfinite(u) & np.isfinite(v)
     one_alone = int((np.isfinite(u) != np.isfinite(v)).sum())
     if one_alone >= _FEWEST:
@@ -219,7 +229,7 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
     if np.unique(u[moving]).size >= _VARIED and (u == v).all():
         yield f"all {u.size} currents have equal components to the east and to the north"
     zeros, smallest = int((~moving).sum()), speed[moving].min(initial=np.inf)
-    # twelve steps of a resolution surround zero within 2.5 steps
+    # rounded currents have 20 nonzero values within 2.5 steps of zero, more common than zero
     if zeros > max(int((speed[moving] <= 2.5 * smallest).sum()), _VARIED):
         yield (
             f"{zeros} of {u.size} currents are exactly 0, and hardly any are nearly 0: a fill "
@@ -228,7 +238,7 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _equal_levels(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield that adjacent levels of currents (n, k) are the same at all times."""
+    """Yield a doubt if adjacent levels of currents (n, k) are equal at all times."""
     if len(u) < MANY or u.shape[1] < 2:
         return
     same = ((u[:, 1:] == u[:, :-1]) & (v[:, 1:] == v[:, :-1])).all(axis=0)
@@ -243,12 +253,12 @@ _ALIKE, _UNLIKE = 0.8, 0.5
 
 
 def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
-    """Yield levels whose currents agree with both neighbours only if rotated or mirrored.
+    """Yield a doubt about levels whose currents match both neighbours only if rotated or mirrored.
 
     Parameters
     ----------
     depth : (k,) rising [m]
-    current : (n, k) to the east (real) and to the north (imaginary) [m/s]; NaN in gaps
+    current : (n, k) eastward (real) and northward (imaginary) component [m/s]; NaN in gaps
     """
     turned = []
     for i in range(1, len(depth) - 1):
@@ -278,13 +288,13 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
 
 
 def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) -> Iterator[str]:
-    """Yield doubts about the sequence of values in time.
+    """Yield doubts about times, gaps, and constant or repeated values of time series.
 
     Parameters
     ----------
     values : (n, k, c) components of k series; NaN in gaps
     times : (n,) rising
-    names : (k,) place of each series, "" for a single series
+    names : (k,) place of each series, such as " at 20 m"; "" for a single series
     """
     yield from _years(times)
     again = int((times[1:] == times[:-1]).sum())
@@ -303,7 +313,7 @@ FAR_APART = np.timedelta64(12, "h")
 
 
 def step_doubts(times: Times) -> Iterator[str]:
-    """Yield a doubt if profiles are so far apart that tides and peaks are lost between them."""
+    """Yield a doubt if profiles are too far apart in time to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
             f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, means "
@@ -313,9 +323,9 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Minimum and maximum of a sea-water quantity, its unit, and units often confused with it.
+    """Limits of a sea-water quantity, its unit, and other units that are often used by mistake.
 
-    Each entry of `likely` is a unit, with the factor and the zero for conversion to `unit`.
+    Each value of `likely` is the factor and the offset that convert another unit to `unit`.
     """
 
     least: float
@@ -337,7 +347,7 @@ _FRACTION = 0.05  # most salinities lie below this if they are mass fractions
 
 
 def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
-    """Find impossible values; return a mask, a sentence, and whether they are the majority.
+    """Find impossible values; return their mask, a message, and whether most values are impossible.
 
     Parameters
     ----------
@@ -367,9 +377,14 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Find the pair of mean values (s >= 4, top first) whose exchange makes the profile monotonic.
+    """Find the pair of levels whose exchange makes a profile monotonic.
 
-    None if the profile is monotonic already, or if no exchange or more than one achieves this.
+    Return None if the profile is monotonic already, or if no exchange or more than one achieves
+    this.
+
+    Parameters
+    ----------
+    values : mean values from top to bottom, at least four
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None
@@ -408,7 +423,7 @@ def _years(times: Times) -> Iterator[str]:
 
 
 def gaps_of(times: Times) -> tuple[np.timedelta64, NDArray[np.intp]]:
-    """Return the median step of times (n,), and the indices before steps of over 1.5 medians."""
+    """Return the median step of times (n,), and the indices before steps over 1.5 medians."""
     steps = np.diff(times)
     step = np.median(steps)
     return step, np.flatnonzero(steps > 1.5 * step)
@@ -430,7 +445,10 @@ def _gaps(times: Times) -> Iterator[str]:
 
 
 def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
-    """Yield the series that keep one value for a tenth of the record, or repeat most readings."""
+    """Yield a doubt about series with values that hardly change.
+
+    Such a series keeps one value for a tenth of the record, or mostly repeats values.
+    """
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
     known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
@@ -455,7 +473,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield series in which every second reading repeats, as if two series were interleaved."""
+    """Yield a doubt if every second reading of a series repeats, as if two were interleaved."""
     if len(values) < MANY:
         return
     next_one, second = (
@@ -473,7 +491,7 @@ def _interleaved(values: Floats) -> Iterator[str]:
 
 
 def _repeated(values: Floats, times: Times) -> Iterator[str]:
-    """Yield the longest stretch of readings that occurs twice with identical digits."""
+    """Yield a doubt about the longest run of readings that occurs twice with equal digits."""
     count = len(values) - _STRETCH + 1
     if count <= _STRETCH:
         return

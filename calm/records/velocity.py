@@ -1,4 +1,4 @@
-"""Velocity variables of a dataset, and their flags: by CF standard name or usual name."""
+"""Velocity variables of a dataset and their flags, found by CF standard name or usual name."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Sought:
-    """A quantity with its standard names, and its usual names in programs and archives."""
+    """Standard names of a quantity, and its usual names in programs and archives."""
 
     standard: tuple[str, ...]
     usual: tuple[str, ...]
@@ -72,9 +72,9 @@ class Velocity:
     ----------
     names : eastward and northward velocity, or speed and direction
     up : upward velocity, None if missing
-    turn : angle added to a direction to make it the direction of flow [degrees]; None for
-        components
-    magnetic, true : whether the file refers the velocity to magnetic north, to true north
+    turn : angle to add to the direction variable to get the direction of flow [degrees]; None if
+        `names` are components
+    magnetic, true : whether the file refers the velocity to magnetic north, and to true north
     notes : remarks on assumptions
     """
 
@@ -86,7 +86,10 @@ class Velocity:
     notes: tuple[str, ...]
 
     def components(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
-        """Return the flow to the east and north from the two variables, in SI and degrees."""
+        """Return the eastward and northward components, from the values of the two variables.
+
+        Directions are in degrees.
+        """
         if self.turn is None:
             return first, second
         angle = np.radians(second + self.turn)
@@ -99,10 +102,14 @@ class Velocity:
 
 
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
-    """Find the current of a dataset; a `regular` grid has axes of latitude and longitude.
+    """Find the velocity variables of a dataset.
 
-    UnreadableError: there is no current, there are several, or the current is not to the east and
-    north.
+    Raise UnreadableError if there is no current, if there are several, or if its components are not
+    towards east and north.
+
+    Parameters
+    ----------
+    regular : whether the grid has axes of latitude and longitude, so that x is east and y is north
     """
     reason = attributes.other_frame(dataset.attrs) or attributes.moving_platform(dataset)
     if reason is not None:
@@ -146,7 +153,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
 def _direction(
     dataset: xr.Dataset, regular: bool, notes: list[str]
 ) -> tuple[str | None, str | None]:
-    """Find the direction variable and its convention: "to", "from", or None if unstated."""
+    """Find the direction variable and its sense: "to", "from", or None if unstated."""
     for sought, sense in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
@@ -158,13 +165,11 @@ def _direction(
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
-    """Find a variable by its standard names, else by its usual names, with true north preferred."""
+    """Find a variable by its standard names, else by its usual names, preferring true north."""
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
         found = [one for one in found if not any(one.startswith(f"{two}_") for two in found)]
-        true = [
-            name for name in found if not attributes.is_magnetic(dataset[name])
-        ]  # not `UCUR_max`
+        true = [name for name in found if not attributes.is_magnetic(dataset[name])]
         if len(true or found) > 1:
             listed = ", ".join(true or found)
             raise UnreadableError(f"several variables are {standard_name}: {listed}")
@@ -187,13 +192,13 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
-    """Return whether a standard name equals a sought name except for a word on its north."""
+    """Return whether a standard name without ``magnetic`` is one of the wanted names."""
     plain = re.sub(r"_?magnetic_?(north)?", "", own)
     return plain != own and plain in sought.standard
 
 
 def _checked(dataset: xr.Dataset, name: str) -> str:
-    """Return the name of a variable, if its own attributes allow its use."""
+    """Return the name of a variable; raise UnreadableError if its attributes rule it out."""
     layers = layers_of(dataset)
     variable = dataset[name]
     reason = attributes.not_a_value(variable, layers) or attributes.other_frame(variable.attrs)
@@ -203,8 +208,10 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the coordinates with bounds, and their dimensions; a mean over such a layer counts as
-    a value.
+    """Return the names of coordinates that describe layers, and of their dimensions.
+
+    Such a coordinate has the attribute `bounds`. A mean over a layer is accepted as a value of this
+    layer.
     """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
@@ -215,9 +222,9 @@ _WHOSE = re.compile(r"(?:sensor|instrument|platform|station|mooring|serial)", re
 
 
 def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
-    """Reject a variable with the readings of several instruments in sequence.
+    """Raise UnreadableError if a variable holds readings of several instruments in sequence.
 
-    UnreadableError: names the index that assigns readings to instruments.
+    The message names the variable that assigns readings to instruments.
     """
     for index, variable in dataset.variables.items():
         many, counted = 0, variable.attrs.get("instance_dimension")
@@ -239,11 +246,11 @@ _DIRECTIONS = "dir"
 
 
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with the velocity `vel (dir, ...)` split into its components.
+    """Return the dataset with a velocity `vel (dir, ...)` split into its components.
 
-    The components are called ``vel[E]`` and so on, with the standard names of velocities to the
-    east, north and up. A dataset without such a variable is returned unchanged. UnreadableError:
-    its directions are along beams or instrument axes.
+    The components are called ``vel[E]`` and so on, and have the standard names of eastward,
+    northward and upward velocity. A dataset without such a variable is returned unchanged. Raise
+    UnreadableError if its directions are along beams or instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
     name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
@@ -270,7 +277,10 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return the flag variable of a velocity: ancillary, matching in name, or for all variables."""
+    """Return the flag variable of a velocity, or None.
+
+    Its ancillary variables come first, then flags named after it, then flags for all variables.
+    """
     beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
     meanings = (other for other in dataset.data_vars if _OF_VELOCITY.search(str(other)))
     named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS), *_OF_ALL, *map(str, meanings)]
@@ -288,7 +298,10 @@ def _holds_flags(variable: xr.DataArray) -> bool:
 
 
 def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
-    """Return flags as integers: 9 for a missing flag, 4 or 1 for bits with or without a bad one."""
+    """Return flags as integers, with 9 for a missing flag.
+
+    Flags stored as bits become 4 if a bit marks a bad value, else 1.
+    """
     if "flag_masks" in variable.attrs:
         return np.where(marked_bad(variable), 4, 1).astype(np.int8)
     values = np.asarray(variable.values)
@@ -299,7 +312,7 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 
 
 def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
-    """Return a mask of bad values, from flag meanings or else from the flags 3, 4 and 9."""
+    """Return a mask of bad values, by the meanings of the flags or else by flags 3, 4 and 9."""
     bad, meanings = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
     masks = np.atleast_1d(variable.attrs.get("flag_masks", [])).tolist()
     values = np.atleast_1d(variable.attrs.get("flag_values", masks)).tolist()
@@ -320,7 +333,7 @@ def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
 
 
 def _flag(value: Any) -> str:
-    """Return a flag, numeric or text, in one notation."""
+    """Convert a numeric or text flag to a common notation."""
     text = value.decode() if isinstance(value, bytes) else str(value)
     text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
     return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text
@@ -331,10 +344,10 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 
 
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
-    """Return the variables that sum to the share of good pings of a velocity.
+    """Return the variables whose sum is the share of good pings of a velocity.
 
-    If there is one per beam, the first and the fourth are used: the solutions of three and of four
-    beams, in earth coordinates.
+    For a variable with one value per beam, these are the first and the fourth: in earth coordinates
+    they hold the shares of three-beam and of four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [

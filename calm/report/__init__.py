@@ -1,1 +1,1 @@
-"""Output of results for people and programs: tables, documents and plots."""
+"""Output of results as tables, documents and plots."""

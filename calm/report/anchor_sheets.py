@@ -1,7 +1,7 @@
-"""Anchor sheets: the anchor drop plan, and the anchor position from acoustic ranges.
+"""Anchor sheets: the plan of the anchor drop, and the anchor position found from acoustic ranges.
 
 The plan lists instructions, expected values and the course of the descent. The position is plotted
-by range circles, as on board.
+as the intersection of range circles, as is done on board.
 """
 
 from __future__ import annotations
@@ -32,10 +32,12 @@ if TYPE_CHECKING:
 _ROWS = 6
 """Number of rows in the table of the anchor's descent."""
 _DEEPER = 0.5
-"""Extra depth during the descent, relative to equilibrium, above which a mere float is listed [m].
+"""Extra depth during the descent, relative to equilibrium, above which a component without an
+instrument is listed [m].
 """
 _REPRESENTED = 0.02
-"""Share of the fall time from which the fall speed is drawn: before, inertia limits it."""
+"""Share of the fall time after which the fall speed is drawn; until then, inertia limits the speed.
+"""
 
 
 def drop_part(plan: DropPlan) -> ReportPart:
@@ -53,7 +55,6 @@ def drop_part(plan: DropPlan) -> ReportPart:
 
 
 def _instructions(plan: DropPlan) -> Prose:
-    """Format the instructions for the ship."""
     beyond = "beyond" if plan.tow_past >= 0.0 else "before"
     speed = say("speed", plan.ship_speed)
     if QUANTITIES["speed"].display_unit != "kn":
@@ -113,7 +114,6 @@ def _fall_table(plan: DropPlan) -> Table:
     def column(
         heading: str, name: str, values: Floats, decimals: int = 0, first: int = 0
     ) -> blocks.Field:
-        """Create a column of values from row `first` on."""
         shown = QUANTITIES.get(name)
         unit, scale = (shown.display_unit, shown.scale) if shown else (name, 1.0)
         at = scale * np.interp(depths, deepest, values)
@@ -188,8 +188,13 @@ def _distance(distance: float) -> str:
 
 
 def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
-    """Describe a place by its distances north and east of the target [m], and by latitude and
-    longitude if the target has a position.
+    """Format the distances of a place north and east of the target.
+
+    Latitude and longitude follow if the target has a position.
+
+    Parameters
+    ----------
+    place : distances east and north of the target [m]
     """
     east, north = place
     position = plan.position(place)
@@ -200,9 +205,9 @@ def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
     )
 
 
-_WIDTH, _SIZE = 510.0, 8.0  # points: an A4 page between its margins; the letters
+_WIDTH, _SIZE = 510.0, 8.0  # text width of an A4 page, and font size [pt]
 _HEIGHT = 216.0
-_LEFT, _BELOW = 42.0, 30.0  # around the axes, for their scales
+_LEFT, _BELOW = 42.0, 30.0  # room for scales beside and below axes [pt]
 _WATER, _SEABED, _PATH = "#2b7bba", "#b8a07e", "#d55e00"
 _DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 
@@ -210,9 +215,9 @@ _DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 def drop_figure(plan: DropPlan) -> str:
     """Draw the anchor drop as SVG.
 
-    The left panel shows, true to scale, the path of the anchor, and the line at several times. Each
-    time has its own dash pattern, for black-and-white print, and an entry in the legend. The right
-    panel shows fall speed against depth.
+    The left panel shows, true to scale, the path of the anchor and the shape of the line at several
+    times. Each time has its own dash pattern, for black-and-white print, and an entry in the
+    legend. The right panel shows fall speed against depth.
     """
     greys = [round(255 * shade) for shade in np.linspace(0.65, 0.0, len(plan.moments))]
     moments = [
@@ -268,8 +273,11 @@ _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 
 def located_part(located: Located, water_depth: float) -> ReportPart:
-    """Report the anchor position, its uncertainty and the residual of each range; `water_depth`
-    [m].
+    """Report the anchor position, its uncertainty and the residual of each range.
+
+    Parameters
+    ----------
+    water_depth : water depth [m]
     """
     outliers = [
         line for line, used in zip(located.survey.line, located.used, strict=True) if not used
@@ -340,10 +348,10 @@ _PANEL = 290.0
 
 
 def located_figure(located: Located) -> str:
-    """Draw the ranges as SVG: a circle around each ship position, at the depth of the transponder.
+    """Draw the ranges as SVG: circles around the ship positions, at the depth of the transponder.
 
-    The left panel shows the whole survey, the right panel the position with its 95 % ellipse. An
-    unused range is grey and dashed, with the number of its line in the file.
+    The left panel shows the whole survey, the right panel the anchor position with its 95 %
+    ellipse. A rejected range is grey and dashed, and carries its line number in the file.
     """
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(

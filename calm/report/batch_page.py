@@ -1,4 +1,4 @@
-"""Statistics of a batch as an HTML page with tables and drawings, on a terminal, and as files."""
+"""Statistics of a batch as an HTML page with drawings, as terminal output, and as files."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -35,8 +35,10 @@ def summary_html(summary: Summary) -> str:
 
 
 def summary_report(summary: Summary) -> blocks.Report:
-    """Build the report of a summary: frequency of exceeded limits, distributions, worst profiles,
-    return levels, drawings.
+    """Build the report of a summary.
+
+    It contains the frequency of exceeded limits, distributions, the most severe profiles, return
+    levels and drawings.
     """
     lost = State.WARN if summary.count - summary.solved else None
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
@@ -121,7 +123,7 @@ def limits_table(summary: Summary) -> Table:
 
 
 def statistics_tables(summary: Summary) -> Iterator[Table]:
-    """Yield a table for each quantity: mean, percentiles and maximum for every part."""
+    """Yield a table per quantity, with mean, percentiles and maximum of every component."""
     for name in _QUANTITIES:
 
         def figures(part: Any, name: str = name) -> list[str]:
@@ -142,7 +144,7 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Yield a table for each response: its worst profiles, with their other responses."""
+    """Yield a table per response, with its worst profiles and their other responses."""
     for name, profiles in summary.worst.items():
         if not profiles:
             yield Prose((f"The {TITLES[name]} is unknown in all profiles.",), State.UNKNOWN)
@@ -153,7 +155,7 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
 
 
 def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Yield tables of return levels with their intervals, and the reasons for missing levels."""
+    """Yield tables of return levels with confidence intervals, and reasons for missing levels."""
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
         fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]
@@ -189,7 +191,7 @@ def _fitted(fit: Fit) -> str:
 def write_summary(result: Path, mooring: Design) -> Summary:
     """Write the summary of a finished batch as JSON and HTML files next to the batch file.
 
-    The result is only read, so this can be repeated at any time after the batch has finished.
+    The batch file is only read, so its summary can be written again at any time.
 
     Parameters
     ----------
@@ -225,10 +227,10 @@ _ALL = (
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """Build the summary of a batch for a terminal of 80 columns; long labels wrap.
+    """Build the summary of a batch for a terminal of 80 columns, with long labels wrapped.
 
-    Lists components and clamps with the 99th percentile and the maximum of each quantity, the
-    failure rate of each rule, the worst profile by each response, and return levels.
+    It lists components and clamps with the 99th percentile and the maximum of each quantity. The
+    failure rate of each rule, the worst profile for each response, and return levels follow.
     """
     lost = State.FAIL if summary.count - summary.solved else None
     ended = blocks.Span(batch_summary.standing(summary), lost)
@@ -285,14 +287,14 @@ def _level_text(level: Level | None, quantity: Quantity) -> str:
     return f"{quantity.format(level.level)}\n{'–'.join(_ends(level, quantity, '?'))}"
 
 
-_WIDTH = 533.0  # points: an A4 page between its margins
-_SIZE = 7.0  # points, of the letters
-_LEFT, _RIGHT, _BELOW, _GAP = 60.0, 6.0, 30.0, 14.0  # points: room around axes, and between them
+_WIDTH = 533.0  # text width of an A4 page [pt]
+_SIZE = 7.0  # font size [pt]
+_LEFT, _RIGHT, _BELOW, _GAP = 60.0, 6.0, 30.0, 14.0  # room around and between axes [pt]
 _LIMIT = Stroke("#b3261e", 1.0, (4.0, 2.0))
 
 
 def series_figure(summary: Summary) -> str:
-    """Draw the minimum and maximum of each response per time interval, as SVG."""
+    """Draw the minimum and maximum of each response in successive time intervals, as SVG."""
     tall, responses = 108.0, summary.known_responses
     page = Graph(_WIDTH, len(responses) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
     begin = responses[0].begin
@@ -319,8 +321,9 @@ def series_figure(summary: Summary) -> str:
 
 
 class _Panel(NamedTuple):
-    """Panel of exceedance curves for one quantity: each curve with stroke and label, and the limit
-    of the quantity.
+    """Panel with the exceedance curves of one quantity, and the limit of this quantity.
+
+    A curve is a distribution with its stroke and label.
     """
 
     title: str
@@ -330,7 +333,7 @@ class _Panel(NamedTuple):
 
 
 def exceedance_figure(summary: Summary) -> str:
-    """Draw the exceedance curves of the responses, as fractions of the profiles, as SVG."""
+    """Draw for each response the fraction of profiles that exceed a value, as SVG."""
     panels = []
     for response in summary.known_responses:
         one, limit = response.distribution, _limit_of(summary, response)
@@ -340,7 +343,7 @@ def exceedance_figure(summary: Summary) -> str:
 
 
 def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
-    """Draw exceedance curves of the knockdown and tilt of the parts that move most, as SVG."""
+    """Draw exceedance curves of the components with the largest knockdown and tilt, as SVG."""
     panels = []
     for name in ("knockdown", "tilt"):
         known = [(part.label, getattr(part, name)) for part in parts]
@@ -355,7 +358,7 @@ def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
 
 
 def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
-    """Draw panels in two columns, with a common scale of fractions."""
+    """Draw panels in two columns, with a common vertical scale of fractions."""
     rows, wide = -(-len(panels) // 2), (_WIDTH - _LEFT - _RIGHT - _GAP) / 2
     page = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
     least = min([0.1, *(one.share[-1] for panel in panels for one, _, _ in panel.curves)])
@@ -383,7 +386,7 @@ def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
 
 
 def _limit_of(summary: Summary, response: Response) -> float | None:
-    """Return the design limit for a response, in display units; None if the design sets none."""
+    """Return the design limit for a response, in display units; None if there is none."""
     wanted = {"knockdown": "knockdown", "offset": "excursion"}.get(response.name)
     for rule in summary.rules:
         if rule.name == wanted:

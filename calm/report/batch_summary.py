@@ -1,4 +1,4 @@
-"""Statistics of a batch as JSON and as tables; names, times and fractions as text."""
+"""Statistics of a batch as JSON and as tables."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
@@ -19,8 +19,10 @@ from calm.version import __version__
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
-    """Return the JSON object of a summary, in SI units and degrees, with times in UTC, fractions of
-    1, and null for unknown values.
+    """Return the JSON object of a summary.
+
+    Values are in SI units and degrees, times in UTC, and shares are fractions of 1; unknown values
+    are null.
 
     Keys: `profiles`, the number of profiles by status; `components` and `clamps`, with
     distributions; `rules` and `limits`, with the frequency of violations; `limits_used`, the limits
@@ -147,9 +149,7 @@ def rules_table(summary: Summary) -> Table:
 
 
 def _most_often(rule: RuleShare) -> str:
-    """Name the part that exceeds a limit most often, and give the number of profiles with an
-    unknown result.
-    """
+    """Name the component that most often exceeds a limit of the rule, and count unknown results."""
     most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
     worst = ""
     if most and most.share:
@@ -159,8 +159,12 @@ def _most_often(rule: RuleShare) -> str:
 
 
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
-    """Tabulate profiles and their responses; the first column may name the response for which a
-    profile is the worst.
+    """Tabulate profiles with their responses.
+
+    Parameters
+    ----------
+    profiles : pairs of a text for the first column and a profile; the text names the response for
+        which the profile is the worst, or is empty
     """
 
     def response(name: str) -> Field:
@@ -217,7 +221,7 @@ def percent(share: float | None) -> str:
 
 
 def grouped(count: int) -> str:
-    """Format a number of profiles with its thousands separated."""
+    """Format a number of profiles with a thousands separator."""
     return f"{count:,}".replace(",", "\u00a0")
 
 
@@ -230,15 +234,13 @@ def extent(summary: Summary) -> str:
 
 
 def standing(summary: Summary) -> str:
-    """Format the number of profiles for each status of the solver."""
+    """Format the number of profiles by status of the solver."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)
 
 
 def left_out(summary: Summary) -> str:
-    """Describe the number of profiles that have a current but no solution, and the effect on
-    statistics.
-    """
+    """Return a sentence on profiles without a solution, which are excluded from all statistics."""
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved
@@ -250,7 +252,7 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Yield each reason for missing return levels, with the names of the responses concerned."""
+    """Yield each reason for missing return levels, after the names of the responses concerned."""
     reasons: dict[str, list[str]] = {}
     for response in summary.known_responses:
         for fit in response.return_levels:
@@ -263,7 +265,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Tabulate the depths of the profilers' stops, in dbar and in metres."""
+    """Tabulate percentiles of the depth of each profiler stop, in dbar and in metres."""
     if not summary.stops:
         return
     shares = (*(f"{share:g} %\ndbar" for share in statistics.STOP_SHARES),

@@ -1,5 +1,4 @@
-"""Building blocks of all CALM reports, rendered alike on a terminal, on a web page, in PDF and in a
-notebook.
+"""Building blocks of all reports: on a terminal, in HTML or PDF, and in notebooks.
 
 All texts are plain text without markup; each output format escapes them as required.
 """
@@ -17,12 +16,17 @@ from calm.quantities import QUANTITIES, Quantity
 
 @dataclass(frozen=True)
 class Column:
-    """Column heading: title, unit below the title, and whether the cells are numbers.
+    """Column of a table, without its cells.
 
-    `share` is the share of the width left over by numbers and short words: 0 for short words, 1 for
-    names, more for sentences; numeric columns have a share only if it is not 1. `short` is a title,
-    in lines, for narrow tables; a column that is not `narrow` is omitted there. Cells of a `marked`
-    column may carry a mark.
+    Attributes
+    ----------
+    heading, unit : title, and unit below the title
+    numeric : whether the cells are numbers
+    share : weight of the column when the remaining width is distributed: 0 for short words, 1 for
+        names, more for sentences. A numeric column takes no part in this if its share is 1
+    short : shorter title for narrow tables, which may have several lines
+    narrow : whether narrow tables include the column
+    marked : whether cells may carry a mark
     """
 
     heading: str
@@ -36,13 +40,20 @@ class Column:
 
 @dataclass(frozen=True)
 class Cell:
-    """Table cell: its text, a smaller line below it, and the state shown by colour and words.
+    """Cell of a table.
 
-    `mark` is the sign after a value close to a limit or beyond it. A cell may be indented below the
-    row above it, or `strong` to stand out. In print, the detail of a cell that `goes_on` follows on
-    the same line, and `then` is the suggested action. `bar` is a share of a limit, drawn with a
-    mark at 1; `picture` is an SVG drawing; `tone` is the highlight in a matrix: `fail`, `over` or
-    `near`.
+    Attributes
+    ----------
+    text, detail : text, and a smaller line below it
+    state : state, which is shown by colour and words
+    mark : sign after a value that is close to a limit or beyond it
+    indented : whether the cell is indented below the row above
+    strong : whether the text is bold
+    goes_on : whether, in print, the detail follows on the same line
+    then : suggested action
+    bar : fraction of a limit, drawn as a bar with a mark at 1
+    picture : SVG drawing
+    tone : highlight in a matrix: `fail`, `over` or `near`
     """
 
     text: str = ""
@@ -60,12 +71,17 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """Table with rows under columns; the last `totals` rows are sums.
+    """Table with columns and rows; a row of a single cell is a heading for the rows below it.
 
-    A row of a single cell is a heading for the rows below it. Rows of a `sortable` table can be
-    sorted and filtered. A `dense` table has so many columns that spacing is reduced. A table to
-    fill in `by_hand` has rules and room to write. `aside` is printed next to the title in smaller
-    letters. A `ruled` table has a hairline below each row.
+    Attributes
+    ----------
+    note : text below the table
+    totals : number of rows at the end that are sums
+    sortable : whether the rows can be sorted and filtered
+    dense : whether the columns are so many that their spacing is reduced
+    by_hand : whether the table is filled in by hand, and has rules and room to write
+    aside : text in smaller letters next to the title
+    ruled : whether there is a hairline below each row
     """
 
     title: str
@@ -80,7 +96,7 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Remove columns without text, unless the table is to be filled in `by_hand`."""
+        """Remove columns without text, unless the table is filled in by hand."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -91,7 +107,7 @@ class Table:
         return self._of([n for n, one in enumerate(self.columns) if one.narrow])
 
     def _of(self, kept: Sequence[int]) -> Table:
-        """Select columns by number; a row with a single cell is a heading and stays."""
+        """Select columns by number; heading rows are kept."""
         rows = (row if len(row) == 1 else tuple(row[at] for at in kept) for row in self.rows)
         columns = tuple(self.columns[at] for at in kept)
         return replace(self, columns=columns, rows=tuple(rows))
@@ -109,9 +125,12 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Figure:
-    """SVG drawing, with a title that describes its content; a `tall` drawing may fill a page.
+    """SVG drawing, with a title that describes its content.
 
-    `aside` is printed next to the title, `note` below the drawing.
+    Attributes
+    ----------
+    tall : whether the drawing may fill a page
+    aside, note : text next to the title, and below the drawing
     """
 
     title: str
@@ -123,7 +142,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Part of a sentence, with the colour of a state, or `quiet` for secondary text."""
+    """Part of a sentence in the colour of a state, or in the type of secondary text (`quiet`)."""
 
     text: str
     state: State | None = None
@@ -136,7 +155,7 @@ Line = str | tuple[Span, ...]
 
 @dataclass(frozen=True)
 class Prose:
-    """Paragraphs of one sentence each; `state` marks sentences that must not be overlooked."""
+    """Paragraphs of a single sentence each, highlighted if they have a `state`."""
 
     lines: tuple[Line, ...]
     state: State | None = None
@@ -158,9 +177,9 @@ class Heading:
 
 @dataclass(frozen=True)
 class Listing:
-    """Text of a file; in print it is attached under `name`, if set.
+    """Text of a file; in print it is attached as a file `name`, if set.
 
-    A text that takes more than `most` lines there appears in the attachment only.
+    A text of more than `most` lines is not printed, but only attached.
     """
 
     title: str
@@ -171,7 +190,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """Title block of a drawing: small text above the title, lines below it, and fields."""
+    """Title block of a drawing: small text above the title, lines below it, and named fields."""
 
     above: str
     title: str
@@ -181,12 +200,12 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class SignOff:
-    """Revisions and signature boxes with known names, at the foot of a page.
+    """Revisions, and boxes for signatures, at the foot of a page.
 
     Attributes
     ----------
     revisions : revision, date, author and reason
-    roles : role and name of each signatory
+    roles : role of each signatory, and the name if known
     note : text next to the boxes
     """
 
@@ -197,7 +216,7 @@ class SignOff:
 
 @dataclass(frozen=True)
 class OpenItem:
-    """Open item: its state, number and heading, and a text with value and suggested action."""
+    """Open item, with its state, number, heading and text (value and suggested action)."""
 
     state: State
     number: int
@@ -207,7 +226,7 @@ class OpenItem:
 
 @dataclass(frozen=True)
 class OpenItems:
-    """List of open items, most severe first; `more` refers to items that do not fit."""
+    """List of open items, most severe first; `more` is printed if not all of them fit."""
 
     title: str
     items: tuple[OpenItem, ...]
@@ -217,9 +236,12 @@ class OpenItems:
 
 @dataclass(frozen=True)
 class Beside:
-    """Two groups of blocks side by side in print; the left group has a given fraction of the width.
+    """Two groups of blocks, side by side in print.
 
-    If `height` [pt] is set, they have exactly that height in print.
+    Attributes
+    ----------
+    share : fraction of the width for the left group
+    height : exact height of both groups in print [pt]; 0 for their natural height
     """
 
     left: tuple[Block, ...]
@@ -241,9 +263,9 @@ Block = (
 
 @dataclass(frozen=True)
 class ReportPart:
-    """Blocks under a heading. A command makes a separate part for each object.
+    """Blocks under a heading.
 
-    `size` is the font size of its tables in print [pt]; only listings use a smaller one.
+    `size` is the font size of the tables in print [pt]; only listings use a smaller one.
     """
 
     title: str
@@ -271,10 +293,10 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a report about one mooring or tow: its name and its printed parts.
+    """Section of a report on one mooring or tow, with its name and its parts.
 
-    A section may be built in a separate process. A section with its own `running` header starts a
-    new page without a title.
+    A section with its own `running` header starts a new page without a title. Sections may be built
+    in separate processes.
     """
 
     name: str
@@ -325,7 +347,7 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
     heading : heading of the column
     show : name of the attribute of an item, or index of its member; the heading by default
     share : share of the width, as in `Column`
-    more : further fields of `Column`
+    more : further attributes of `Column`
     """
     return Column(heading, share=share, **more), _getter(show, heading)
 
@@ -337,14 +359,15 @@ def _getter(show: Shown, name: str) -> Callable[[Any], Any]:
 
 
 def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field:
-    """Create a column of numbers with the unit below the heading; the other arguments are as in
-    `words`.
+    """Create a column of numbers for `table_of`; the arguments are as in `words`.
+
+    The unit is printed below the heading.
     """
     return words(heading, show, unit=unit, numeric=True, **more)
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt fields to rows that are sequences; the fields show the first item of each row."""
+    """Convert columns of items to columns of rows whose first member is the item."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])
@@ -358,7 +381,7 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
 
 
 def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
-    """Create the column of a quantity, in display units.
+    """Create a column of a quantity for `table_of`, in display units.
 
     Parameters
     ----------
@@ -408,7 +431,7 @@ def table_of(
 ) -> Table:
     """Build a table with one row per item and one column per field.
 
-    Columns without text are omitted, unless the table is to be filled in by hand.
+    Columns without text are omitted, unless the table is filled in by hand.
 
     Parameters
     ----------
@@ -416,7 +439,7 @@ def table_of(
     fields : fields created by `words`, `number` and `quantity`
     note : text below the table
     sums : items of the total rows at the end of the table
-    more : further fields of `Table`
+    more : further attributes of `Table`
     """
     totals = list(sums)
     rows = (
@@ -433,11 +456,11 @@ def _cell(shown: Any) -> Cell:
 
 
 def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]:
-    """Yield a block of warnings, if there are any."""
+    """Return a block with the warnings, if any."""
     lines = tuple(texts)
     return (Prose(lines, state),) if lines else ()
 
 
 def quiet(*texts: str) -> Prose:
-    """Create a note in secondary type."""
+    """Create paragraphs in the type of secondary text."""
     return Prose(tuple((Span(text, quiet=True),) for text in texts))

@@ -1,8 +1,8 @@
-"""Chart of a uniform current for one value of K, on an A4 page.
+"""Chart of cables in a uniform current for one value of K, on an A4 page.
 
-The curve carries its graduations in the angle φ and the arc s′. Three families of loci of the point
-P = (y′ of A, z′ of B) give length, distance and tension of the cable between two of its points A
-and B, A the lower: L/H, D/H and T_A/(wH) are constant along them.
+The main curve is graduated in the angle φ and the arc length s′. Three families of curves give
+length, distance and tension of the cable between two of its points, A and the higher B. L/H, D/H or
+T_A/(wH) is constant along each curve, which is the locus of the points P = (y′ of A, z′ of B).
 
 The module also reports the cables for three given quantities, as a table and as JSON.
 """
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 
 _PAGE = (8.27, 11.69)  # inches, A4
 _RIGHT = np.pi / 2
-_POINTS = 500  # along the curve and up the page, for the loci
-_FINE = 2000  # along the curve, to draw and graduate it
+_POINTS = 500  # grid points along the curve and up the page, to contour the loci
+_FINE = 2000  # points along the curve, to draw and graduate it
 _HIGHEST = 3.0
 
 
 @dataclass(frozen=True)
 class Family:
-    """Family of curves, each for one value of a ratio: name, colour, and the values to draw."""
+    """Family of curves with a constant ratio: name of the ratio, colour, and values to draw."""
 
     name: str
     colour: str
@@ -60,9 +60,9 @@ _FAMILIES = (
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     """Draw the chart for one value of K (0 to 100) on an A4 page, without overlapping labels.
 
-    The lower ends of the cables are at angles ``below-90`` or ``above-90``. Raises UsageError if K
-    is out of range, or for ``above-90`` at K = 0, where the curve ends at 90°. The figure is not
-    attached to a window.
+    The cables begin at angles ``below-90`` or ``above-90`` degrees at their lower ends. Raise
+    UsageError if K is out of range, or for ``above-90`` at K = 0, where the curve ends at 90°. The
+    figure is not attached to a window.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -86,8 +86,9 @@ def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
 
 
 def _points(k: float) -> CurvePoints:
-    """Compute points of the curve from its apex to the upper edge of the page, ever closer towards
-    φ_c.
+    """Compute points of the curve from its apex to the upper edge of the page.
+
+    Points become ever closer towards the critical angle φ_c.
     """
     critical = float(critical_angle(k))
     upright = float(curve(k, _RIGHT).height) if k > 0.0 else np.inf
@@ -102,7 +103,7 @@ _COORDINATES = ("phi", "arc", "distance", "height", "tension")
 
 
 def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
-    """Set axis limits that leave room for the graduations on both sides of the curve."""
+    """Set the axis limits, with room for the graduations on both sides of the curve."""
     left = float(points.distance[points.phi >= _RIGHT].min()) if above else 0.0
     right = float(points.distance.max())
     low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
@@ -113,7 +114,7 @@ def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
 
 
 def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
-    """Draw the ticks of φ on the outer side of the curve, and of s′ on its inner side."""
+    """Draw the ticks of φ on the outer side of the curve, and the ticks of s′ on its inner side."""
     degrees = np.degrees(points.phi)
     for value in range(0, 180, 1):
         if value <= degrees[-1]:
@@ -135,7 +136,7 @@ def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
 
 
 def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, float, float]:
-    """Interpolate y′, z′ and φ at the point of the curve where a graduation has a value."""
+    """Interpolate y′, z′ and φ at the point of the curve where `scale` has a given value."""
     at = (float(np.interp(value, scale, getattr(points, name))) for name in _COORDINATES)
     phi, _, distance, height, _ = at
     return distance, height, phi
@@ -144,8 +145,8 @@ def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, flo
 def _draw_family(
     axes: Axes, labels: Labels, family: Family, points: CurvePoints, starts: NDArray[np.bool_]
 ) -> None:
-    """Draw the loci of P as contour lines over the abscissa of A and the level of B."""
-    # Evenly in φ, which is close in y′ where the curve turns back; y′ must grow for contours.
+    """Draw a family of loci of P as contour lines over y′ of A and z′ of B."""
+    # Equal steps in φ are small steps in y′ where the curve turns back; contours need rising y′.
     angles = np.linspace(points.phi[starts][0], points.phi[starts][-1], _POINTS)
     lower = [np.interp(angles, points.phi, getattr(points, name)) for name in _COORDINATES]
     if lower[2][0] > lower[2][-1]:
@@ -193,15 +194,16 @@ _LOCI = (
     "upper end B.\nA and B lie on the curve. H: their difference in height. D: their distance. L: "
     "length of cable between them."
 )
-_MARGIN = 1.5  # points kept free around a label
-_SHORTEST = 40.0  # points of a locus that are worth a label
+_MARGIN = 1.5  # free margin around a label [pt]
+_SHORTEST = 40.0  # length of the shortest locus with a label [pt]
 _TRIALS = 41
 
 
 class Labels:
-    """Ticks and labels without overlap, for axes with final limits in a figure with a canvas.
+    """Ticks and labels that do not overlap.
 
-    A label without a free position is omitted.
+    A label without a free position is omitted. The axes must have their final limits, and the
+    figure a canvas.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -210,19 +212,23 @@ class Labels:
         self._points = axes.figure.dpi / 72.0
 
     def avoid(self, x: Floats, y: Floats) -> None:
-        """Keep labels clear of a curve."""
+        """Keep later labels clear of a curve."""
         from matplotlib.transforms import Bbox
 
         line = self.axes.transData.transform(np.column_stack([x, y]))
         lengths = _lengths(line)
-        half = self._points  # a point to each side
+        half = self._points  # one typographic point, in pixels
         for at in np.arange(0.0, lengths[-1], half):
             place = [np.interp(at, lengths, line[:, axis]) for axis in (0, 1)]
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick to the right of a curve that runs at `angle` [rad]. `size` is in points; a
-        negative size draws to the left.
+        """Draw a tick at a point of a curve, to the right of its direction.
+
+        Parameters
+        ----------
+        angle : direction of the curve [rad]
+        size : length of the tick in points; a negative size draws to the left
         """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
@@ -232,7 +238,7 @@ class Labels:
     def beside(
         self, text: str, x: float, y: float, angle: float, size: float, colour: str, font: float
     ) -> None:
-        """Write a label beyond the end of such a tick."""
+        """Write a label beyond the end of a tick, which is defined as in `tick`."""
         place, right = self._place(x, y, angle)
         side = right * np.sign(size)
         label = self._text(text, place, 0.0, colour, font)
@@ -242,7 +248,7 @@ class Labels:
         self._keep(label)
 
     def along(self, text: str, path: Floats, colour: str, font: float) -> bool:
-        """Place a text along a line of points (n, 2); return whether a free position was found."""
+        """Write a text along a line of points (n, 2); return whether there was a free position."""
         line = self.axes.transData.transform(path)
         lengths = _lengths(line)
         if lengths[-1] < _SHORTEST * self._points:
@@ -265,7 +271,7 @@ class Labels:
         return False
 
     def _place(self, x: float, y: float, angle: float) -> tuple[Floats, Floats]:
-        """Return a point in pixels, and the direction to the right of a curve at this point."""
+        """Return a point in pixels, and the unit vector to the right of a curve at this point."""
         step = 1e-6
         here = np.array([x, y])
         ahead = here + step * np.array([np.cos(angle), np.sin(angle)])
@@ -300,7 +306,7 @@ class Labels:
 
 
 def _lengths(line: Floats) -> Floats:
-    """Compute the length along a line of points, from the first point."""
+    """Return the length along a line of points, from its first point to each point."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 
@@ -318,9 +324,7 @@ _NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles 
 
 
 def answer_document(answer: ChartAnswer) -> dict[str, Any]:
-    """Return the JSON object: `status`, `k`, and `solutions` (SI, degrees) or the reason why there
-    is none.
-    """
+    """Return the JSON object: `status`, `k`, and `solutions` (SI, degrees) or a reason."""
     found = {"solutions": [_figures(solution) for solution in answer.solutions]}
     reason = () if answer.solutions else ("message", "advice")
     return members(answer, "status", "k") | found | members(answer, *reason)
@@ -351,7 +355,6 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
 
 
 def _figures(solution: ChartSolution) -> dict[str, float]:
-    """Return the values of a solution in SI units and degrees."""
     return {
         name: math.degrees(value) if name.startswith("phi") else value
         for name, value in vars(solution).items()

@@ -1,4 +1,4 @@
-"""Key figures of a design check, for its JSON."""
+"""Key figures of a design check for its JSON document."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -14,7 +14,7 @@ from calm.report.result_files import members
 
 @dataclass(frozen=True)
 class StrongestCurrent:
-    """Strongest current of all environments, and the warning if this current is weak."""
+    """Strongest current of all environments, and a warning if even this current is weak."""
 
     speed: float
     depth: float
@@ -24,10 +24,10 @@ class StrongestCurrent:
 
 @dataclass(frozen=True)
 class LeastFactor:
-    """Minimum safety factor (breaking load over tension) over all environments, and the piece
-    concerned.
+    """Minimum safety factor over all environments, and the piece with this factor.
 
-    `unknown` counts the pieces without a breaking load.
+    The safety factor is the breaking load over the tension; `unknown` counts the pieces without a
+    breaking load.
     """
 
     factor: float

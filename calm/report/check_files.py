@@ -34,13 +34,13 @@ MUCH_USED = 0.5
 def listed_findings(
     assessment: Assessment, *, every: bool = False
 ) -> Iterator[tuple[Finding, bool]]:
-    """Yield the findings to list for a mooring, each with a flag that is true if the finding
-    governs its rule.
+    """Yield the findings to list for a mooring, each with a flag: whether it governs its rule.
 
-    The governing finding of each rule is listed, and the governing finding of each rule and
-    component over all environments, unless it passes with a utilisation below `MUCH_USED`.
-    Failures, unknowns and warnings are listed for each environment. A cluster of equal floats
-    counts as one component. With `every`, all findings of all situations are listed.
+    The list contains the governing finding of each rule. It also contains the governing finding of
+    each rule on each component over all environments, unless this finding passes with a utilisation
+    below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment. A cluster of
+    equal floats counts as a single component. With `every`, all findings of all situations are
+    listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -56,7 +56,7 @@ def listed_findings(
 
 
 def _listed_as(finding: Finding) -> Hashable:
-    """Key of findings that share one list entry."""
+    """Return a key that is equal for findings with a common entry in the list."""
     if finding.state not in GRAVE:
         return finding.rule, finding.state, finding.place
     place = finding.case if finding.case == "0" else finding.environment
@@ -64,7 +64,7 @@ def _listed_as(finding: Finding) -> Hashable:
 
 
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
-    """Return the JSON object of a design check; null for results without a solution.
+    """Return the JSON object of a design check; results without a solution are null.
 
     Parameters
     ----------
@@ -73,11 +73,12 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
     Returns
     -------
     dict
-        Keys: `verdict`, the conclusion from all findings, and `state`, the worst state; the number
-        of `estimated` findings; the `accepted` findings, with reasons; the listed `findings`, and
-        the number of all findings; for each mooring, by its name, the `key_figures` of page one,
-        `launch`, `recovery`, `backup`, `inventory` and its `totals`, and the `document` if a file
-        has any; and `situations`, the solved situations of each mooring in each environment.
+        Keys: `verdict`, the conclusion from all findings, and `state`, the worst state;
+        `estimated`, the number of findings based on estimates; `accepted`, the accepted findings
+        with reasons; `findings`, the listed findings, and `findings_in_all`, their total number;
+        `situations`, the solved situations of each mooring in each environment; and by name of each
+        mooring, the `key_figures` of page one, `launch`, `recovery`, `backup`, `inventory` with its
+        `totals`, and the `document` if a file has any.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:
@@ -125,14 +126,12 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
 
 
 def limit_document(key: LimitKey) -> dict[str, Any]:
-    """Return the JSON object of a limit and its value in this check."""
+    """Return the JSON object of a limit, with the value used in this check."""
     return members(key, "name", "value", "default", "source", "departs")
 
 
 def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
-    """Yield findings as JSON objects. Computed probabilities are included; a finding without a
-    limit has null.
-    """
+    """Yield the listed findings as JSON objects, with probabilities if these were computed."""
     for one, leads in listed_findings(assessment, every=every):
         counted = members(one, "probability") if assessment.draws else {}
         yield one.to_dict() | {"governing": leads} | counted
@@ -210,8 +209,9 @@ def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str
 
 
 def inventory_csv(assessments: Sequence[Assessment]) -> str:
-    """Write an inventory as CSV: one row per piece and clamp, from the top of each mooring to its
-    anchor.
+    """Write the inventory of moorings as CSV, with one row per piece and clamp.
+
+    Each mooring is listed from its top to its anchor.
     """
     rows = (
         [each.name, *members(item, *_OF_ITEM).values()]

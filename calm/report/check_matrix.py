@@ -1,5 +1,6 @@
-"""Design check of many moorings in many environments: matrix of utilisations, and one page per
-mooring.
+"""Design check of many moorings in many environments.
+
+The report consists of a matrix of utilisations and one page per mooring.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -42,7 +43,10 @@ _NEAR = 0.9
 
 @dataclass(frozen=True)
 class MatrixCell:
-    """Maximum utilisation of a mooring in an environment; None if no check has a utilisation."""
+    """Cell of the matrix: the maximum utilisation of a mooring in an environment.
+
+    `use` is None if no check has a utilisation.
+    """
 
     use: float | None
     state: State
@@ -51,7 +55,7 @@ class MatrixCell:
 
 @dataclass(frozen=True)
 class SummaryRow:
-    """One mooring in the summary: a row of the matrix.
+    """Row of the matrix, for one mooring.
 
     Attributes
     ----------
@@ -61,7 +65,7 @@ class SummaryRow:
     handling : cell of launch, recovery and breaks
     governs : check with the largest utilisation in the first environment
     accepted, findings : number of accepted findings, and of all findings
-    conclusion, draft : verdict, and whether the report is a draft
+    conclusion : verdict
     """
 
     mooring: str
@@ -75,9 +79,7 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """First environment in which the mooring fails, and the finding that fails; None without
-        failures.
-        """
+        """First environment in which the mooring fails, and the finding that fails, or None."""
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.text) for name, cell in cells.items()
@@ -131,7 +133,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
 
 
 def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
-    """Yield the matrix of utilisations, and the table with the governing check of each mooring."""
+    """Yield the matrix of utilisations, and a table of the governing check of each mooring."""
     names, shown, codes = environments_of(rows)
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
@@ -169,8 +171,10 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
-    """List the environments of all moorings, the environments to show (the most severe), and the
-    codes of all.
+    """Return all environments, the environments that have a column in the matrix, and all codes.
+
+    The columns are the most severe environments. The codes, such as E1, are by name of the
+    environment.
     """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}

@@ -1,4 +1,4 @@
-"""Pages 4 to 6 of a design check: all checks, deployment and recovery, basis."""
+"""Pages 4 to 6 of a design check: all checks, deployment and recovery, and basis of the check."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -57,7 +57,7 @@ from calm.report.sheet import accuracy_text
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the table of all rules: governing piece and case, limit and remedy."""
+    """Yield the table of all rules, with governing component and case, limit and remedy."""
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
     yield blocks.Heading("Accuracy of these values")
@@ -110,9 +110,7 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
 
 
 def _used_most(finding: Finding) -> tuple[float, int]:
-    """Sort key that puts findings with the largest utilisation first and those without a
-    utilisation last.
-    """
+    """Sort key: largest utilisation first, findings without a utilisation last."""
     used = finding.utilisation
     return 1.0 if used is None else -used, -finding.state.severity
 
@@ -122,7 +120,7 @@ _A_DIFFERENCE = 0.1
 
 
 def _trust(signed: SignedMooring) -> str:
-    """Describe the uncertainty of the results."""
+    """Return sentences on the uncertainty of the results."""
     results = [one for case in signed.standing for one in case.results]
     if not results:
         return "The mooring has no equilibrium, so checks that need one were skipped."
@@ -138,7 +136,7 @@ def _trust(signed: SignedMooring) -> str:
 
 
 def handling_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield a summary of launch and recovery, net buoyancy after breaks, and the parts list."""
+    """Yield a summary of launch and recovery, the net buoyancy after breaks, and the parts list."""
     assessment = signed.assessment
     if assessment.launch is not None or assessment.recovery is not None:
         yield Beside((_launch(assessment),), (_recovery(assessment),))
@@ -205,12 +203,12 @@ def _recovery(assessment: Assessment) -> Table:
 
 
 def _limit(assessment: Assessment, rule: str) -> str:
-    """Format the limit of a rule with a single value, and its utilisation if available."""
+    """Format the limit of a rule with one finding, and its utilisation if available."""
     return _limit_of([one for one in assessment.findings if one.rule == rule])
 
 
 def _limit_of(found: Sequence[Finding]) -> str:
-    """Format the limit of the governing finding in a group, and its utilisation if available."""
+    """Format the limit of the governing finding among several, and its utilisation if available."""
     if not found:
         return ""
     lead = governing(found)
@@ -222,7 +220,10 @@ _MOST_BREAKS = 10
 
 
 def _breaks(assessment: Assessment) -> Table:
-    """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
+    """Tabulate the net buoyancy after a break or the loss of a float.
+
+    Only the most critical break of each section is listed.
+    """
     parts = {piece.index: piece for piece in assessment.file.pieces}
     groups: dict[str, list[Break]] = {}
     section = "the top"
@@ -277,13 +278,13 @@ def _breaks(assessment: Assessment) -> Table:
 
 
 def _runs(numbers: Iterable[str]) -> list[str]:
-    """Join the item numbers of clamps on one piece, such as ``7a–7d``."""
+    """Shorten the item numbers of clamps to ranges, such as ``7a–7d``."""
     groups = groupby(dict.fromkeys(numbers), lambda one: re.sub(r"\D.*", "", one))
     return [run_of([*own]) for _, own in groups]
 
 
 def _inventory(signed: SignedMooring) -> Table:
-    """Tabulate number, length, mass and weight of each component type, with item numbers."""
+    """Tabulate number, length, mass and weight of each component type, with the item numbers."""
     items = signed.assessment.inventory
     numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
     unit = LOAD.display_unit
@@ -334,7 +335,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
 
 def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield the limits, environments, exclusions, mooring file, and hash of all inputs."""
+    """Yield limits, environments and exclusions, the mooring file, and the hash of all inputs."""
     assessment = signed.assessment
     waters = {
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
@@ -371,7 +372,7 @@ _UNJUDGED = 11
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:
-    """Tabulate the limits used; limits set by the design are bold."""
+    """Tabulate the limits used, with the limits that the mooring file sets in bold."""
 
     def own(key: LimitKey) -> bool:
         return key.departs or key.default is None
@@ -403,7 +404,7 @@ def _value(key: LimitKey, value: float | None) -> str:
 
 
 def _in_short(source: str) -> str:
-    """Return the name of a limit's source without quotations."""
+    """Shorten the source of a limit to its name, without quotations."""
     head = re.split(r"[:;]", source)[0]
     return head if len(head) <= 45 else head.split(",")[0]
 
@@ -413,8 +414,9 @@ _OF_SURFACE = ("safety_factor.surface", "minimum_reserve")
 
 
 def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
-    """Yield the limits that a rule has used; limits for waves or surface moorings are omitted if
-    they do not apply.
+    """Yield the limits that apply to the mooring.
+
+    Limits for waves and for surface moorings are omitted if there are none.
     """
     assessment = signed.assessment
     waves = any(one.leg.file.environment.waves for one in assessment.in_environments)
@@ -429,7 +431,7 @@ _MOST_LEVELS = 12
 
 
 def _environment(waters: dict[str, Water], tides: Sequence[tuple[float, float]]) -> Table:
-    """Tabulate the current by level or, for several environments, the strongest current of each."""
+    """Tabulate the current by level, or the strongest current of each of several environments."""
     if len(waters) > 1:
         rows = []
         for name, water in waters.items():
@@ -475,7 +477,7 @@ def _water_note(water: Water, tides: Sequence[tuple[float, float]]) -> str:
 
 
 def _history(file: MooringFile) -> Iterator[Table]:
-    """List all revisions if page one has no room for them."""
+    """Yield a table of all revisions if page one cannot show them all."""
     given = file.document
     if given is not None and len(given.history) > MOST_REVISIONS:
         first = words("Revision", "revision", 0.0), words("Date", "date", 0.0)

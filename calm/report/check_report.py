@@ -1,4 +1,4 @@
-"""Report of a design check: of one mooring, or a matrix and one page per mooring."""
+"""Report of a design check: several pages for one mooring, or a matrix and one page per mooring."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ _SIZE = 9.0
 
 @dataclass(frozen=True, kw_only=True)
 class CheckedSection(Section):
-    """Section of one mooring in the report of a design check, with its row in the summary."""
+    """Section on one mooring in the report of a design check, with its row of the matrix."""
 
     row: SummaryRow
 
@@ -40,9 +40,11 @@ def signed_mooring(assessment: Assessment) -> SignedMooring:
 def mooring_section(
     assessment: Assessment, against: Comparison | None = None, page_size: str = "a4"
 ) -> CheckedSection:
-    """Build the pages of one mooring, which takes some tenths of a second.
+    """Build all pages on one mooring, which takes some tenths of a second.
 
-    `against` is a comparison of the mooring with its original design.
+    Parameters
+    ----------
+    against : comparison of the mooring with its original design
     """
     signed = signed_mooring(assessment)
     details = chain(
@@ -62,14 +64,13 @@ def _likelihood(assessment: Assessment) -> Iterator[Block]:
 
 
 def short_section(assessment: Assessment) -> CheckedSection:
-    """Build the single page of a mooring that follows the summary of many moorings."""
+    """Build the single page on a mooring, for a report that begins with the matrix."""
     signed = signed_mooring(assessment)
     parts = tuple(_pages([chain(mooring_page(signed), _likelihood(assessment))]))
     return CheckedSection(assessment.name, parts, signed.running(), row=summary_row(assessment))
 
 
 def _pages(pages: Iterable[Iterator[Block]]) -> Iterator[ReportPart]:
-    """Yield the report parts, one per page; empty pages are omitted."""
     full = [blocks_ for page in pages if (blocks_ := [*page])]
     for number, page in enumerate(full):
         yield _page([*([PageBreak()] if number else []), *page])
@@ -80,9 +81,7 @@ def _page(shown: Sequence[Block]) -> ReportPart:
 
 
 def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
-    """Build the report of a design check, which begins with a summary if there are several
-    moorings.
-    """
+    """Build the report of a design check; several moorings are summarised in a matrix first."""
     rows = [each.row for each in sections]
     if len(rows) == 1:
         name = sections[0].name

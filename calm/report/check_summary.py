@@ -1,7 +1,7 @@
 """Design check on a terminal: verdict, load cases, utilisations, open items, and exclusions.
 
-A mooring without failures takes at most `MOST_LINES` lines of 80 characters. Several moorings
-appear as a matrix of maximum utilisations.
+For a mooring without failures, the output is at most `MOST_LINES` lines of 80 characters. Several
+moorings appear as a matrix of maximum utilisations.
 """
 
 from collections.abc import Iterator, Sequence
@@ -41,14 +41,14 @@ from calm.report.page_one import case_columns, governing_rows, shown_cases
 MOST_LINES = 40
 """Maximum number of terminal lines for a mooring without failures."""
 _WIDTH = 80
-_FRAME = 7  # lines of the head, of what is beyond, around the items and below them
-_MOST_ITEMS = 12  # open items of a mooring that fails
-_MOST_ROWS = 10  # checks with a row of their own
-_HALF = 0.5  # of the capacity: what is used more has a row
+_FRAME = 7  # number of lines for the head, the exclusions, and the frame of the open items
+_MOST_ITEMS = 12  # largest number of open items for a mooring that fails
+_MOST_ROWS = 10  # largest number of checks with a row
+_HALF = 0.5  # utilisation from which a check has a row
 
 
 def check_part(assessments: Sequence[Assessment]) -> ReportPart:
-    """Build the summary of a design check; states are legible without colour."""
+    """Build the summary of a design check; signs show the states, so that colour is not needed."""
     if len(assessments) > 1:
         return ReportPart("", tuple(_of_many(assessments)))
     return ReportPart("", tuple(_of_one(assessments[0])))
@@ -93,7 +93,7 @@ def _verdict(assessment: Assessment) -> Line:
 
 
 def _apart(left: str, right: str) -> str:
-    """Format two texts at both ends of a line or, if this is too short, on two lines."""
+    """Place two texts at the two ends of a line, or on two lines if they do not fit."""
     gap = _WIDTH - len(left) - len(right)
     return f"{left}{' ' * gap}{right}" if gap > 1 else f"{left}\n{right}"
 
@@ -120,7 +120,7 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
-    """Describe a case in brief; later cases of the same environment do not repeat its name."""
+    """Describe a load case briefly; later cases of the same environment do not repeat its name."""
     if case.situation in (STILL, STILL_LOW):
         return case.situation
     own = brief = case.environment
@@ -134,9 +134,7 @@ def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
 
 
 def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
-    """Yield the table of checks with the largest utilisation, failures first, and one line about
-    the other checks.
-    """
+    """Yield the table of failures and largest utilisations, with a note on the other checks."""
     rows, rest = _rows([*assessment.every_finding()])
     if rows:
         yield blocks.table_of(
@@ -155,8 +153,9 @@ def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
-    """Summarise the utilisation of the checks that are not listed, and explain the case codes of
-    the rows above.
+    """Return the note below the table of checks.
+
+    It gives the largest utilisation of the checks that are not listed, and explains the case codes.
     """
     most = max((one.utilisation or 0.0 for one in rest), default=None)
     others = [f"all other checks: {percent_text(most)} % or less"] if rest else []
@@ -173,9 +172,7 @@ def _title(finding: Finding) -> str:
 
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
-    """Select the findings for the rows of the table; also return the governing findings of the
-    other rules.
-    """
+    """Select the findings for the table of checks, and the governing findings of other rules."""
     failed = governing_of_each_rule(one for one in every if one.state is State.FAIL)
     used = [one for one in governing_rows(every) if one not in failed]
     most = [one for one in used if (one.utilisation or 0.0) >= _HALF or _is_open(one)]
@@ -214,13 +211,13 @@ def _where(finding: Finding) -> str:
 
 
 def _in_short(item: OpenItem) -> OpenItem:
-    """Shorten an open item by its long passages in brackets."""
+    """Remove long passages in brackets from an open item."""
     text = without_asides(item.text.replace("\u00a0", " "))
     return replace(item, head=item.head.replace("\u00a0", " "), text=text)
 
 
 def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> blocks.OpenItems:
-    """Select the items that fit into `room` lines, or the first `most` items."""
+    """Select the first `most` open items or, if None, as many as fit into `room` lines."""
     kept: list[OpenItem] = []
     for item in items:
         room -= len(wrap(f"{item.head} {item.text}", _WIDTH - 3))
@@ -235,7 +232,7 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
 
 
 def _height(block: blocks.Block) -> int:
-    """Estimate the number of terminal lines for a block, including the blank line before it."""
+    """Estimate the number of terminal lines of a block, including the blank line before it."""
     if isinstance(block, blocks.Table):
         heads = max(len(column.heading.split("\n")) + bool(column.unit) for column in block.columns)
         columns = zip(*block.rows, strict=True)
@@ -250,14 +247,14 @@ def _height(block: blocks.Block) -> int:
 
 
 def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
-    """Describe the effects that no check covers."""
+    """Return a sentence on the effects that no check covers."""
     waves = any(one.rule == "wave-slack" for one in findings)
     beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
     return (f"Not covered: {', '.join(beyond)}.",)
 
 
 def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
-    """Yield the matrix of maximum utilisations, then the open items of failing moorings."""
+    """Yield the matrix of maximum utilisations, then the open items of moorings that fail."""
     rows = [summary_row(each) for each in assessments]
     names, kept, codes = environments_of(rows)
     failing = [each for each in assessments if each.verdict is Conclusion.FAILS]

@@ -1,4 +1,4 @@
-"""Tables of the design check: findings, worst findings, and the verdict as text."""
+"""Tables of the design check: findings, limits and inventory, and texts that group findings."""
 
 import re
 from collections import Counter
@@ -25,7 +25,7 @@ def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Group findings of one rule that differ only in component and values.
 
-    Each missing value of a component is a group of its own.
+    Findings that lack the same value of a component form their own group.
     """
     return [*grouped_by(
         findings, lambda one: (one.rule, one.state, one.missing or _wording(one))
@@ -41,10 +41,9 @@ def _wording(finding: Finding) -> str:
 
 
 def named(labels: Iterable[str], most: int = 3) -> str:
-    """Join labels without repetition, such as ``glass 1 to 4, cable``.
+    """Join labels, with consecutive numbers as a range, such as ``glass 1 to 4, cable``.
 
-    Consecutive numbers count as one name. If there are more than `most` names, the number of
-    omitted labels follows.
+    A range counts as a single name. After `most` names, the number of omitted labels follows.
     """
     numbered: dict[str, list[int]] = {}
     for label in labels:
@@ -57,7 +56,7 @@ def named(labels: Iterable[str], most: int = 3) -> str:
 
 
 def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
-    """Yield a label such as "glass 1 to 4" and the length of each run of consecutive numbers."""
+    """Yield a label such as "glass 1 to 4" for each run of consecutive numbers, and its length."""
     each = sorted(set(numbers))
     for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]
@@ -66,15 +65,15 @@ def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
 
 
 def named_components(findings: Iterable[Finding]) -> str:
-    """Join the component labels of findings."""
+    """Join the labels of the components of findings."""
     return named(one.component or "whole line" for one in findings)
 
 
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
-    """Count parts by their worst state under each rule, for one or several moorings.
+    """Count the results of rules on components by state, for one or several moorings.
 
-    A missing value of a component counts once, and so does a cluster in which every float fails or
-    warns.
+    For each rule, the most severe state of a component counts. A missing value of a component
+    counts once. A cluster of equal floats counts once if every float fails or warns.
     """
     by_mooring = grouped_by(findings, attrgetter("mooring")).values()
     groups = (grouped_by(worst_by_part(each), counted_as).values() for each in by_mooring)
@@ -86,8 +85,10 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """Return the key under which findings are counted once: findings with a state in `GRAVE` on
-    equal pieces of one file row, such as a cluster of floats.
+    """Return a key that is equal for findings that are counted together.
+
+    Findings with a state in `GRAVE` are counted together for equal pieces from one row of the file,
+    such as a cluster of floats.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -97,7 +98,7 @@ def counted_as(finding: Finding) -> tuple[Hashable, ...]:
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
-    """Tabulate limits with defaults and sources; changed limits come first."""
+    """Tabulate limits with their defaults and sources, beginning with the changed limits."""
     departs = Cell("changed", state=State.WARN)
     return table_of(
         title,
@@ -113,14 +114,15 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def component_text(name: str, units: int) -> str:
-    """Format the name of a component, with its number of units if it has several, such as a pair of
-    releases.
+    """Format the name of a component, and its number of units if it has several.
+
+    An example is a pair of releases.
     """
     return f"{name}, {units} units each" if units > 1 else name
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
-    """Tabulate number and quantity of each component, with an empty column for spares."""
+    """Tabulate number and amount of each component, with an empty column for spares."""
     note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
     if any(item.dry_mass is None for item in items):
         note += " ≥ marks a lower bound without the unknown masses: do not plan lifts by it."
@@ -150,8 +152,9 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
 
 
 def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
-    """Sum the known values, and return the number of unknown ones; a sum of masses is a lower
-    bound.
+    """Format the sum of the known values of items, with the number of unknown ones.
+
+    A sum of masses with unknown values is marked as a lower bound.
     """
     if name == "cut_length":
         items = [each for each in items if each.kind in FLEXIBLE_KINDS]

@@ -1,4 +1,4 @@
-"""Components of the catalogue as a list, as cards and as JSON, and their missing values."""
+"""Components of the catalogue as a list, as cards and as JSON, with their missing values."""
 
 import re
 from collections import Counter
@@ -28,7 +28,7 @@ _HEADING_OF_OTHERS = "other"
 
 
 def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportPart:
-    """Return one line for each definition, under the name of its product family."""
+    """Build a table with one line per definition, grouped by product family."""
     rows: list[Any] = []
     last = None
     for identifier, definition in definitions.items():
@@ -74,10 +74,10 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
 
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
-    """Create the card of a definition: all values in display units, and their source.
+    """Create the card of a definition, with all values in display units and their source.
 
-    Derived values follow the specified ones. If several definitions of the catalogue describe the
-    same product, the card ends with their differences, and which one to use.
+    Derived values follow the specified values. If the catalogue has several definitions of the same
+    product, the card ends with a comparison that recommends the best definition.
     """
     following = _following(datasheet(definition, catalogue), _per_metre(definition))
     pairs = Pairs((*_figures(definition), *following))
@@ -87,10 +87,10 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
 
 
 def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
-    """Return JSON objects: `id`, `family` and every field (SI or degrees, None if absent).
+    """Return JSON objects with `id`, `family` and every field (SI or degrees, None if absent).
 
-    `derived` contains derived values, `same_thing` the ids that describe the same product,
-    preferred one first.
+    `derived` contains derived values. `same_thing` lists the ids of definitions of the same
+    product, the preferred one first.
     """
     return [
         {"id": identifier, "family": _family(catalogue, identifier)}
@@ -121,7 +121,7 @@ def _figures(definition: Defined) -> Iterator[tuple[str, str]]:
 
 
 def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
-    """Yield derived values of a component, in display units."""
+    """Yield the name and the text of derived values of a component, in display units."""
     if sheet is None:
         return
     yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
@@ -136,7 +136,7 @@ def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, s
 
 
 def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
-    """Compare the definitions of one product, and their range of values."""
+    """Tabulate the definitions of one product, with the smallest and the largest values."""
     defined = {each: catalogue.get(each) for each in same}
     sheets = {
         identifier: sheet
@@ -189,7 +189,7 @@ def _say(definition: Defined, name: str) -> str:
 
 
 def _text(name: str, value: Any) -> str:
-    """Format a field in one line, with units; nested values are put in brackets."""
+    """Format a field in one line with its unit; nested values are in brackets."""
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
     if isinstance(value, EstimatedFigure):
@@ -204,7 +204,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def in_words(missing: MissingFigures) -> str:
-    """Describe the missing values of a component; values known to be unpublished come last."""
+    """List the missing values of a component, ending with values known to be unpublished."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"lacks {', '.join(open_yet)}"] if open_yet else []
@@ -213,7 +213,7 @@ def in_words(missing: MissingFigures) -> str:
 
 
 def summarised(missing: Sequence[MissingFigures]) -> str:
-    """Return the number of components with missing values, and the number for each value."""
+    """Return a sentence on how many components lack values, and how many lack each value."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack values: {figures}"
@@ -222,8 +222,9 @@ def summarised(missing: Sequence[MissingFigures]) -> str:
 def to_objects(
     findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
 ) -> list[dict[str, Any]]:
-    """Return JSON objects of the findings, followed by those of missing values: `id`, `finding`,
-    `message`, `missing`, `searched`.
+    """Return JSON objects of catalogue findings, followed by findings on missing values.
+
+    The keys are `id`, `finding`, `message`, `missing` and `searched`.
     """
     wrong = [(one.id, True, one.message, (), ()) for one in findings]
     lacking = [(one.id, False, in_words(one), one.figures, one.searched) for one in missing]

@@ -1,4 +1,4 @@
-"""Deck documents of one mooring: printed pages, and sheets as spreadsheet files."""
+"""Deck documents of one mooring, as printed pages and as spreadsheet files."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -23,12 +23,12 @@ Rows = Iterable[Sequence[object]]
 
 
 def deck_csvs(deck: Deck) -> dict[str, str]:
-    """Return the CSV text of each sheet, by sheet name (UTF-8, SI units, empty if unknown)."""
+    """Return the CSV text of each sheet by file name (UTF-8, SI units, empty if unknown)."""
     return {f"{name}.csv": table_csv(*sheet) for name, sheet in deck_sheets(deck).items()}
 
 
 def deck_workbook(deck: Deck) -> bytes:
-    """Write the sheets into one Excel workbook, with units in the headings, ready to print.
+    """Write the sheets into one Excel workbook that is ready to print, with units in the headings.
 
     Texts are stored as texts, even if they begin with a formula sign; the date of the workbook is
     `provenance.moment`.
@@ -141,7 +141,11 @@ _INDEX: dict[str, Callable[[Any], int]] = {
 
 
 def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
-    """Return the header and the rows of a sheet."""
+    """Return the header and the rows of a sheet.
+
+    `columns` lists headings. If an attribute has another name than its heading, ``=`` and the name
+    follow the heading.
+    """
     named = [column.partition("=") for column in columns.split()]
     heads = [head for head, _, _ in named]
     numbered = int(named[0][1:] == ("=", ""))
@@ -155,10 +159,10 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
 
 
 def deck_report(deck: Deck, page_size: PageSize, notes: tuple[str, ...] = ()) -> Report:
-    """Build the report: diagram, deployment log, lists, drop plan, and the recovery log on a new
-    sheet.
+    """Build the printed deck documents of a mooring.
 
-    `notes` are added to the warnings on the first sheet.
+    They contain the diagram, the deployment log, lists, the drop plan and, on a new sheet, the
+    recovery log. `notes` are added to the warnings on the first sheet.
     """
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if warnings := warned((*deck.notes, *notes)):
@@ -197,7 +201,7 @@ def net_svg(deck: Deck) -> str:
 
 
 def diagram_report(deck: Deck, page_size: PageSize) -> Report:
-    """Build a report of the mooring diagram alone."""
+    """Build a report that contains only the mooring diagram."""
     return Report(
         deck.file.name, "mooring diagram", (), (), provenance.date(), plates(deck, page_size)
     )

@@ -1,4 +1,4 @@
-"""Cutting list, hardware bill, shipping list, lifts and instrument sheet."""
+"""Lists for the deck: cutting, hardware, shipping, lifts and instruments."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
@@ -29,7 +29,7 @@ _BOX = "☐"
 
 
 def cutting_part(deck: Deck) -> ReportPart:
-    """Build the cutting list: lengths, marks, and their tolerances."""
+    """Build the cutting list, with lengths, marks, and their tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
         f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: effect "
@@ -48,7 +48,7 @@ def cutting_part(deck: Deck) -> ReportPart:
 
 
 def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blocks.Table:
-    """Tabulate pieces to cut, with their marks; only wires and ropes have columns for the drum."""
+    """Tabulate the pieces to cut, with their marks; only wires and ropes have drum columns."""
     spooled = not listed[0].is_chain
     rows: list[Any] = []
     kinds = {one.label: one for one in deck.parts}
@@ -82,7 +82,7 @@ def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blo
 
 
 def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
-    """Create the row for pieces of equal cut length."""
+    """Create the row for a group of pieces with equal cut length."""
     cut, last, length = cuts[0], cuts[-1], QUANTITIES["length"]
     many = f"{len(cuts)} × " if len(cuts) > 1 else ""
     load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
@@ -100,7 +100,7 @@ def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
 
 
 def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
-    """List the positions of marks for equal clamps, and the items that are clamped there."""
+    """List the marks for equal clamps on a piece, and the items to clamp there."""
     marks = [*alike]
     places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
@@ -109,7 +109,7 @@ def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
 
 
 def _length() -> Field:
-    """Create a column of lengths, empty for items that have none."""
+    """Create a column of lengths, with empty cells for items without a length."""
     shown = QUANTITIES["length"]
 
     def text(one: Any) -> str | None:
@@ -143,7 +143,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 
 def shipping_part(deck: Deck) -> ReportPart:
-    """Build the shipping list; each sum states the number of missing values."""
+    """Build the shipping list; each sum is followed by the number of unknown values."""
 
     def at_least(heading: str, name: str, value: str, missing: str) -> Field:
         shown = QUANTITIES[name]
@@ -181,7 +181,7 @@ def shipping_part(deck: Deck) -> ReportPart:
 
 
 def lifts_part(deck: Deck) -> ReportPart:
-    """Build the table of lifts, the stages of deployment and recovery."""
+    """Build the table of lifts for deployment and recovery, and a summary of the heaviest lifts."""
     sentences, heaviest, unknown = [], deck.lifts.heaviest, deck.lifts.unknown
     if heaviest is not None:
         of_known = " of known mass" if unknown else ""
@@ -209,7 +209,7 @@ def lifts_part(deck: Deck) -> ReportPart:
 
 
 def _stages(deck: Deck) -> blocks.Table:
-    """Tabulate each lift once, with the suspended loads during deployment and recovery."""
+    """Tabulate each lift once, with the load suspended during deployment and during recovery."""
     joints = {one.label for one in deck.parts if one.is_joint}
     recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(
@@ -226,8 +226,9 @@ def _stages(deck: Deck) -> blocks.Table:
 
 
 def instruments_part(deck: Deck) -> ReportPart:
-    """Build the instrument sheet: every instrument, float or frame that holds one, and release, its
-    depth, and its data from the file.
+    """Build the instrument sheet, with depths, tilts and further data from the file.
+
+    It lists every release and every instrument, and floats or frames that hold an instrument.
     """
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
     planned = any(one.item.planned_depth is not None for one in deck.instruments)

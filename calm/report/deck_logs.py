@@ -33,9 +33,7 @@ _LEAST = 9.0
 
 
 def deployment_part(deck: Deck) -> ReportPart:
-    """Build the deployment log: preparations, order of deployment over the side, and anchor
-    position.
-    """
+    """Build the deployment log: preparations, soundings, anchor position, order over the side."""
     last = deck.order is Order.ANCHOR_LAST
     sentences = (
         ("Anchor-last deployment: the top" if last else "Anchor-first deployment: the lower end")
@@ -65,7 +63,7 @@ def deployment_part(deck: Deck) -> ReportPart:
 
 
 def recovery_part(deck: Deck) -> ReportPart:
-    """Build the recovery log: release events, and the order of surfacing."""
+    """Build the recovery log, with the release events and the order of surfacing."""
     rise = deck.rise
     sentences = []
     if deck.result.several:
@@ -127,7 +125,7 @@ _FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
 def _station(deck: Deck, day: str) -> Table:
-    """Create the station table; values that are not in the file are filled in by hand."""
+    """Create the station table; values missing in the file are left blank."""
     document = deck.file.document
     known = {
         "ship": document.ship if document else None,
@@ -144,7 +142,7 @@ def _station(deck: Deck, day: str) -> Table:
 
 
 def _deployed(deck: Deck) -> tuple[str, str, str]:
-    """Format date, position and depth of the deployment; "" if unknown."""
+    """Format date, position and water depth of the deployment; each is "" if unknown."""
     deployed = deck.file.deployed
     if deployed is None:
         return "", "", ""
@@ -154,8 +152,9 @@ def _deployed(deck: Deck) -> tuple[str, str, str]:
 
 
 def placed(items: Sequence[DeckItem], deck: Deck) -> str:
-    """Format clamp positions from the upper end of the piece; for an anchor-first deployment, also
-    from the lower end.
+    """Format clamp positions, measured from the upper end of the piece.
+
+    For an anchor-first deployment, positions from the lower end follow.
     """
     places = [at for one in items for at in one.places]
     if not places:
@@ -173,14 +172,14 @@ def _span(values: Sequence[float]) -> str:
 
 
 def _numbers(row: DeckRow, deck: Deck) -> str:
-    """Return the item numbers in a row, which are the same on all sheets."""
+    """Return the item numbers of a row, which are the same on all sheets."""
     return run_of([deck.numbers[one.label] for one in (*row.items, *row.floats, *row.joints)])
 
 
 def _piece(row: DeckRow, order: Order = Order.ANCHOR_LAST) -> Cell:
-    """Format label and name of a row, with its connecting hardware.
+    """Format label and name of a row, and its connecting hardware.
 
-    Hardware follows the item; the end of a piece is stated if clamps are listed in between.
+    The end of the piece at which the hardware sits is stated if clamps are listed in between.
     """
     joints = hardware_text(row.joints)
     detail = f"{row.name}; with {joints}" if joints else row.name
@@ -190,7 +189,7 @@ def _piece(row: DeckRow, order: Order = Order.ANCHOR_LAST) -> Cell:
 
 
 def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
-    """Tabulate the releases with their codes, and the checks with boxes or writing space."""
+    """Tabulate the releases with their codes, and with a box or writing space for each check."""
     codes = {one.serial: "\n".join(one.code_lines) for one in deck.file.releases}
     rows = []
     for part in deck.parts:
@@ -245,7 +244,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
 
 def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str, list[DeckItem]]]:
-    """Split a list by legs, each under its title."""
+    """Split a list by legs, and give the list of each leg a title."""
     legs = leg_titles(deck.result)
     return [
         (f"{title}: {legs[name]}" if name else title, own)
@@ -310,8 +309,9 @@ def _surfacing(deck: Deck) -> list[Table]:
 
 
 def _expected(items: Sequence[RecoveredItem]) -> Cell:
-    """Format the times at which the first and the last item surface, or the depth of items that
-    stay below.
+    """Format the expected times of surfacing of the first and the last item.
+
+    Items that stay below the surface have a depth instead.
     """
     sentences = []
     for one in (items[0], items[-1]):

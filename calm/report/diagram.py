@@ -33,7 +33,7 @@ _CONTINUED = 16.0  # height of a continuation mark
 _SKY, _MAST, _SUBMERGED = 7.0, 26.0, 11.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
-_EVEN = 0.7  # of the first column: how far down the last one reaches at least, where it can
+_EVEN = 0.7  # smallest length of the last column, if possible, as a fraction of the first
 
 
 class PageSize(StrEnum):
@@ -65,10 +65,10 @@ class PageSize(StrEnum):
 
 @dataclass(frozen=True)
 class _PageColumn:
-    """One column of a page: its parts, its connections to the columns before and after, and its
-    leg.
+    """A column of the diagram: its parts, the texts at its two ends, and its leg.
 
-    `above` and `below` are None if the line ends in the sea or on the seabed.
+    `above` and `below` are the texts on the connections to other columns. They are None if the line
+    ends in the sea or on the seabed.
     """
 
     parts: tuple[PlacedPart, ...]
@@ -88,9 +88,10 @@ _Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
 
 
 class _Diagram:
-    """Pages of a diagram: its columns in reading order, and the other contents of each page.
+    """Layout of a mooring diagram on pages.
 
-    A column contains one or several legs, each with a vertical offset.
+    The columns are in reading order. Each contains one or several legs, each with a vertical
+    offset.
     """
 
     def __init__(self, deck: Deck, page_size: PageSize) -> None:
@@ -114,7 +115,7 @@ class _Diagram:
         self.column = column = schematic.column_of(rows, headings, page_size.column_width)
         drawn = (one for part in parts for one in (part.cable, part.sign.symbol) if one)
         self.legend = tuple(dict.fromkeys(drawn))
-        sets = (  # long cables are drawn shorter where that saves a page
+        sets = (  # long cables are drawn shorter if that saves a page
             [
                 (line, schematic.measured(leg, column, growth))
                 for line, leg in zip(lines, legs, strict=True)
@@ -125,10 +126,10 @@ class _Diagram:
         self.count = -(-len(self.columns) // page_size.columns)
 
     def _even(self, legs: Sequence[tuple[LegResult, Sequence[PlacedPart]]]) -> _Stacks:
-        """Fill the columns of all legs evenly: parts move to the last column until it is as long as
-        the first.
+        """Distribute the parts of all legs evenly over the columns.
 
-        Below its last part there is room for the seabed and the legend, above the title block.
+        Parts move to the last column until it is about as long as the first. Below the last part
+        there must be room for the seabed and the legend, above the title block.
         """
         need = _GROUND + LEADING - (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
         lowest = self.bottom
@@ -151,7 +152,7 @@ class _Diagram:
             lowest -= 2 * LEADING
 
     def _stacked(self, columns: Iterable[_PageColumn]) -> _Stacks:
-        """Stack the legs of a net in as few columns as fit above the title block."""
+        """Stack the legs of a net above the title block, in as few columns as possible."""
         found: list[list[tuple[float, _PageColumn]]] = []
         down = 0.0
         for one in columns:
@@ -164,7 +165,7 @@ class _Diagram:
         return tuple(map(tuple, found))
 
     def fill(self, page: Pen, number: int) -> None:
-        """Draw a page: title, columns and title block, with the legend on the last page."""
+        """Draw a page with its title, columns and title block; the last page has the legend."""
         width = self.page_size.size[0] - 2 * _MARGIN
         page.write(_MARGIN, _MARGIN + 0.4 * _TITLE, self.title, width, size=_TITLE, bold=True)
         first = number * self.page_size.columns
@@ -195,7 +196,7 @@ class _Diagram:
             self._draw_continued(page, left, end, one.below)
 
     def _draw_continued(self, page: Pen, left: float, top: float, words: str) -> None:
-        """Draw the mark of an interrupted line; both ends carry the same letter."""
+        """Draw the mark at one end of an interrupted line, with the letter that both ends carry."""
         x, text = left + self.column.line_at, left + self.column.text[0]
         page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
         page.draw(
@@ -222,8 +223,9 @@ class _Diagram:
             page.letters(x + 18.0, y, symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
-        """Draw the framed fields of the title block, blank if unknown; `sheet` is a text such as "2
-        of 5".
+        """Draw the title block, with blank fields for unknown values.
+
+        `sheet` is a text such as "2 of 5".
         """
         step, y = (self.page_size.size[0] - 2 * _MARGIN) / _COLUMNS[self.page_size], self.bottom
         for row in self.fields:
@@ -244,7 +246,7 @@ def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     """Draw the pages of the diagram as SVG pictures in final size; no text is smaller than 8 pt.
 
     Pages end above a junction if one is near the page end, else between two pieces, else between
-    two clamps. Where a line continues, both ends carry the same letter. Long texts wrap and are
+    two clamps. If a line is interrupted, both ends carry the same letter. Long texts wrap and are
     never cut. The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, page_size)
@@ -269,12 +271,12 @@ _TOP = _MARGIN + _TITLE_ROOM + HEAD
 def _columns(
     line: LegResult, parts: Sequence[PlacedPart], lowest: float, marks: Iterator[str]
 ) -> Iterator[_PageColumn]:
-    """Return the columns of a line or a leg in reading order.
+    """Yield the columns of a line or a leg in reading order.
 
     Parameters
     ----------
     lowest : lower limit of a column [pt]
-    marks : letters of the interruptions of a line
+    marks : letters for the interruptions of a line
     """
     afloat, (above, bottom) = line.type == "surface", end_descriptions(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
@@ -304,7 +306,7 @@ _Fields = tuple[tuple[str, tuple[str, ...]], ...]
 
 
 def _fields(deck: Deck, page_size: PageSize) -> list[_Fields]:
-    """Return the rows of a mooring's title block, without the page number."""
+    """Return the rows of the title block, without the page number."""
     environment = DEFAULT_ENVIRONMENT if deck.environment == OWN else deck.environment
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
     columns = _COLUMNS[page_size]

@@ -1,4 +1,4 @@
-"""Page 2 of a design check: drawing of the mooring from the top to the anchor, one row per part."""
+"""Page 2 of a design check: drawing of the mooring from top to anchor, with one row per part."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import ceil
@@ -15,8 +15,11 @@ from calm.report.page_one import SignedMooring, afloat, drawn_parts
 from calm.report.sheet import leg_title
 
 _SHEET = {"a4": 688.0, "letter": 648.0}
-"""Height available for the rows of a drawing [pt], by paper size."""
-_WORDS, _DEPTHS = 322.0, 38.0  # width of the words of a row with the depths, and of a depth
+"""Height available for the rows of a drawing [pt], by page size."""
+_WORDS, _DEPTHS = (
+    322.0,
+    38.0,
+)  # width of the text of a row together with its depths, and of one depth
 _LINE_HEIGHT = 9.6
 _BOLD, _REGULAR, _WRAPPED = 0.70, 0.77, 1.08
 """Estimated text width as a ratio to the bound of `text_width`: bold and regular type; and, for
@@ -26,9 +29,7 @@ _SEA_ROW = 16.0
 
 
 def drawing_pages(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield the mooring drawing from the top to the anchor, one row per part, on one or more
-    sheets.
-    """
+    """Yield the drawing of the mooring from top to anchor, on one or more sheets."""
     if not signed.standing:
         return
     numbers = item_numbers(*signed.standing[0].results)
@@ -121,7 +122,7 @@ def _length(items: Sequence[DeckItem], given: str) -> str:
 
 
 def _buoyancy(force: float) -> str:
-    """Format a net buoyancy with its sign; no sign if it rounds to zero."""
+    """Format a net buoyancy with its sign, or without a sign if it rounds to zero."""
     text = load_text(force)
     return f"+{text}" if force > 0.0 and text.strip("0.") else text
 
@@ -141,8 +142,9 @@ def _end_row(picture: str, name: str, depth: str, cases: int, planned: bool) -> 
 def _row(
     part: ShownPart, width: float, *, first: bool, last: bool
 ) -> tuple[float, tuple[Cell, ...]]:
-    """Return the height and cells of a row; `width` is that of its text column. Junctions are in
-    small type.
+    """Return the height and the cells of a row; junctions are in small type.
+
+    `width` is the width of the column with the name.
     """
     (row,) = part.rows
     height = max(row_height(part), _LINE_HEIGHT * _lines(row, part, width) + 3.0)
@@ -158,7 +160,7 @@ def _row(
 
 
 def _lines(row: TextRow, part: ShownPart, width: float) -> int:
-    """Return the number of lines that the text of a row needs in a given width."""
+    """Return the number of lines that the text of a row takes in a given width."""
     if part.junction:
         needed = _REGULAR * text_width(row.label, 8.0)
     else:
@@ -170,7 +172,7 @@ def _lines(row: TextRow, part: ShownPart, width: float) -> int:
 def _broken(
     heights: Sequence[float], breaks: Sequence[int], room: float
 ) -> Iterator[tuple[int, int]]:
-    """Yield the rows of each sheet; a sheet ends above a junction if one is near its foot."""
+    """Yield the first and last row of each sheet, which ends above a junction if possible."""
     begin = 0
     while begin < len(heights):
         end, used = begin, 0.0

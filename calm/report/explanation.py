@@ -1,7 +1,7 @@
-"""Report on an explained mooring: its weights, the causes of its knockdown, and the effect of
-changes.
+"""Reports that explain a mooring.
 
-Formats the facts of a result, an explanation, a sizing, and a comparison of two designs.
+They cover the mass and ascent of a mooring, the causes of its knockdown, the change that meets a
+target, and the comparison of two designs.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """Describe the ascent of a mooring after release, and its mass, each under a title."""
+    """Describe the ascent of a mooring after release, and its mass; each text has a name."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -57,7 +57,7 @@ def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
 
 
 def _rise(result: LegResult) -> str:
-    """Describe the rise of a line; "" for a surface mooring, or without a solution."""
+    """Describe the ascent of a line; "" for a surface mooring, or without a solution."""
     with suppress(NoEquilibrium):
         rise = recovery_of(result.leg, result)
         if rise.time_to_surface is None:
@@ -71,7 +71,7 @@ def _rise(result: LegResult) -> str:
 
 
 class _Shown(NamedTuple):
-    """A value to print: its name in `Figures`, heading, quantity, unit and scale."""
+    """A value to print: its name in `Figures`, and its heading, quantity, unit and scale."""
 
     name: str
     heading: str
@@ -80,21 +80,18 @@ class _Shown(NamedTuple):
     scale: float = 1.0
 
     def decimals(self, whole: float) -> int:
-        """Number of decimals of the quantity, or more if the total would have fewer than three
-        digits.
-        """
+        """Return the number of decimals that gives the total (`whole`) at least three digits."""
         usual = QUANTITIES[self.quantity].decimals if self.scale == 1.0 else 1
         if whole == 0.0:
             return usual
         return max(usual, min(2 - floor(log10(abs(whole * self.scale))), 4))
 
     def text(self, figures: Figures) -> str:
-        """Format the value."""
         value = getattr(figures, self.name)
         return f"{value * self.scale:z.{self.decimals(value)}f}"
 
     def growth(self, now: Figures, then: Figures | None) -> str:
-        """Format the increase of the value relative to another value."""
+        """Format the change of the value from `now` to `then`."""
         before, after = getattr(now, self.name), then and getattr(then, self.name)
         if after is None:
             return "-"
@@ -118,10 +115,10 @@ _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
 
 
 def explanation_part(explanation: Explanation) -> ReportPart:
-    """Report the contributions of the drag forces, and the effects of changed inputs.
+    """Report the contribution of each drag force, and the effects of changed inputs.
 
-    Drag forces with very small shares are combined in one row; the JSON document lists each. Fits
-    80 columns.
+    The report fits 80 columns. Drag forces with very small shares are combined in one row; the JSON
+    document lists each.
     """
     wholes = [
         f"{name} ({_COLUMNS[name].text(explanation.figures)} m)"
@@ -223,7 +220,7 @@ def sizing_part(sizing: Sizing) -> ReportPart:
 
 
 def refusal(sizing: Sizing) -> str:
-    """Return one line with the reason why a target is not met, and advice."""
+    """Return one line with the reason why a target is not met, and the advice."""
     return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
 
 
@@ -265,7 +262,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
 
 
 def _place_name(trial: Trial) -> str:
-    """Return the label of the part in a net whose depth and excursion are shown."""
+    """Return the label of the part whose depth and excursion are shown."""
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)
     return next((part.label for part in parts if part.place == trial.place), parts[0].label)
@@ -301,7 +298,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
 def _figures(
     title: str, names: tuple[str, str], figures: Sequence[Compared], *, all_rows: bool = False
 ) -> Table:
-    """Tabulate the values of two designs side by side, and give the number of unchanged values."""
+    """Tabulate the values of two designs side by side; a note counts the unchanged rows."""
     rows = [_figure(one) for one in figures]
     shown = [row for row in rows if all_rows or row[2].text != row[3].text]
     same = len(rows) - len(shown)
@@ -336,7 +333,7 @@ def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
 
 
 def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
-    """Format a value; for an unknown margin, the state of its rule."""
+    """Format a value; an unknown value is replaced by the state of its rule, or a dash."""
     if isinstance(value, str):
         return value
     if value is None or quantity is None:

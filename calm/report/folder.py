@@ -1,4 +1,6 @@
-"""Report files and folders: checked before any computation, and written completely or not at all.
+"""Files and folders of reports.
+
+They are checked before any computation, and written completely or not at all.
 
 PDF files are typeset by typst.
 """
@@ -26,10 +28,10 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 
 
 def check_folder(folder: Path) -> None:
-    """Raise an exception if a folder cannot be written, before any computation.
+    """Raise UsageError if a folder cannot be written.
 
-    Raises UsageError if the path, or the nearest existing parent, is not a folder or is not
-    writable, or if a new folder would have the suffix of a file.
+    Call this before any computation. The reasons are that the path, or its nearest existing parent,
+    is not a folder or is not writable, or that a new folder would have the suffix of a file.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -57,7 +59,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
     All files are written under temporary names first, then renamed. If a rename fails or the
     program is interrupted, the previous report is restored completely. No temporary file remains.
-    Raises UsageError with the file and the reason if the system rejects a file.
+    Raise UsageError with the file and the reason if the system rejects a file.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
     kept = {name: folder / f".{name}-{os.getpid()}.old" for name in files}
@@ -90,7 +92,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def write_pages(folder: Path, name: str, report: Report) -> None:
-    """Write a report as HTML page and PDF with a given base name, as a set like `write_report`."""
+    """Write a report as NAME.html and NAME.pdf, as a set like `write_report`."""
     files = {f"{name}.html": page(report).encode(), f"{name}.pdf": printed(report)}
     write_report(folder, files)
 
@@ -105,9 +107,10 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 
 
 def check_destination(path: Path) -> None:
-    """Raise an exception if a file cannot be written, before any computation.
+    """Raise UsageError if a file cannot be written.
 
-    Raises UsageError if the folder does not exist, or if the file or its folder is not writable.
+    Call this before any computation. The reasons are that the path is a folder, that its folder
+    does not exist, or that the file or its folder is not writable.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):
@@ -119,9 +122,9 @@ def check_destination(path: Path) -> None:
 
 
 def write_file(path: Path, content: bytes) -> None:
-    """Write a file atomically: readers see either the old content or the new.
+    """Write a file atomically, so that readers see either the old content or the new.
 
-    Devices and pipes are written directly, and symbolic links are preserved. Raises UsageError if
+    Devices and pipes are written directly, and symbolic links are preserved. Raise UsageError if
     the system rejects the file, e.g. because the disk is full; the old file is then unchanged.
     """
     try:
@@ -136,7 +139,7 @@ def write_file(path: Path, content: bytes) -> None:
 def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
     """Typeset a report as PDF; its texts are passed to the template as data, never as markup.
 
-    Equal reports give equal bytes: fonts come from the package, and the only date is that of
+    Equal reports give equal bytes, as the fonts come from the package and the only date is that of
     SOURCE_DATE_EPOCH. Characters that the fonts lack appear as �.
 
     Parameters
@@ -159,15 +162,15 @@ def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None 
 
 
 def pdf_leaf(part: Report | Section) -> str:
-    """Convert a report or a section to the JSON text for the PDF template."""
+    """Convert a report or a section to JSON text for the PDF template."""
     text = legible(json.dumps(part, default=_members, ensure_ascii=False))
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _members(part: Any) -> dict[str, Any] | str:
-    """Convert a part of the report to a dictionary with its kind, for the PDF template.
+    """Convert an object of a report to a dictionary with its kind, for the PDF template.
 
-    A section is reduced to its printed members, and a cell with text only becomes that text.
+    A section is reduced to its printed members, and a cell without further attributes to its text.
     """
     if isinstance(part, Cell):
         text, *more = vars(part).values()

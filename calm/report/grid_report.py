@@ -1,4 +1,4 @@
-"""Report of gridded records: correlation scales, sections over time, and a description."""
+"""Report on gridded records: correlation scales, sections over time, and a description."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,7 +18,7 @@ from calm.report.provenance import report_of
 from calm.report.read_card import card_blocks
 from calm.version import __version__
 
-_WIDTH, _HEIGHT, _SIZE = 7.4, 2.3, 7.0  # inches, inches, points of the letters
+_WIDTH, _HEIGHT, _SIZE = 7.4, 2.3, 7.0  # size [in], font size [pt]
 _READ = (
     "Lines are the depths of the instruments. Pale areas are flagged as doubtful: they lie beyond "
     "the instruments, or in a gap that the record does not resolve. White means no value."
@@ -48,7 +48,7 @@ def grid_report(output: Path, record: GriddedRecord) -> Report:
 
 
 def grid_document(record: GriddedRecord) -> dict[str, Any]:
-    """Return the JSON object: scales of each quantity [m, s], and the data cards of the files."""
+    """Return the JSON object with the scales of each quantity [m, s] and the cards of the files."""
     return {
         "quantities": {
             name: {
@@ -64,7 +64,7 @@ def grid_document(record: GriddedRecord) -> dict[str, Any]:
 
 
 def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
-    """Build the report for a terminal."""
+    """Build the report on gridded records for a terminal."""
     return ReportPart("", (scales_table(fields),))
 
 
@@ -120,7 +120,7 @@ def _hours(field: GriddedQuantity) -> str:
 def _section(
     name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
-    """Draw a section of depth over time, with the deviation below it."""
+    """Draw a section of depth over time, and the standard deviation below it."""
     drawing = empty_figure(_WIDTH, 2 * _HEIGHT)
     drawing.subplots_adjust(0.08, 0.07, 0.98, 0.96, hspace=0.25)
     upper, lower = drawing.subplots(2, 1, sharex=True)

@@ -1,4 +1,4 @@
-"""Tables of the probability that a limit is exceeded, by design."""
+"""Tables of the probability with which designs exceed a limit."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import inf
@@ -16,9 +16,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """Tabulate the designs in order of decreasing maximum probability, if probabilities were
-    computed.
-    """
+    """Yield the table of probabilities, if any were computed; the most critical design is first."""
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):
@@ -51,7 +49,6 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
 
 def _place(finding: Finding) -> str:
-    """Name the environment of a finding and its situation."""
     changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
     return f"{finding.environment}{changed}"
 

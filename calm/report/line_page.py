@@ -25,7 +25,7 @@ from calm.report.page_one import SignedMooring
 
 
 def line_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the loading of each piece: the main line, hardware by type, and the anchor."""
+    """Yield the loads on the main line, on hardware by type, and on the anchor."""
     if not signed.standing:
         return
     loads = piece_loads(signed.assessment, signed.standing)
@@ -60,7 +60,10 @@ def _known(value: float | None) -> float | None:
 
 
 def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """Tabulate cables, instruments, floats, releases and the anchor; equal floats share a row."""
+    """Tabulate cables, instruments, floats, releases and the anchor.
+
+    Equal floats share a row.
+    """
     groups: list[list[PieceEnvelope]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
@@ -116,7 +119,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 
 def _floats(row: ComponentRow) -> bool:
-    """Whether a piece is a float, or a chain or cable with floats."""
+    """Return whether a piece is a float, or carries floats."""
     parts: tuple[Piece | Clamp, ...] = (row.part, *row.part.clamps)
     return any(part.component.role == "float" for part in parts)
 
@@ -127,8 +130,11 @@ _Show = Callable[[PieceEnvelope], object]
 def _most_used(
     group: Sequence[PieceEnvelope], when: Literal["standing", "launch"] = "standing"
 ) -> PieceEnvelope:
-    """Select the piece with the largest utilisation in equilibrium or during launch or, without
-    utilisations, with the largest tension.
+    """Select the piece with the largest utilisation, else the largest tension.
+
+    Parameters
+    ----------
+    when : in equilibrium ("standing") or during launch ("launch")
     """
 
     def used(one: PieceEnvelope) -> tuple[float, float]:
@@ -150,9 +156,7 @@ def _bar(finding: Finding | None) -> Cell | None:
 
 
 def _use(finding: Finding | None) -> Cell | None:
-    """Format the utilisation of a load, with a sign for the states accepted, warning, unknown and
-    failed.
-    """
+    """Format the utilisation of a load, with a sign unless its finding passes."""
     if finding is None:
         return None
     signs = {State.ACCEPTED: "○", State.UNKNOWN: "?", State.FAIL: "✗", State.WARN: "▲"}
@@ -162,9 +166,7 @@ def _use(finding: Finding | None) -> Cell | None:
 
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """Tabulate the hardware by type, with the most utilised pieces in equilibrium and during
-    launch.
-    """
+    """Tabulate hardware by type, with the most utilised piece in equilibrium and during launch."""
     groups = grouped_by(loads, lambda one: one.row.use).values()
     rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
@@ -195,7 +197,10 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
-    """Tabulate the anchor load of each case; for a net, the most severe case of each anchor."""
+    """Yield the table of anchor loads, with a row for each load case.
+
+    If there are several anchors or many cases, it has only the most severe case of each anchor.
+    """
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored
     ]

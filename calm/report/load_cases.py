@@ -1,7 +1,7 @@
-"""Load cases of a mooring, and the envelope of loads on its pieces.
+"""Load cases of a mooring, and the envelope of the loads on its pieces.
 
-A load case is a situation of an environment; in a net, it has a result for each leg. Values are
-followed by the code of their governing case, as in findings.
+A load case is a situation in an environment; in a net, it has a result for each leg. Values carry
+the code of their governing case, as in findings.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,19 +35,19 @@ LOAD = QUANTITIES["load"]
 
 
 def load_text(value: float | None) -> str:
-    """Format a force for print, with a true minus; a dash if unknown."""
+    """Format a force for print, with a typographic minus sign; a dash if unknown."""
     text = LOAD.format(value)
     return "–" if text == "-" else text.replace("-", "−")
 
 
 def length_text(value: float | None) -> str:
-    """Format a cut length for print; whole metres have no decimals."""
+    """Format a cut length for print, without decimals if it is in whole metres."""
     return QUANTITIES["length"].format(value).removesuffix(".00")
 
 
 @dataclass(frozen=True)
 class LoadCase:
-    """A mooring in an environment and a situation.
+    """A situation of a mooring in an environment.
 
     Attributes
     ----------
@@ -66,12 +66,11 @@ class LoadCase:
 
     @property
     def as_given(self) -> bool:
-        """Whether the load case has the environment of the file, without changes."""
+        """Whether the case has the environment of the file, without changes."""
         return self.situation == AS_GIVEN
 
     @property
     def words(self) -> str:
-        """Description of the load case."""
         name = DEFAULT_ENVIRONMENT.capitalize() if self.environment == OWN else self.environment
         if self.situation in (STILL, STILL_LOW):
             return self.situation.capitalize()
@@ -84,7 +83,7 @@ class LoadCase:
 
     @cached_property
     def rows(self) -> Mapping[str, ComponentRow | ClampRow]:
-        """All pieces and clamps by label."""
+        """Results of all pieces and clamps, by label."""
         every: list[ComponentRow | ClampRow] = []
         for result in self.results:
             for piece, clamps in rows_down(result):
@@ -93,18 +92,18 @@ class LoadCase:
 
     @property
     def depth(self) -> float:
-        """Minimum depth of all line tops [m]."""
+        """Minimum depth of the tops of all lines [m]."""
         return min(one.top.depth for one in self.results)
 
     @property
     def knockdown(self) -> float:
-        """Maximum knockdown of all line tops [m]; 0 if no knockdown is known."""
+        """Maximum knockdown of the tops of all lines [m]; 0 if none is known."""
         known = [one.top.knockdown for one in self.results]
         return max((one for one in known if one is not None and not isnan(one)), default=0.0)
 
     @property
     def offset(self) -> float:
-        """Maximum horizontal distance of all line tops from the anchor [m]."""
+        """Maximum horizontal distance of a line's top from its anchor [m]."""
         return max(hypot(one.top.x, one.top.y) for one in self.results)
 
     @cached_property
@@ -114,13 +113,13 @@ class LoadCase:
 
     @cached_property
     def factor(self) -> tuple[float, str] | None:
-        """Minimum safety factor, and the piece concerned; None if no safety factor is known."""
+        """Minimum safety factor, and the piece with this factor; None if no factor is known."""
         known = ((row.safety_factor, row.label) for row in self._pieces())
         return min((one for one in known if not isnan(one[0])), default=None)
 
     @cached_property
     def strength(self) -> tuple[float, str] | None:
-        """Maximum ratio of tension to allowable load, and the piece concerned."""
+        """Maximum ratio of tension to allowable load, and the piece with this ratio."""
         shares = []
         for result in self.results:
             leg = estimated(result.leg)
@@ -133,9 +132,7 @@ class LoadCase:
 
     @cached_property
     def anchor(self) -> tuple[float, str] | None:
-        """Maximum ratio of the required weight to the weight of an anchor, and the anchor
-        concerned.
-        """
+        """Maximum ratio of required to actual anchor weight, and the anchor with this ratio."""
         loads = [
             (one.anchor_load.required_weight / one.anchor_load.weight, one.file.pieces[-1].label)
             for one in self.results
@@ -145,7 +142,7 @@ class LoadCase:
 
     @cached_property
     def tilt(self) -> tuple[float, str] | None:
-        """Maximum tilt of an instrument, and the instrument concerned."""
+        """Maximum tilt of an instrument, and the instrument with this tilt."""
         tilts = (
             (row.tilt, label)
             for label, row in self.rows.items()
@@ -158,8 +155,9 @@ class LoadCase:
 
 
 def load_cases(assessment: Assessment) -> list[LoadCase]:
-    """List the load cases of a mooring: each environment as given and with its changes, and still
-    water once at the end.
+    """List the load cases of a mooring.
+
+    Each environment comes as given and with its changes; still water comes once, at the end.
     """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}
@@ -178,7 +176,7 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
 
 
 def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
-    """Select for each environment the case with the deepest top; still water is always kept."""
+    """Select the case with the largest knockdown in each environment; still water is kept."""
     kept: dict[str, LoadCase] = {}
     for one in cases:
         key = one.code if one.code.startswith("0") else one.environment
@@ -189,16 +187,17 @@ def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
 
 @dataclass(frozen=True)
 class PieceEnvelope:
-    """Loads on a piece in all cases, and its capacity.
+    """Extreme loads on a piece over all cases, and its strength.
 
     Attributes
     ----------
     number : number in the line, from 1
-    row : row of the piece in the first case
-    tension, case : maximum tension [N], and its case
+    row : results of the piece in the first case
+    tension, case : maximum tension [N], and the code of its case
     least, tilt : minimum tension [N] and maximum tilt [degrees]
     standing, launch : strength finding in equilibrium and during launch; None if not judged
-    launch_tension, rise_tension : maximum tension [N]; None if unknown
+    launch_tension, rise_tension : maximum tension during launch and during ascent [N]; None if
+        unknown
     """
 
     number: int
@@ -214,7 +213,7 @@ class PieceEnvelope:
 
 
 def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[PieceEnvelope]:
-    """Compute the load envelope of every piece, from the top to the anchor, leg by leg."""
+    """Compute the extreme loads on every piece, from the top to the anchor, leg by leg."""
     strong, falling = (found_on(assessment, name) for name in ("strength", "launch-strength"))
     launch, recovery = assessment.launch, assessment.recovery
     standing = [one for one in cases if one.results]
@@ -239,20 +238,19 @@ def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[Piece
 
 
 def _at(figures: np.ndarray, index: int) -> float | None:
-    """Return the value of a piece; None if there is none."""
     value = float(figures[index]) if index < len(figures) else float("nan")
     return None if isnan(value) else value
 
 
 def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
-    """Map component labels to the governing finding of a given rule."""
+    """Return the governing finding of a rule on each component, by component label."""
     found = (one for one in assessment.every_finding() if one.rule == rule)
     groups = grouped_by(found, lambda one: one.component)
     return {label: governing(group) for label, group in groups.items() if label is not None}
 
 
 def capacity_text(finding: Finding | None) -> str:
-    """Format the allowable load of a piece, with a sign for estimates; ? if no load is known."""
+    """Format the allowable load of a piece, ≈ for an estimate, ? if unknown, – if not judged."""
     if finding is None:
         return "–"
     sign = "≈\u00a0" if finding.state is State.ESTIMATED else ""

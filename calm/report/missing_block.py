@@ -1,4 +1,4 @@
-"""YAML block of the missing values that rules need, to be completed by the user."""
+"""YAML block with the missing values that rules need, to be completed by the user."""
 
 import json
 import re
@@ -31,9 +31,9 @@ Places = Mapping[str, Sequence[str]]
 
 
 def definition_places(paths: Iterable[Path]) -> Places:
-    """Find the definitions under `components:` of mooring files.
+    """Return the places where mooring files define components, by id.
 
-    Raises InputError if a file cannot be read.
+    A place is a text such as "line 12 of a.yaml". Raise InputError if a file cannot be read.
     """
     found: dict[str, list[str]] = {}
     for path in paths:
@@ -53,11 +53,11 @@ def missing_block(
 ) -> str:
     """Create the `components:` section of a mooring file, with the missing keys of each component.
 
-    Comments name the pieces, give the place of a definition in the file, and for each key an
-    example, its meaning, the checks that need it, and its class estimate if there is one. If a file
-    has a section `components:`, the block is made for it and has no heading of its own. Optional
-    keys follow as comments. If nothing is missing, or nothing can be checked, the text consists of
-    comments only.
+    For each component, comments name its pieces and locate its definition in the file. For each key
+    they give an example, the meaning, the checks that need it, and the estimate for the class of
+    component if there is one. Optional keys follow as comments. If a file already has a section
+    `components:`, the block has no heading, so that it can be pasted there. If nothing is missing,
+    or nothing can be checked, the text consists of comments only.
 
     Parameters
     ----------
@@ -86,8 +86,10 @@ def missing_block(
 
 
 def _optional_values(findings: Sequence[Finding], inventory: Sequence[InventoryItem]) -> str:
-    """List keys as comments: published values in place of estimates, values of checks that are not
-    judged without one, and masses in air; "" if there are none.
+    """List optional keys as comments; "" if there are none.
+
+    They are published values to replace estimates, values without which a check is not judged, and
+    masses in air.
     """
     use = {one.label: one.use for one in inventory}
     figures = [one.missing for one in findings if one.missing is not None]
@@ -127,9 +129,7 @@ def _as_key(id: str) -> str:
 
 
 def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
-    """Return instructions for completing the block: for components defined in the file, and for
-    components of a catalogue.
-    """
+    """Return instructions for components defined in the file, and for components of a catalogue."""
     defined = {id in places for id in ids}
     below = " and ".join(places.get("", ()))
     advice = ["Copy the keys of a component that the file defines into that definition."] * (
@@ -145,7 +145,7 @@ def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
 
 
 def _key(same: Sequence[MissingFigure]) -> list[str]:
-    """Yield the lines for a key that one or several moorings lack."""
+    """Return the lines for a key that is missing in one or several moorings."""
     first = same[0]
     field = KINDS[first.kind].model_fields[first.quantity]
     meaning = (field.description or "").partition(", e.g.")[0]

@@ -1,4 +1,4 @@
-"""Report of a mooring's motion: tables, JSON, and a page and a PDF with its drawings."""
+"""Report on the motion of a mooring: tables, JSON, and an HTML page and a PDF with drawings."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ def motion_report(
     notes: Sequence[str],
     cards: Sequence[ReadCard] = (),
 ) -> blocks.Report:
-    """Build the report; one page on the whole deployment precedes the details.
+    """Build the report, which begins with one page on the whole deployment.
 
     Parameters
     ----------
     series : series of the sensors
     time : times (n,)
     notes : notes on the input
-    cards : contents of each file read
+    cards : summary card of each file read
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -88,7 +88,7 @@ def motion_report(
 
 
 MOST_PANELS = 12
-"""Maximum number of sensors drawn; withheld sensors take precedence."""
+"""Maximum number of sensors drawn, of which withheld sensors take precedence."""
 
 
 def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple[str, ...]:
@@ -164,7 +164,7 @@ _DOUBTED = "“?” marks a diagnosis with an almost equally likely alternative 
 
 
 def health_table(study: MotionEstimate) -> Table:
-    """Tabulate the faults of each sensor; a dash if there are none."""
+    """Tabulate the faults of each sensor, or a dash."""
     found: dict[str, dict[str, str]] = {label: {} for label in study.sensors}
     faults = [*study.faults(of_line=False)]
     for one in faults:
@@ -185,8 +185,9 @@ def health_table(study: MotionEstimate) -> Table:
 
 
 def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
-    """Return the JSON of sensor faults: clock errors in [s], gains as factors, all other values in
-    [m].
+    """Return sensor faults as JSON objects.
+
+    Clock errors are in s, gains are factors, and all other values are in m.
     """
     documents = []
     for one in diagnosis:
@@ -216,8 +217,9 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: MotionEstimate) -> Table:
-    """Tabulate the agreement of the sensors with the line computed from currents alone, and with
-    the estimate.
+    """Tabulate how well the computed line agrees with each sensor.
+
+    The line is computed from the currents alone, and with the estimated factors.
     """
     rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
@@ -235,7 +237,7 @@ def sensors_table(study: MotionEstimate) -> Table:
 
 
 def held_out_table(held_out: Iterable[HeldOut]) -> Table:
-    """Tabulate the errors of the estimated depths at withheld sensors."""
+    """Tabulate the errors of the estimated depth at withheld sensors."""
     return table_of(
         "",
         held_out,
@@ -262,9 +264,9 @@ def motion_document(
 ) -> dict[str, Any]:
     """Return the JSON object: factors with 95 % intervals, and depth errors [m].
 
-    `sensors` lists for each sensor in use its agreement with the estimate, and as `plain` its
-    agreement with the currents alone; `held_out` lists withheld sensors; `read` describes the input
-    files.
+    `sensors` gives for each sensor in use the agreement with the estimate and, as `plain`, with the
+    line computed from currents alone. `held_out` lists withheld sensors, and `read` describes the
+    input files.
     """
     sensors = [
         {"label": label, **_agreement(fit), "offset": float(offset)}
@@ -288,13 +290,13 @@ def motion_document(
 
 
 def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[str, Any]:
-    """Return each factor with its value and the ends of its interval."""
+    """Return each factor with its estimate and the ends of its interval."""
     keys = ("value", "low", "high")
     return {name: dict(zip(keys, three, strict=True)) for name, three in factors.items()}
 
 
 def held_out_document(held_out: Iterable[HeldOut]) -> list[dict[str, Any]]:
-    """Return the results for the withheld sensors."""
+    """Return the errors at withheld sensors as JSON objects."""
     names = ("bias", "rms", "linear_rms", "pchip_rms")
     return [
         {"label": one.label, "n": one.count, **members(one, *names), "coverage_95": one.coverage}
@@ -307,9 +309,9 @@ def _agreement(one: Agreement) -> dict[str, Any]:
     return {"n": fields.pop("count"), **fields}
 
 
-_WIDTH, _SIZE = 510.0, 7.5  # points: an A4 page between its margins; the letters
+_WIDTH, _SIZE = 510.0, 7.5  # text width of an A4 page, and font size [pt]
 _PAGE_HEIGHT = 645.0
-_LEFT, _RIGHT, _BELOW = 44.0, 8.0, 16.0  # around the axes, for their scales
+_LEFT, _RIGHT, _BELOW = 44.0, 8.0, 16.0  # room around the axes for their scales [pt]
 _ESTIMATED, _BAND = "#0b3c5d", "#9ecae1"
 _BY_CURRENTS, _MEASURED = Stroke("#d55e00", 0.8, (3.0, 1.5)), Stroke("#111111", 0.8)
 
@@ -327,8 +329,10 @@ def _line_of(one: SensorSeries) -> Stroke:
 
 
 def depth_figure(series: Sequence[SensorSeries]) -> str:
-    """Draw the depths of each sensor over time: measured, estimated with uncertainty band, and
-    computed from currents alone.
+    """Draw the depth of each sensor over time.
+
+    Curves show the measured depth, the estimate with its uncertainty band, and the depth computed
+    from currents alone.
     """
     apart = 14.0
     tall = max(min(76.0, _PAGE_HEIGHT / len(series) - apart), 36.0)
@@ -376,8 +380,12 @@ def _draw_depths(
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """Draw one row of marks per current level, at the times (n,) when the current at this level
-    appears false.
+    """Draw for each current level a row of marks at the times when its current appears false.
+
+    Parameters
+    ----------
+    time : (n,) times of the record
+    false : times with a false current, by name of the level
     """
     names = list(false)
     left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)

@@ -1,4 +1,4 @@
-"""Open items of a mooring, grouped by cause, and its verdict in a sentence.
+"""Open items of a mooring, grouped by cause, and the verdict on the mooring.
 
 Components with the same finding share an item, which shows the governing values.
 """
@@ -36,9 +36,9 @@ _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 
 
 def plain(text: str, *, keys: bool = False) -> str:
-    """Format a message for print: keys in quotes as words, and no line break before a unit.
+    """Format a message for print, with keys as words in quotes and no line break before a unit.
 
-    With `keys`, for a terminal, the keys are as in the file, in backticks.
+    With `keys`, for a terminal, the keys stay as in the file, in backticks.
     """
     if not keys:
         text = re.sub(r"`([^`]*)`", _quoted, text)
@@ -51,7 +51,7 @@ def _quoted(key: re.Match[str]) -> str:
 
 
 def without_asides(text: str) -> str:
-    """Remove sources and other long passages in brackets from a text."""
+    """Remove sources, and other long passages in brackets, from a text."""
     return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
 
 
@@ -61,9 +61,7 @@ def short(text: str, most: int) -> str:
 
 
 def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
-    """Format the value or the limit of a finding, in a unit that suits both; "" if it is
-    missing.
-    """
+    """Format the value or the limit of a finding, in a unit that suits both; "" if missing."""
     value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
     if value is None or quantity is None:
         return ""
@@ -71,7 +69,7 @@ def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> 
 
 
 def limit_text(finding: Finding) -> str:
-    """Format the limit of a finding with ≤ or ≥; a maximum below zero as ``none left``."""
+    """Format the limit of a finding with ≤ or ≥, or as ``none left`` if there is no capacity."""
     if no_capacity(finding):
         return "none left"
     sign = {"<=": "≤\u00a0", ">=": "≥\u00a0"}.get(finding.sense or "", "")
@@ -80,7 +78,7 @@ def limit_text(finding: Finding) -> str:
 
 
 def percent_text(utilisation: float | None) -> str:
-    """Format a utilisation in percent, rounded up, or a dash for None."""
+    """Format a utilisation in percent, rounded up, or None as a dash."""
     if utilisation is None:
         return "–"
     percent = percent_used(utilisation)
@@ -104,10 +102,11 @@ def where_text(finding: Finding) -> str:
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
-    Failures, unknowns and warnings have a common cause if they differ only in component and values;
-    estimates, if they concern the same component, unless a missing value of this component is an
-    item already; acceptances, if they also have the same reason; findings that are not judged, if
-    they belong to the same rule.
+    Failures, unknowns and warnings share a cause if they differ only in component and values.
+    Estimates share a cause if they concern the same component; they are omitted if a missing value
+    of this component is an item already. Acceptances share a cause if they concern the same
+    component and have the same reason, and findings that are not judged if they belong to the same
+    rule.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
@@ -130,7 +129,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     lacking = {(label, one.quantity) for one in figures for label in one.pieces}
 
     def is_covered(finding: Finding) -> bool:
-        """Whether the item on the missing values of its component covers an estimated pass."""
+        """Return whether an item on missing values also covers this estimated pass."""
         own = {(finding.component, one.quantity) for one in finding.estimates}
         return finding.state is State.ESTIMATED and own <= lacking
 
@@ -167,12 +166,13 @@ STATES = {
     Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
     Conclusion.PASSES: State.PASS,
 }  # fmt: skip
-"""State whose colour and sign a conclusion has."""
+"""State that determines the colour and the sign of a conclusion."""
 
 
 def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
-    """Format a conclusion and the open items in one line, such as ``passes with open items: 1
-    warning, 3 accepted``.
+    """Format a verdict and its open items in one line.
+
+    An example is ``passes with open items: 1 warning, 3 accepted``.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
 
 
 def assessment_verdict(assessment: Assessment) -> Span:
-    """Format the verdict on a mooring in one line, with its sign."""
+    """Format the verdict on a mooring, with its sign, in one line."""
     use = {one.label: one.use for one in assessment.inventory}
     verdict = verdict_of(assessment.every_finding(), use)
     sign = "" if verdict.state is None else f"{verdict.state.sign} "
@@ -193,14 +193,14 @@ def assessment_verdict(assessment: Assessment) -> Span:
 
 
 def open_items(assessment: Assessment, *, keys: bool = False) -> list[OpenItem]:
-    """Create the numbered open items of page one; `keys` is as in `plain`."""
+    """Create the numbered open items for page one; `keys` is as in `plain`."""
     groups = open_groups(assessment)
     return [_item(group, number, keys=keys) for number, group in enumerate(groups, 1)]
 
 
 def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
     worst = governing(group)
-    if worst.utilisation is None:  # the greatest value of its quantity, or the least of a minimum
+    if worst.utilisation is None:  # show the most extreme value
         quantity = RULES[worst.rule].quantity
         alike = [one for one in group if RULES[one.rule].quantity == quantity]
         worst = max(alike, key=_extreme)
@@ -209,7 +209,7 @@ def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
 
 
 def _extreme(finding: Finding) -> tuple[int, float]:
-    """Return the sort key of a finding without a utilisation: state, then size of its value."""
+    """Return a sort key for findings without a utilisation, by state and size of the value."""
     size = abs(finding.value or 0.0)
     return finding.state.severity, -size if finding.sense == ">=" else size
 
@@ -235,7 +235,7 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
 
 
 def _item_text(group: Sequence[Finding], worst: Finding) -> str:
-    """Describe an open item: value, limit, and the remedy or the reason for acceptance."""
+    """Describe an open item by value and limit, and by the remedy or the reason for acceptance."""
     found, limit = figure_text(worst), figure_text(worst, "limit")
     several = len({one.component for one in group}) > 1
     where = ", ".join(filter(None, (worst.component if several else "", worst.case)))
@@ -260,7 +260,7 @@ def _item_text(group: Sequence[Finding], worst: Finding) -> str:
 
 
 def advice(finding: Finding) -> str:
-    """Return the recommended action for a finding, in brief."""
+    """Return a short form of the recommended action for a finding."""
     if finding.state in (State.PASS, State.NOT_JUDGED):
         return ""
     if finding.accept is not None:
@@ -271,7 +271,7 @@ def advice(finding: Finding) -> str:
 
 
 def _once(group: Iterable[Finding]) -> list[Finding]:
-    """Return one finding for each component."""
+    """Keep only the last finding of each component."""
     return list({one.component: one for one in group}.values())
 
 
@@ -280,8 +280,10 @@ def _capital(text: str) -> str:
 
 
 def draft(assessment: Assessment) -> bool:
-    """Return whether a report must not be signed, because its number, revision or date is missing,
-    or it relies on an acceptance of an example.
+    """Return whether a report is a draft, which must not be signed.
+
+    It is a draft if its number, revision or date is missing, or if it relies on an acceptance
+    copied from an example.
     """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))
@@ -289,8 +291,10 @@ def draft(assessment: Assessment) -> bool:
 
 
 def verdict_sentence(assessment: Assessment) -> str:
-    """Describe the verdict in a sentence, with the causes of open items, and every utilisation over
-    100 % that is not a failure.
+    """Describe the verdict in sentences.
+
+    They count the open items, with the rules concerned, and list every utilisation over 100 % that
+    is not a failure.
     """
     groups = open_groups(assessment)
     counts = Counter(governing(group).state for group in groups)
@@ -329,5 +333,5 @@ def _many(count: int, word: str) -> str:
 
 
 def verdict_words(conclusion: Conclusion) -> str:
-    """Return the short verdict that is printed above the sentence."""
+    """Return the short verdict that is printed above `verdict_sentence`."""
     return _capital(conclusion.words)

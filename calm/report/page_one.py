@@ -1,4 +1,4 @@
-"""Page one of a design check, for the engineer's signature."""
+"""Page one of a design check, which the engineer signs."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -60,21 +60,21 @@ MOST_REVISIONS = 3
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between header and footer [pt]."""
 _FIXED, _ROW = 250.0, 12.6
-_LINE = 100  # letters of the verdict
-_PLACE = 15  # letters of a label below a column of the load cases
-_TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its letters
+_LINE = 100  # characters in a line of the verdict
+_PLACE = 15  # most characters of a label below a column of the load cases
+_TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its characters
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 
 @dataclass(frozen=True)
 class SignedMooring:
-    """Mooring with all data of its printed report.
+    """Mooring with all data for its printed report.
 
     Attributes
     ----------
     assessment, cases : assessment of the mooring, and its load cases
     items : numbered open items
-    sha256 : of the inputs
+    sha256 : hash of the inputs
     """
 
     assessment: Assessment
@@ -89,7 +89,7 @@ class SignedMooring:
 
     @cached_property
     def apart(self) -> frozenset[str]:
-        """Labels of connecting hardware with a separate row."""
+        """Labels of connecting hardware that needs a row of its own."""
         return standing_out(self.assessment.every_finding())
 
     @property
@@ -102,7 +102,7 @@ class SignedMooring:
 
     @property
     def verdict(self) -> str:
-        """Verdict in the header of every page."""
+        """Verdict for the header of every page."""
         conclusion = self.assessment.verdict
         return f"DRAFT, {conclusion.words}" if draft(self.assessment) else verdict_words(conclusion)
 
@@ -157,7 +157,14 @@ def verdict_box(signed: SignedMooring) -> Prose:
 
 @dataclass(frozen=True)
 class _Figure:
-    """Column of the load cases: a function from a case to a value, with its component if known."""
+    """Column of the table of load cases.
+
+    Attributes
+    ----------
+    of : function that returns the value in a load case, or the value and its component
+    text : function that formats the value
+    least : whether the smallest value governs
+    """
 
     heading: str
     of: Callable[[LoadCase], float | tuple[float, str] | None]
@@ -166,12 +173,12 @@ class _Figure:
     short: str | None = None
 
     def value(self, case: LoadCase) -> tuple[float, str] | None:
-        """Return the value in a load case, and the component concerned."""
+        """Return the value in a load case and the component concerned, which may be ""."""
         found = self.of(case) if case.results else None
         return found if found is None or isinstance(found, tuple) else (found, "")
 
     def field(self, lead: float) -> blocks.Field:
-        """Create the column; cells equal to `lead` are bold."""
+        """Create the column for `table_of`, with the governing value `lead` in bold."""
 
         def show(case: LoadCase) -> Cell:
             found = self.value(case)
@@ -183,7 +190,6 @@ class _Figure:
 
 
 def _whole(name: str) -> Quantity:
-    """Return a quantity in metres without decimals, as used for depths on page one."""
     return QUANTITIES[name]
 
 
@@ -212,13 +218,13 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Return the columns of load cases that have at least one value; no cell is bold."""
+    """Return the columns that have at least one value in the load cases; no cell is bold."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
 
 def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
-    """Select the load cases that fit a table, and describe the omitted ones."""
+    """Select the load cases that fit a table, and return a note on the omitted ones."""
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
@@ -264,8 +270,9 @@ def cases_table(signed: SignedMooring) -> Table:
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
-    """List the governing finding of each rule that has a utilisation, largest first. `release-load`
-    is omitted if it repeats `strength`.
+    """List the governing finding of each rule, by decreasing utilisation.
+
+    Rules without a utilisation are omitted, and so is `release-load` if it repeats `strength`.
     """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
@@ -277,7 +284,7 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def governing_table(signed: SignedMooring) -> Table:
-    """Tabulate the checks with the largest utilisation, with bars."""
+    """Tabulate the checks with the largest utilisation, as bars."""
     rows = governing_rows(signed.assessment.every_finding())
     over, half = (
         sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, SHOWN_USE)
@@ -301,7 +308,10 @@ def governing_table(signed: SignedMooring) -> Table:
 
 
 def check_fields(longest: int) -> tuple[blocks.Field, ...]:
-    """Return the table columns of findings, with a bar; labels are cut to `longest` characters."""
+    """Return the columns of a table of findings, with bars.
+
+    The component in the last column is cut to about `longest` characters.
+    """
     return (
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Check", lambda one: RULES[one.rule].title, 1.15),
@@ -312,13 +322,13 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
 
 
 def sign_off(signed: SignedMooring) -> SignOff:
-    """Create the table of revisions, latest first, and the signature boxes."""
+    """Create the table of revisions, latest first, and the boxes for signatures."""
     given = signed.assessment.file.document
 
     def field(name: str) -> str:
         return (getattr(given, name) if given else None) or ""
 
-    own = (field("revision"), field("date"), "", "")  # its author is named under "Drawn"
+    own = (field("revision"), field("date"), "", "")  # "Drawn" below names its author
     history = [
         (one.revision or "", one.date or "", one.by or "", one.change or "")
         for one in (given.history if given else ())
@@ -334,7 +344,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
 
 
 def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Return the blocks of page one; the figure fills the height that the tables leave free."""
+    """Yield the blocks of page one; the figure takes the height that the tables leave free."""
     cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
@@ -376,13 +386,15 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
 
 
 def _round(value: float) -> str:
-    """Round a scale to three digits, such as 17 000."""
+    """Round a scale to three significant digits, such as 17 000."""
     return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u00a0")
 
 
 def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
-    """Select the labels beside the line: floats, instruments, releases and anchors, and if there is
-    room the line sections between them.
+    """Select the labels next to the line in the drawing.
+
+    They name floats, instruments, releases and anchors and, if there is room, the cables in
+    between.
     """
     tags: dict[str | None, str] = {}
     for (_, label), tag in item_tags(signed).items():
@@ -408,7 +420,7 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
     if len(found) > MOST_LABELS:
         found = [one for one in found if not one[0]]
     kept = [label for _, label in found]
-    if len(kept) > MOST_LABELS:  # ends and open items, and every so many of a string
+    if len(kept) > MOST_LABELS:  # keep ends and open items, and thin out the others evenly
         others = [one for one in kept[1:-1] if not one.tag]
         step = max(MOST_LABELS - len(kept) + len(others), 0) / max(len(others), 1)
         chosen = {id(one) for at, one in enumerate(others) if int((at + 1) * step) > int(at * step)}
@@ -418,14 +430,14 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
 
 
 def afloat(result: LegResult) -> bool:
-    """Return whether a leg's own top is at the surface."""
+    """Return whether the top of a leg is free and at the surface."""
     return result.type == "surface" and result.leg.top.free
 
 
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """Return the parts of a leg as drawn; repeated names are shortened."""
+    """Return the parts of a leg as drawn; a row of equal items has one short name."""
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
@@ -437,7 +449,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """Return the mark and the number of the first open item for each rule and component."""
+    """Return mark and number of the first open item that concerns each rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

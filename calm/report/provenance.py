@@ -29,7 +29,7 @@ _LIBRARIES = ("numpy", "pydantic", "jinja2", "typst")
 
 
 def made_by() -> str:
-    """Name the versions of CALM, Python, and the libraries for computation and drawing."""
+    """List the versions of CALM, Python, and the libraries for computation and drawing."""
     there = (name for name in _LIBRARIES if find_spec(name))  # a web page has no typst
     libraries = (f"{name} {version(name)}" for name in there)
     return ", ".join((f"calm {__version__}", f"python {platform.python_version()}", *libraries))
@@ -39,10 +39,10 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 
 
 def moment() -> datetime | None:
-    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if unset. Reports contain no other
-    date.
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if it is unset.
 
-    Raises UsageError if it is not a number of seconds within the range of the calendar.
+    Reports contain no other date. Raise UsageError if it is not a number of seconds within the
+    range of the calendar.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:
@@ -53,13 +53,13 @@ def moment() -> datetime | None:
 
 
 def date() -> str | None:
-    """Return the day of `moment`, such as 2026-11-21."""
+    """Return the day of `moment`, such as 2026-11-21, or None."""
     when = moment()
     return None if when is None else when.date().isoformat()
 
 
 def report_of(title: str, subtitle: str, *parts: ReportPart, name: str = "") -> Report:
-    """Create a report with one section, dated by `date` and named `name` or `title`."""
+    """Create a report with a single section, called `name` or else `title`, dated by `date`."""
     return Report(title, subtitle, (), (blocks.Section(name or title, parts),), date())
 
 
@@ -79,9 +79,9 @@ def file_name(file: MooringFile) -> str:
 def input_hash(files: Sequence[MooringFile]) -> str:
     """Return the SHA-256 of the inputs in hexadecimal digits, over all environments.
 
-    The hash covers the text of the mooring file and, as JSON with sorted keys, the components with
-    all catalogue values, the settings, and each environment with its currents, including those from
-    a current file. The location of the files is irrelevant.
+    The hash covers the text of the mooring file. It also covers, as JSON with sorted keys, the
+    components with all catalogue values, the settings, and each environment with its currents,
+    including those from a current file. The location of the files has no effect.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
     line = canonical(files[0].pieces)
@@ -95,7 +95,7 @@ def input_hash(files: Sequence[MooringFile]) -> str:
 
 
 def canonical(value: Any) -> str:
-    """Serialise as JSON with sorted keys and no blanks, with models and records as objects."""
+    """Serialise a value as JSON with sorted keys and no blanks, and models as objects."""
     return json.dumps(
         value, sort_keys=True, separators=(",", ":"),
         default=lambda one: one.model_dump() if isinstance(one, BaseModel) else vars(one),
@@ -135,9 +135,7 @@ _MOST_LEVELS = 40
 
 
 def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
-    """Tabulate for each environment the depth, the density, the maximum current and the depth of
-    this current.
-    """
+    """Tabulate depth, density, and the maximum current and its depth, for each environment."""
     rows = []
     for name, water in waters:
         speed = np.hypot(water.u, water.v)
@@ -160,7 +158,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """List the computed current by level; at most `_MOST_LEVELS` levels, evenly chosen."""
+    """List the computed current at up to `_MOST_LEVELS` levels, evenly chosen."""
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
@@ -174,14 +172,14 @@ def current_listing(name: str, water: Water) -> Listing:
 
 
 def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """Create the title block and the revision history; empty if the file has no `document`."""
+    """Create the title block and the revision history, if the file has a `document`."""
     if file.document is None:
         return ()
     return (ReportPart("Document", (blocks.Pairs(tuple(title_pairs(file))),)), *history_part(file))
 
 
 def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """Create the revision history; empty if the file has none."""
+    """Create the revision history, if the file has any revisions."""
     if file.document is None or not file.document.history:
         return ()
     first = words("revision", share=0.0), words("date", share=0.0)
@@ -190,9 +188,7 @@ def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
-    """Return the identification of a mooring for the title block: document data, position and water
-    depth.
-    """
+    """Return names and values for the title block: document data, position and water depth."""
     document = file.document
     names = ("revision", "date", "project", "ship", "cruise", "author", "checked", "approved")
     pairs = [("mooring", file.name)]
@@ -207,13 +203,13 @@ def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
 
 
 def position_text(position: Position) -> str:
-    """Format a position in nautical form: degrees and minutes to a thousandth, about 2 m."""
+    """Format a position in degrees and minutes to a thousandth of a minute (2 m)."""
     latitude = degrees_text(position.latitude, "NS", 2)
     return f"{latitude}, {degrees_text((position.longitude + 180.0) % 360.0 - 180.0, 'EW', 3)}"
 
 
 def degrees_text(degrees: float, sides: str, digits: int) -> str:
-    """Return an angle in whole degrees and in minutes to a thousandth.
+    """Format an angle in whole degrees, and minutes to a thousandth.
 
     Parameters
     ----------
@@ -228,8 +224,10 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Report the inputs: environments, mooring file, currents, hash and versions.
 
-    `inputs` lists every environment of one mooring or tow, or of each leg of a net: name of the
-    environment, file as read, and water.
+    Parameters
+    ----------
+    inputs : name of the environment, file as read, and water, for every environment of a mooring or
+        tow, or of each leg of a net
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

@@ -1,4 +1,4 @@
-"""Summary of the data read from files, for a terminal and for reports."""
+"""Summary of the data read from files, for terminals and reports."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -8,7 +8,7 @@ from calm.report.blocks import Block, Heading, Pairs
 
 
 def card_blocks(cards: Iterable[Mapping[str, Any]]) -> tuple[Block, ...]:
-    """Convert the cards of `calm.records.card.ReadCard.to_dict` to blocks, file by file."""
+    """Convert cards, given as the dictionaries of `ReadCard.to_dict`, to blocks."""
     return tuple(
         block for card in cards for block in (Heading(str(card["file"])), Pairs(card_rows(card)))
     )

@@ -1,5 +1,6 @@
-"""Result files: JSON, CSV with a row for each piece and clamp, and NetCDF with the names of batch
-files.
+"""Results as JSON, as CSV with a row for each piece and clamp, and as NetCDF.
+
+The NetCDF variables have the same names as in batch files.
 """
 
 import json
@@ -29,17 +30,17 @@ from calm.records.delimited import table_csv
 
 
 def header() -> tuple[str, ...]:
-    """Return the CSV header: column names, with units in brackets."""
+    """Return the column names of the CSV header, with units in brackets."""
     return ("mooring", "part", *(one.header for one in Components.columns(Output.CSV)))
 
 
 def to_csv(results: Sequence[Result]) -> str:
-    """Write the components of one or several moorings or tows as CSV (UTF-8, comma-separated,
-    decimal point, LF).
+    """Write the components of one or several moorings or tows as CSV text.
 
-    `part` is ``component`` or ``clamp``. The row of a clamped instrument follows the piece that
-    carries it, with equal values for both ends and no length. Unknown numbers are empty. If a net
-    is among the results, the last column is the leg.
+    The text is UTF-8, comma-separated, with decimal points and LF. The column `part` is
+    ``component`` or ``clamp``. The row of a clamped instrument follows the piece that carries it,
+    with equal values for both ends and no length. Unknown numbers are empty. If a net is among the
+    results, the last column is the leg.
     """
     rows = [row for result in results for row in _rows(result)]
     more = shown_in(OF_ROWS, Output.CSV)
@@ -56,7 +57,7 @@ def _rows(result: Result) -> Iterator[list[object]]:
         figures = (getattr(component, one.name) for one in own)
         yield [result.name, "component", *figures, *beside]
         for clamp in clamps:
-            # a clamp has one value for each quantity of which a component has one per end
+            # a clamp has one value where a component has one for each end
             names = (one.name.removesuffix("_top").removesuffix("_bottom") for one in own)
             figures = (getattr(clamp, name, None) for name in names)
             yield [result.name, "clamp", *figures, *beside]
@@ -69,10 +70,10 @@ _ACCURACY: dict[str, tuple[str, str, Attributes]] = {
 
 
 def result_netcdf(result: Result) -> bytes:
-    """Create the NetCDF file of one mooring, tow or net, in double precision; unknown values are
-    NaN.
+    """Create the NetCDF file of one mooring, tow or net.
 
-    Ends of a net are listed by leg, and the shape nodes of its legs are concatenated.
+    Values are in double precision; unknown values are NaN. The ends of a net are listed by leg, and
+    the shape nodes of its legs are concatenated.
     """
     file, pieces, clamps = result.file, result.components, result.clamps
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
@@ -123,7 +124,10 @@ def result_netcdf(result: Result) -> bytes:
 def _table_variables(
     dimension: str, table: Components | Clamps, beside: str
 ) -> list[netcdf.Variable]:
-    """Create the NetCDF variables of a table; `beside` contains the names of their coordinates."""
+    """Create the NetCDF variables of a table.
+
+    `beside` lists the names of their coordinate variables.
+    """
     columns = table.columns(Output.NETCDF)
     figures = _floats({one.variable: getattr(table, one.name) for one in columns})
     return numbers((dimension,), terms(columns), beside, figures)
@@ -138,7 +142,7 @@ UNITS = {"length": "m", "force": "N", "angle": "deg", "mass": "kg", "speed": "m/
 
 
 def to_json(documents: list[dict[str, Any]]) -> str:
-    """Create JSON text: an object for one document, an array in the given order for several.
+    """Create JSON text: an object for one document, an array for several.
 
     Results, which have a key `calm`, also get their units. Numbers that are not finite become null.
     The text is plain ASCII, so that no terminal or pipe can corrupt it.
@@ -149,7 +153,7 @@ def to_json(documents: list[dict[str, Any]]) -> str:
 
 
 def _finite(value: Any) -> Any:
-    """Return a document with None in place of numbers that are not finite."""
+    """Return a document in which numbers that are not finite are None."""
     if isinstance(value, dict):
         return {name: _finite(member) for name, member in value.items()}
     if isinstance(value, list | tuple):

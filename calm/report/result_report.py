@@ -1,4 +1,4 @@
-"""Report of one solved mooring or tow."""
+"""Report on one solved mooring or tow."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -30,7 +30,7 @@ from calm.report.sheet import (
 
 
 def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.Report:
-    """Build the report of one result: schematic, table, drawing, inputs and uncertainty."""
+    """Build the report on one result: schematic, table, drawing, inputs and uncertainty."""
     file = result.file
     limits: tuple[ReportPart, ...] = ()
     if result.several:
@@ -46,7 +46,7 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
         title, summary = title_of(result.leg), summary_of(result.leg)
         table = (table_of_line(result, "Table of the line", places=True),)
         schematics = _schematics("Schematic", file, result)
-    if not (result.several or result.towed):  # these have no margins in their tables
+    if not (result.several or result.towed):  # tables of nets and tows have no margins
         keys = limits_used(result.file, reaches_the_surface(result.leg.leg))
         limits = (ReportPart("Limits", (limits_table(keys),)),)
     described = (blocks.Prose((file.description,)),) if file.description else ()
@@ -78,10 +78,10 @@ _ENDS = ("5 %", "50 %", "95 %")
 
 
 def uncertainty_part(uncertain: Uncertain) -> ReportPart:
-    """Report the 5th, 50th and 95th percentiles of values at ends and pieces, and the causes of the
-    spread.
+    """Report the uncertainty of a result, within 80 columns.
 
-    Fits 80 columns.
+    It gives the 5th, 50th and 95th percentiles of values at ends and pieces, and the causes of the
+    spread.
     """
     each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
     failures = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
@@ -99,8 +99,9 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
-    """Describe the uncertain inputs and their spread: ``current ±10 %, cable drag −15 to
-    +30 %``.
+    """Describe the uncertain inputs and their spread.
+
+    An example is ``current ±10 %, cable drag −15 to +30 %``.
     """
     texts = []
     for name in type(uncertainty).model_fields:

@@ -36,8 +36,9 @@ _LIFE = (
 
 
 def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
-    """Build the report: tables, and drawings of the tension as spectrum, along the line, and
-    against Hs.
+    """Build the report with tables and drawings of the tension.
+
+    The drawings show the tension as a spectrum, along the line, and against Hs.
     """
     title = "Tension in the highest sea: its spectrum at the top; along the line"
     if several := len(analysis.states) > 1:
@@ -47,8 +48,9 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
 
 
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
-    """Build the tables: the pieces in the (highest) sea state, and one line for each of several sea
-    states.
+    """Build the tables of the response to waves.
+
+    They list the pieces in the highest sea state and, for several sea states, one line for each.
     """
     states, highest = analysis.states, _highest(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
@@ -133,8 +135,10 @@ def _percent(share: float) -> str:
 
 
 def _cut_offs(state: MooringInSea) -> Table:
-    """Tabulate the tension at the top, and the piece whose tension changes most, for three cut-off
-    frequencies.
+    """Tabulate the sensitivity of the tension to the cut-off frequency.
+
+    For three cut-off frequencies, it gives the tension at the top, and the piece whose tension
+    changes most.
     """
     top, tension = state.components[0], QUANTITIES["tension"]
     cases = (("half", 0.5), ("", 1.0), ("twice", 2.0))
@@ -226,7 +230,7 @@ def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line
 
 
 def _measured(state: MooringInSea, band: MeasuredBand) -> str:
-    """Describe the range of the tension at the top that follows from measurements at sea."""
+    """Describe the range of the tension at the top, from the scatter of measurements at sea."""
     low, high = state.components[0].measured_low, state.components[0].measured_high
     assert low is not None and high is not None
     height = state.sea.significant_height
@@ -245,15 +249,13 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
     )
 
 
-_WIDTH, _TALL, _SIZE = 510.0, 180.0, 8.0  # points; the last one of the letters
+_WIDTH, _TALL, _SIZE = 510.0, 180.0, 8.0  # size and font size [pt]
 _TOP, _GAP = 22.0, 52.0
 _MEAN, _STD, _MAX = (Stroke(COLOURS[0], 1.2, dashes) for dashes in ((), (1.2, 1.8), (4.0, 2.0)))
 
 
 def _drawn(analysis: WaveAnalysis, several: bool) -> str:
-    """Draw the spectrum of the tension, the tension against depth and, for several sea states,
-    against wave height.
-    """
+    """Draw the spectrum of the tension, its values over depth and, for several seas, over Hs."""
     state = _highest(analysis)
     page = Graph(_WIDTH, _TOP + _TALL + 30.0, "Tension in waves", _SIZE)
     panels = 3 if several else 2

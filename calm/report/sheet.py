@@ -1,6 +1,6 @@
-"""Text report of a result: the table of the line, its marks, and the summary.
+"""Text report of a result: a table of the line, its marks, and a summary.
 
-For a net: the table of its legs, its nodes, and its end loads.
+For a net, it consists of tables of the legs, the nodes and the loads at the ends.
 """
 
 import math
@@ -43,9 +43,10 @@ _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 def result_part(
     result: Result, facts: Sequence[tuple[str, str]] = (), *, verbose: bool = False
 ) -> ReportPart:
-    """Build the short report of a result for 80 columns; long labels wrap.
+    """Build the short report of a result, with long labels wrapped to fit 80 columns.
 
-    Values beyond a limit carry ``!`` and values close to one ``~``, so that colour is not needed.
+    Values beyond a limit are marked ``!`` and values close to a limit ``~``, so that colour is not
+    needed.
 
     Parameters
     ----------
@@ -71,17 +72,17 @@ def title_of(result: LegResult) -> str:
 
 
 def summary_of(result: LegResult) -> tuple[Pairs | Prose, ...]:
-    """Summarise the line and its ends, followed by the warnings."""
+    """Return the blocks that summarise the line and its ends, followed by the warnings."""
     return (Pairs(summary_pairs(result)), *blocks.warned(result.warnings))
 
 
 def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:
-    """Describe the line and its ends, each description under a name."""
+    """Describe the line and its ends; each description has a name."""
     return tuple(_tow_summary(result) if result.towed else _mooring_summary(result))
 
 
 def quality_of(result: LegResult) -> Prose:
-    """Describe the numerical error of the solution, and the work of the solver."""
+    """Describe the numerical error of the solution, and the effort of the solver."""
     good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
     if result.towed:
         end = "tow point"
@@ -97,9 +98,7 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def accuracy_text(results: Sequence[LegResult]) -> str:
-    """Describe the numerical error of several results, rounded up, compared with the error of their
-    inputs.
-    """
+    """Describe the numerical error of several results, and the larger error of their inputs."""
     depth = max(one.accuracy.depth for one in results)
     share = max(
         100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
@@ -113,7 +112,7 @@ def accuracy_text(results: Sequence[LegResult]) -> str:
 
 
 def _travel(profiler: ProfilerTravel) -> str:
-    """Describe the path of a profiler: its stops, and the maximum wire angle."""
+    """Describe the travel of a profiler between its stops, and the largest wire angle."""
     upper, lower, worst = (
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
@@ -127,7 +126,7 @@ def _travel(profiler: ProfilerTravel) -> str:
 
 
 def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
-    """Describe the top, the line and, if the leg has an anchor, the anchor loads."""
+    """Describe the top, the line and, if the leg is anchored, the anchor load."""
     top = result.top
     off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
@@ -148,7 +147,7 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 
 
 def _line_text(result: LegResult) -> str:
-    """Describe the length of the line, its maximum tension and minimum safety factor."""
+    """Describe the line by its length, maximum tension and minimum safety factor."""
     rows = result.components
     text = f"{say('depth', sum(row.length for row in rows))} under load"
     if result.leg.anchored:
@@ -180,7 +179,7 @@ def _anchor_text(result: LegResult) -> str:
 
 
 def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
-    """Yield the loads at the ship, and the position of the body."""
+    """Yield descriptions of the loads at the ship and of the position of the towed body."""
     point, body = result.tow_point, result.body
     assert point is not None and body is not None
     at_ship, at_body = (
@@ -197,7 +196,7 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
-    """Describe the frequency of strumming, and its actual or possible effect on drag."""
+    """Describe the frequency of strumming and its effect on drag, or its possible effect."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -211,13 +210,15 @@ def _strumming(result: LegResult) -> tuple[str, ...]:
 
 
 def _with(result: LegResult, band: StrummingBand) -> str:
-    """Describe the effect of increased cable drag on the top or the body."""
+    """Describe the effect of increased cable drag on the top of a mooring or on a towed body."""
     if band.status != Status.CONVERGED.label:
         return band.status
     assert band.depth is not None
     if result.towed:
         return f"body {_level(result, band.depth)}, tow point {say('tension', band.tension)}"
-    if result.type == "surface" and band.depth <= 0.0:  # a float at its draft stands out
+    if (
+        result.type == "surface" and band.depth <= 0.0
+    ):  # a float at its draft is partly out of the water
         top = "top at the surface"
     elif band.knockdown is None:
         top = f"top {say('depth', band.depth)} deep"
@@ -227,7 +228,7 @@ def _with(result: LegResult, band: StrummingBand) -> str:
 
 
 def _level(result: LegResult, depth: float) -> str:
-    """Format the depth of the body, or its height in air."""
+    """Format the depth of a towed body, or its height in air."""
     tow = result.file.tow
     if tow is not None and result.file.environment.fluid == "air":
         return f"{say('depth', depth + tow.height)} below the tow point"
@@ -235,8 +236,7 @@ def _level(result: LegResult, depth: float) -> str:
 
 
 def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -> Table:
-    """Tabulate the line from its first-listed end; clamped instruments are indented below their
-    piece.
+    """Tabulate the line in its listed order; clamps are indented below their piece.
 
     Each leg of a net has a heading. With `places`, a clamp shows its position on its piece instead
     of a length.
@@ -280,9 +280,7 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
-    """Return the state of a tilt [degrees]: above `max_tilt` the data of the instrument are
-    unreliable.
-    """
+    """Return FAIL for a tilt above `max_tilt`, WARN above `warn_tilt` [degrees], else None."""
     if component.max_tilt is not None and tilt > component.max_tilt:
         return State.FAIL
     if component.warn_tilt is not None and tilt > component.warn_tilt:
@@ -291,11 +289,10 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 
 
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
-    """Return the state of a safety factor: fail if it is too small, or if the working load is
-    exceeded.
+    """Return FAIL if the safety factor is too small or the working load is exceeded, else None.
 
-    The required factor on the breaking load is `checks.safety_factor` for a surface mooring, a
-    synthetic cable, or steel. Unknown factors (NaN) are not marked.
+    The required factor on the breaking load depends on `checks.safety_factor`, on the material, and
+    on whether it is a surface mooring. Unknown factors (NaN) are not marked.
     """
     # the intended purpose of a single leg is irrelevant if the whole net is shown
     alone = not (result.several or result.towed)
@@ -312,7 +309,7 @@ def _cells(
     row: ComponentRow | ClampRow,
     factor: State | None = None,
 ) -> Iterator[Cell]:
-    """Yield the table cells of a piece or a clamp; the safety factor is marked by its state."""
+    """Yield the cells of a piece or a clamp; the safety factor has the state `factor`."""
     states = {"tilt": tilt_state(row.part.component, row.tilt), "safety_factor": factor}
     for one in figures:
         if one.quantity:
@@ -337,18 +334,21 @@ def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
 
 
 def leg_title(leg: LegResult) -> str:
-    """Format the name of a leg and of its end connections."""
+    """Format the name of a leg, and the connections of its ends."""
     top = "at the surface" if leg.type == "surface" else end_text(leg.leg.top)
     return f"{leg.name}: {top} to {end_text(leg.leg.bottom)}"
 
 
 def leg_titles(result: Result) -> dict[str, str]:
-    """Return the titles of the legs by name; empty for a single line."""
+    """Return the titles of legs by name, or an empty mapping for a single line."""
     return {leg.name: f"leg {leg_title(leg)}" for leg in result.legs if result.several}
 
 
 def end_descriptions(line: LegResult) -> tuple[str | None, str | None]:
-    """Describe the end connections of a leg; None for a free top, and for an anchor."""
+    """Describe the upper and the lower connection of a leg.
+
+    A free upper end and an anchor are None.
+    """
     top, bottom = line.leg.top, line.leg.bottom
     return (
         None if top.free else f"from {end_text(top)}",
@@ -357,7 +357,7 @@ def end_descriptions(line: LegResult) -> tuple[str | None, str | None]:
 
 
 def end_text(end: EndKeys) -> str:
-    """Name the connection of a leg's end."""
+    """Describe the connection of one end of a leg."""
     if end.join is not None:
         return f"node {end.join}"
     if end.held is not None:
@@ -366,7 +366,7 @@ def end_text(end: EndKeys) -> str:
 
 
 def _ends(result: Result) -> Iterator[Table | Prose]:
-    """Yield tables of the nodes, anchors, held ends, and floats at the surface."""
+    """Yield tables of the nodes, the anchors, the held ends, and the floats at the surface."""
     ends = {"Nodes": result.nodes, "Anchors": result.anchors, "Held ends": result.held}
     for title, rows in ends.items():
         if rows:
@@ -383,7 +383,7 @@ def _ends(result: Result) -> Iterator[Table | Prose]:
 
 
 def _fields(rows: Sequence[Any]) -> Iterator[Field]:
-    """Yield the table columns of nodes or ends; empty columns are omitted."""
+    """Yield the table columns of nodes or ends that are not empty."""
     columns = shown_in(columns_of(type(rows[0])), Output.NET_TABLE)
     for one in sorted(columns, key=lambda one: one.place):
         known = any(getattr(row, one.name) is not None for row in rows)
@@ -392,7 +392,7 @@ def _fields(rows: Sequence[Any]) -> Iterator[Field]:
 
 
 def _convergence(result: Result) -> str:
-    """Describe the convergence and the accuracy of a net's solution."""
+    """Describe the convergence and the accuracy of the solution of a net."""
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (

@@ -1,4 +1,4 @@
-"""Tow at many speeds, as table, JSON, CSV and drawing."""
+"""Results of a tow at many speeds, as table, JSON, CSV and drawing."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """A ship speed over the ground [m/s], and the result or the failure at this speed."""
+    """Result of a tow at one ship speed over the ground [m/s], or the failure at this speed."""
 
     speed: float
     outcome: Result | NoEquilibrium
@@ -67,14 +67,13 @@ class TabulationRow:
 
 @dataclass(frozen=True)
 class Tabulation:
-    """Results of a tow by speed: the name of the tow, and a row for each speed."""
+    """Results of a tow, with its name and a row for each speed."""
 
     name: str
     rows: tuple[TabulationRow, ...]
 
     @property
     def title(self) -> str:
-        """Title of the table."""
         count = len(self.rows)
         return f"{self.name}: tow at {count} speed{'s' if count != 1 else ''}"
 
@@ -85,7 +84,7 @@ class Tabulation:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings that are common to all rows with an equilibrium."""
+        """Warnings that all rows with an equilibrium have in common."""
         warnings = [row.result.warnings for row in self.rows if row.result is not None]
         first = warnings[0] if warnings else ()
         return tuple(text for text in first if all(text in each for each in warnings))
@@ -94,16 +93,17 @@ class Tabulation:
 def by_speed(
     tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
-    """Tabulate solver outcomes at ship speeds over the ground [m/s]."""
+    """Combine the solver's outcomes at ship speeds over the ground [m/s] into a tabulation."""
     rows = map(TabulationRow, speeds, outcomes)
     return Tabulation(tow.file.name, tuple(rows))
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
-    """Return the JSON object: `calm`, `name`, `type` and `speeds`, with one object per speed.
+    """Return the JSON object of a table.
 
-    A row has `speed`, `status` and `FIGURES` (SI and degrees; `frequency` only if the cable
-    strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
+    The keys are `calm`, `name`, `type` and `speeds`, a list with one object per speed. Such an
+    object has `speed`, `status` and the keys of `FIGURES` (SI and degrees; `frequency` only if the
+    cable strums). Its `warnings` follow or, without an equilibrium, `message` and `advice`.
     """
     return {
         "calm": __version__,
@@ -114,8 +114,9 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
 
 
 def to_csv(tabulations: Sequence[Tabulation]) -> str:
-    """Write the rows of one or several tows as CSV text (UTF-8, comma-separated, decimal point,
-    LF).
+    """Write the rows of one or several tows as CSV text.
+
+    The text is UTF-8, comma-separated, with decimal points and LF.
     """
     figures = (QUANTITIES[name].header for name in FIGURES)
     rows = (
@@ -139,8 +140,8 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
     """Build the table with one line per speed, within 80 columns.
 
-    A row without equilibrium shows its status, a row with its own warnings a mark; warnings common
-    to all rows follow the table.
+    A row without equilibrium shows its status. A row with warnings of its own carries a mark;
+    warnings common to all rows follow the table.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
@@ -168,8 +169,9 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
 
 
 def _fine(name: str, tabulation: Tabulation) -> Quantity:
-    """Return a quantity with enough decimals for `_DIGITS` digits, since rows differ little and a
-    tow may be small.
+    """Return a quantity with enough decimals for `_DIGITS` digits.
+
+    The usual decimals may hide the small differences between rows, or the values of a small tow.
     """
     quantity = QUANTITIES[name]
     greatest = max((abs(row.figures[name] or 0.0) for row in tabulation.rows), default=0.0)
@@ -185,16 +187,15 @@ def _remark(tabulation: Tabulation, row: TabulationRow) -> str:
     return "!" if set(row.outcome.warnings) - set(tabulation.warnings) else ""
 
 
-_WIDTH, _HEIGHT, _SIZE = 600.0, 247.0, 8.0  # points; the last one of the letters
-_PANEL, _TOP, _LOW = 148.0, 66.0, 32.0  # width of a panel, and what is above and below it
+_WIDTH, _HEIGHT, _SIZE = 600.0, 247.0, 8.0  # size and font size [pt]
+_PANEL, _TOP, _LOW = 148.0, 66.0, 32.0  # width of a panel, and room above and below
 _LEFTS = (44.0, 244.0, 444.0)
-_MOST_MARKED = 60  # points that can still be told apart
+_MOST_MARKED = 60  # largest number of points that get marks
 _CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0))
 
 
 def sweep_drawing(tabulation: Tabulation) -> str:
-    """Draw three panels against the ship speed, as SVG: depth of the body, its layback, and
-    tensions.
+    """Draw depth of the body, its layback, and tensions against the ship speed, as SVG.
 
     Tension is drawn at the tow point and at the body. A speed without equilibrium is a gap.
     """
@@ -229,7 +230,7 @@ def _panel(
     name: str,
     level: str = "",
 ) -> Axes:
-    """Draw a panel with the curve of a column, and a line at zero in a given colour."""
+    """Draw a panel with the curve of a column and, if `level` is a colour, a line at zero."""
     place = _LEFTS[number], _TOP, _PANEL, _HEIGHT - _TOP - _LOW
     axes = page.axes(*place, across, up)
     if level:

@@ -1,4 +1,4 @@
-"""Rendering of report blocks on a terminal: tables without rules; colour is never essential."""
+"""Rendering of report blocks on a terminal: tables have no rules, colour is never essential."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -28,21 +28,21 @@ _WARNED = _STYLES[State.FAIL]
 
 
 def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
-    """Convert a part for a rich console, with ASCII signs only if `plain`.
+    """Convert a part for a rich console, without its figures.
 
-    Figures are not included.
+    If `plain`, all signs are ASCII.
     """
     return Group(*_Printer(plain).part(part))
 
 
 class _Printer:
-    """Printer of blocks, with all signs or ASCII signs only."""
+    """Printer of blocks, with all signs or with ASCII signs only."""
 
     def __init__(self, plain: bool) -> None:
         self._sign = in_ascii if plain else str
 
     def part(self, part: ReportPart) -> Iterator[RenderableType]:
-        """Yield title and blocks; blank lines separate blocks that do not belong together."""
+        """Yield title and blocks, with blank lines between blocks that do not belong together."""
         if part.title:
             yield self._text(part.title, "bold")
             yield Text()
@@ -121,7 +121,7 @@ class _Printer:
         return rows
 
     def _items(self, block: blocks.OpenItems) -> Iterator[RenderableType]:
-        """Render open items with their signs; the most severe has the colour of its state."""
+        """Render open items with their signs; the most severe are in the colour of their state."""
         yield self._text(block.title, "bold")
         rows = table.Table.grid(padding=(0, 1, 0, 0))
         rows.add_column(no_wrap=True)
@@ -150,14 +150,14 @@ class _Printer:
         return _Words(self._sign(printable(text)), style=style)
 
 
-_BAR, _BEYOND = 10, 3  # cells of a bar up to its mark, and beyond it
+_BAR, _BEYOND = 10, 3  # characters of a bar up to the limit, and beyond it
 
 
 def bar_text(share: float, state: State | None) -> str:
-    """Draw a fraction of a limit as a bar with a mark at the limit; the part beyond the limit is
-    hatched unless the finding fails.
+    """Draw a fraction of a limit as a bar of text, with a mark at the limit.
 
-    A cell stands for a tenth, rounded up.
+    A character stands for a tenth, rounded up. A bar that exceeds the limit is hatched, unless the
+    finding fails.
     """
     tenths = min(ceil(_BAR * share - 1e-9), _BAR + _BEYOND)
     sign = "▒" if tenths > _BAR and state is not State.FAIL else "█"
@@ -190,7 +190,7 @@ Row = tuple[Sequence[Text], str]
 
 
 class PlainTable:
-    """Table without rules, printed line by line, many times faster than by rich.
+    """Table without rules, printed as plain lines, many times faster than by rich.
 
     Parameters
     ----------
@@ -205,9 +205,7 @@ class PlainTable:
             table.add_row(*cells, style=style)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render the table as plain lines; a rich table does what needs more than one folded
-        column.
-        """
+        """Render the table as plain lines; rich renders tables whose columns must wrap."""
         headings: list[list[Text]] = [
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns

@@ -21,13 +21,13 @@ _SMALL = 1e-3
 
 
 def verification_document(findings: Findings) -> dict[str, Any]:
-    """Return the JSON object: `calm`, the number of `checked` values, and the number `out` of
-    tolerance.
+    """Return the JSON object of a verification.
 
-    `kinds` counts the values of each kind; values that agree by construction are not counted in
-    `checked`. `cases` has one object per value: `source`, `name`, `kind`, `expected`, `got`,
-    `difference`, `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason`
-    if no value was computed.
+    The keys are `calm`, the number of values `checked`, and the number of values `out` of
+    tolerance. `kinds` counts the values of each kind; values that agree by construction are not
+    counted in `checked`. `cases` has one object per value: `source`, `name`, `kind`, `expected`,
+    `got`, `difference`, `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and
+    `reason` if no value was computed.
     """
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
@@ -41,19 +41,19 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
 
 def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
-    """Return the number of cases of each kind, in the order of `Kind`; empty kinds are omitted."""
+    """Count the cases of each kind, in the order of `Kind`; kinds without cases are omitted."""
     number = Counter(case.kind for case in cases)
     return {kind: number[kind] for kind in Kind if number[kind]}
 
 
 def verification_part(findings: Findings) -> ReportPart:
-    """Build a table for each source and kind; values out of tolerance have the mark ``!``."""
+    """Build a table for each source and kind; values out of tolerance are marked ``!``."""
     of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
     return ReportPart("", (*of_sources, _sum(findings)))
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
-    """Format the row of an outcome, in the order of `COLUMNS`.
+    """Format the outcome of a case as a row, in the order of `COLUMNS`.
 
     The computed value and the difference have one digit more than the tolerance, or two if the
     expected value has that many. Further digits are rounding errors that differ between machines.

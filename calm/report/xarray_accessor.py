@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """Access batch results for a part of the line by its label in the mooring file.
+    """Access to batch results of a part of the line, by its label in the mooring file.
 
-    ``top`` is the first component, even if another part has that label. Data are loaded lazily.
+    ``top`` is the first component, even if another part has that label. Data are loaded lazily. All
+    methods raise UsageError if the line has no part with the label.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """
@@ -31,33 +32,30 @@ class BatchAccessor:
         self._dataset = dataset
 
     def depth(self, label: str) -> xr.DataArray:
-        """Return the depth (time) of a clamp, or of the upper end of a component [m].
-
-        Like all methods of this class, raises UsageError if the line has no part with this label.
-        """
+        """Return the depth of a clamp, or of a component's upper end, over time [m]."""
         return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
-        """Return the knockdown (time) relative to still water [m]."""
+        """Return the knockdown over time [m], relative to still water."""
         return self._of(label, "knockdown", "knockdown")
 
     def tilt(self, label: str) -> xr.DataArray:
-        """Return the tilt (time) of a component, or of the line at a clamp, from the vertical
-        [degrees].
-        """
+        """Return the tilt from the vertical of a component, or of the line at a clamp [degrees]."""
         return self._of(label, "tilt", "tilt")
 
     def tension(self, label: str) -> xr.DataArray:
-        """Return the tension (time) at a clamp, or the larger end tension of a component [N]."""
+        """Return the tension over time [N].
+
+        It is the tension at a clamp, or the larger tension at the two ends of a component.
+        """
         upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)
         return greater
 
     def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
-        """Draw the side view of the line in the profile nearest to a given time, on matplotlib
-        axes.
+        """Draw the line from the side, in the profile nearest to a given time, on matplotlib axes.
 
-        Without `ax`, a new figure is created. Raises UsageError if the profile has no equilibrium,
+        Without `ax`, a new figure is created. Raise UsageError if the profile has no equilibrium,
         or if matplotlib is not installed.
         """
         axes = plot_elevation(shape_picture(self._dataset, time), ax)
@@ -68,7 +66,7 @@ class BatchAccessor:
         return axes
 
     def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
-        """Return the variable of a component, or the same quantity of a clamp."""
+        """Return the variable of a component, or the corresponding variable of a clamp."""
         prefix, index = place_of(self._dataset, label)
         variable = f"{prefix}{quantity}" if prefix else of_component
         dimension = "clamp" if prefix else "component"
@@ -81,11 +79,10 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 
 
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
-    """Draw the side view of the line in the profile nearest to a given time.
+    """Draw the line from the side, in the profile nearest to a given time.
 
-    The line goes straight from the upper end of one component to that of the next. The picture is
-    in the vertical plane of the anchor and the top. Raises UsageError if the profile has no
-    equilibrium.
+    The picture is in the vertical plane of the anchor and the top. The line is straight between the
+    upper ends of successive components. Raise UsageError if the profile has no equilibrium.
     """
     row = _nearest(dataset, time)
     names = ("depth_top", "x_top", "y_top")

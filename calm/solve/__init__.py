@@ -1,4 +1,4 @@
-"""Solver for moorings, nets of legs and tows: from arrays of pieces to a `Solution`."""
+"""Solver for moored lines, nets of legs and towed lines, from arrays of pieces to a `Solution`."""
 
 from calm.solve.fit import fit_length as fit_length
 from calm.solve.fit import fit_tow_length as fit_tow_length

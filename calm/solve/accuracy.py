@@ -1,12 +1,11 @@
 """Error estimates from shapes on coarse and on halved segments, and Richardson extrapolation.
 
-The march is of second order: one third of the change from the coarse to the fine shape is the error
-of the fine shape, and is added to the fine shape (Richardson's extrapolation). Nodes inside the
-segments of the coarse shape, and nodes at levels that split a segment, take the change of their
-neighbours.
+The march is of second order, so one third of the change from the coarse to the fine shape is the
+error of the fine shape. Richardson extrapolation adds this third to the fine shape. Nodes that only
+the fine shape has get the change of their neighbours.
 
-Segments contain no jumps or kinks, since the march splits them at levels of the profile and
-wherever a drag law switches.
+The method requires segments without jumps or kinks. The march therefore splits segments at levels
+of the current profile and wherever a drag law switches.
 """
 
 from math import sqrt
@@ -19,8 +18,12 @@ from calm.physics.line import BETTER, HALVES, NO_SEGMENT, SEGMENT, Record
 class Errors(NamedTuple):
     """Estimated errors of a shape.
 
-    `depth` covers depths and offsets [m]; `tension` [N] and `relative` [-] cover tensions; `lift`
-    and `pull` cover the upward and the horizontal force at its end [N].
+    Attributes
+    ----------
+    depth : largest error of any depth or offset [m]
+    tension : largest error of any tension [N]
+    relative : largest relative error of any tension [-]
+    lift, pull : errors of the upward and of the horizontal force at the end of the line [N]
     """
 
     depth: float
@@ -31,9 +34,7 @@ class Errors(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Size of a recorded shape: number of nodes, number of elements off the seabed, and whether the
-    line has a touchdown.
-    """
+    """Numbers of nodes and of suspended elements of a shape, and whether it has a touchdown."""
 
     nodes: int
     hanging: int
@@ -51,8 +52,9 @@ def tension_at(record: Record, node: int) -> float:
 
 
 def next_node(record: Record, node: int, last: int) -> int:
-    """Return the next node at the end of a segment, or at the end of an element without segments,
-    but at most `last`.
+    """Return the next node, up to `last`, that is the end of a segment or of a rigid element.
+
+    Nodes where a level splits a segment are skipped.
     """
     node += 1
     while node < last and record[SEGMENT][node] >= HALVES:
@@ -70,8 +72,8 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
     ----------
     before, coarse : record of the shape on coarse segments, and its extent
     after, fine : record of the shape on halved segments, and its extent
-    near : see `calm.physics.passing.MarchSettings`. For a profile of a batch, only the ends of
-        pieces and the clamps are extrapolated
+    near : as in `calm.physics.passing.MarchSettings`; if not 0, the line belongs to a batch, and
+        only the ends of pieces and the clamps are extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0
@@ -128,7 +130,7 @@ def next_pair(
 
 
 def within_piece(record: Record, node: int) -> bool:
-    """Return whether a node is between two segments of one piece."""
+    """Return whether a node separates two segments of the same piece."""
     inside: bool = (
         record[SEGMENT][node] != NO_SEGMENT
         and record[SEGMENT][node + 1] != NO_SEGMENT
@@ -141,10 +143,10 @@ def within_piece(record: Record, node: int) -> bool:
 def thirds_at(
     before: Record, last: int, n: int, after: Record, end: int, m: int
 ) -> tuple[float, float, float]:
-    """Return one third of the change of a node from the coarse to the fine shape.
+    """Compare a node of the coarse shape with the same node of the fine shape.
 
-    The values are the change of position relative to the line's end [m], the change of tension [N],
-    and the tension in the fine shape [N].
+    Return one third of the change of its position relative to the end of the line [m], one third of
+    the change of its tension [N], and its tension in the fine shape [N].
     """
     x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
     y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])
@@ -154,7 +156,10 @@ def thirds_at(
 
 
 def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int) -> None:
-    """Extrapolate a node of both shapes, with positions relative to the end of the line."""
+    """Extrapolate the position and force of a node that occurs in both shapes.
+
+    Positions are taken relative to the end of the line.
+    """
     for column in range(6):
         third = (after[column][m] - before[column][n]) / 3.0
         if column < 2:
@@ -163,7 +168,10 @@ def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int
 
 
 def fill_between(record: Record, first: int, last: int) -> None:
-    """Correct the nodes between two extrapolated nodes by interpolation over the length of line."""
+    """Correct the nodes between two extrapolated nodes.
+
+    The correction is interpolated along the line.
+    """
     length = distance = 0.0
     for m in range(first + 1, last + 1):
         length += record[8][m]
@@ -177,7 +185,7 @@ def fill_between(record: Record, first: int, last: int) -> None:
 
 
 def take_as_marched(record: Record, nodes: int) -> None:
-    """Copy the marched positions and forces to the reported columns, without extrapolation."""
+    """Copy positions and forces to the columns of the extrapolated shape, without extrapolation."""
     for column in range(6):
         for m in range(nodes):
             record[BETTER + column][m] = record[column][m]

@@ -1,9 +1,8 @@
-"""Audit of every solution: force and moment balance recomputed from the coordinates, without the
-march.
+"""Audit of every solution, which recomputes its force and moment balance from the coordinates.
 
-Closure: buoyancy and drag of every element, computed from the final positions and axes, sum to the
-force at the line's end. Moments: every axis lies along the mean of the forces at its two ends, and
-the stretch of every cable matches that force. Both use only the positions from the march.
+The audit shares no code with the march and takes only positions from it. Force balance: buoyancy
+and drag of all elements sum to the force at the end of the line. Moment balance: every axis lies
+along the mean of the forces at its two ends, and the stretch of every cable matches that force.
 """
 
 from copy import copy
@@ -22,8 +21,9 @@ from calm.solve.solution import Solution, sizes
 
 
 def loads_of(solution: Solution) -> Floats:
-    """Return buoyancy and drag (k, 3) of every element [N]; the drag of a rigid piece is that at
-    its midpoint.
+    """Return the sum of buoyancy and drag of every element (k, 3) [N].
+
+    The drag of a rigid piece is computed at its midpoint.
     """
     moored = moored_of(solution.carried, solution.water, solution.frequency, False)
     written: list[list[float]] = [[0.0] * len(solution.cut) for _ in range(3)]
@@ -60,7 +60,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 
 
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
-    """Prepare the audit of a line in its water, and allocate the work arrays."""
+    """Prepare the audit of a line, including the work arrays."""
     moored = moored_of(line, water, frequency, compiled)
     nodes: Any = np.zeros((2, len(line.length)), np.intp)
     first, last = nodes if compiled else nodes.tolist()
@@ -69,9 +69,9 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
 
 @once_per_input
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
-    """Return the pieces of a line followed by its clamps, and the knots of the elongation curves.
+    """Return the bodies of a line for the audit, and the knots of its elongation curves.
 
-    The bodies are an array of records, one each `RefereeBody`.
+    The bodies are its pieces followed by its clamps, as an array of `RefereeBody` records.
     """
     pieces = len(line.length)
     bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(RefereeBody))
@@ -106,7 +106,10 @@ _OF_CLAMP = {
 
 
 def shape_of(solution: Solution) -> RefereeShape:
-    """Convert the shape of a solution, before extrapolation, to the array form of the audit."""
+    """Convert the shape of a solution to the array form of the audit.
+
+    The shape is the one on fine segments, before extrapolation.
+    """
     nodes = len(solution.position)
     none = np.zeros(1)
     of_elements = solution.element_piece, solution.element_clamp, solution.cut, solution.strain
@@ -119,7 +122,7 @@ def shape_of(solution: Solution) -> RefereeShape:
 
 
 def amplification(solution: Solution) -> Floats:
-    """Return (k,) the factor by which strumming increases the normal drag of every element."""
+    """Return the factor (k,) by which strumming increases the normal drag of every element."""
     line, factor = solution.line, np.ones(len(solution.cut))
     diameter = line.diameter[solution.element_piece]
     if line.strumming is None or solution.frequency == 0.0:
@@ -135,8 +138,9 @@ def amplification(solution: Solution) -> Floats:
 
 
 def flow_across(solution: Solution) -> Floats:
-    """Return (k,) speed of the current normal to each element [m/s], 0 for an element without
-    length.
+    """Return the speed (k,) of the current normal to every element [m/s].
+
+    It is 0 for an element without length.
     """
     chord = np.diff(solution.position, axis=0)
     size = sizes(chord)

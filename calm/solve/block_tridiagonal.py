@@ -1,9 +1,10 @@
-"""Solver for block-tridiagonal linear systems, in NumPy alone.
+"""Solver for block-tridiagonal linear systems, written in NumPy alone.
 
-The interiors of equal chunks are eliminated all at once, each as a small dense matrix with
-partial pivoting. The blocks between the chunks form a smaller system of the same kind, solved in
-the same way. A chain of bars and the nodes of a line in waves are such systems; SciPy's banded
-solver would take longer to load than they take to solve.
+The system is divided into equal chunks. The interiors of all chunks are eliminated at once, each as
+a small dense matrix with partial pivoting. The blocks between the chunks form a smaller
+block-tridiagonal system, which is solved in the same way. Such systems arise for a chain of bars
+and for a line in waves. SciPy has a banded solver, but takes longer to load than these systems take
+to solve.
 """
 
 from typing import Any
@@ -16,7 +17,7 @@ Numbers = NDArray[Any]
 CHUNK = 6
 """Number of blocks eliminated together; the block after them stays in the reduced system."""
 DENSE = 16
-"""Largest number of blocks of a system that is solved as one dense matrix."""
+"""Largest number of blocks of a system that is solved as a single dense matrix."""
 
 
 def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
@@ -95,7 +96,7 @@ def _densely(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) 
 
 
 def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
-    """Return the whole matrices (..., n b, n b)."""
+    """Return block-tridiagonal matrices in full (..., n b, n b)."""
     *many, count, size, _ = diagonal.shape
     matrix = np.zeros((*many, count, size, count, size), diagonal.dtype)
     for blocks, at in (
@@ -108,9 +109,7 @@ def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
 
 
 def _padded(blocks: Numbers, count: int, is_diagonal: bool) -> Numbers:
-    """Pad a system to a given number of blocks: with unit matrices on the diagonal, else with
-    zeros.
-    """
+    """Extend blocks to a given number: the main diagonal with unit matrices, others with zeros."""
     padded = np.zeros((*blocks.shape[:-3], count, *blocks.shape[-2:]), blocks.dtype)
     there = blocks.shape[-3]
     padded[..., :there, :, :] = blocks

@@ -1,8 +1,9 @@
-"""Closing of a line: the distance by which a march misses the anchor, and the root of this miss on
-fixed segments.
+"""Closing of a line: find the value of its unknown at which the line ends at its anchor.
 
-The *miss* is the height [m] of the line's last end above its target: the top of its anchor, or the
-ship that tows it. The miss decreases as the free end goes deeper and as more buoyancy is used.
+The *miss* is the height [m] of the marched end of the line above its target, which is the top of
+the anchor, or the tow point. The miss decreases as the free end goes deeper and as more of a
+float's buoyancy is used. The root of the miss is found on fixed segments, on which it is
+continuous.
 """
 
 from math import isnan, nan
@@ -63,9 +64,9 @@ fixed segments.
 
 
 class Root(NamedTuple):
-    """Root of the miss: the unknown and its value, and the miss and its slope at this value.
+    """Root of the miss: the unknown with its value x, and the miss and its slope there.
 
-    `found` is false if the miss does not change sign; a miss of NaN marks a march that stopped.
+    `found` is false if the miss does not change sign. A miss of NaN means that a march stopped.
     """
 
     found: bool
@@ -76,12 +77,12 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """A closed line, or the reason why it is not closed (see `calm.solve.solution`).
+    """A closed line, or the reason why the line cannot be closed.
 
     Attributes
     ----------
-    ending, value, piece : FOUND, or the code of the reason why there is none, with its value and
-        piece
+    ending : FOUND, or the code of the reason, see `calm.solve.solution`
+    value, piece : value that belongs to the reason, and index of the piece concerned
     root : the unknown and the remaining miss [m]
     nodes, hanging : number of nodes, and of elements above the touchdown (if any)
     landed : whether there is a touchdown
@@ -101,10 +102,10 @@ class Closed(NamedTuple):
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
-    """Return the unknown of a whole line with its free end below the surface; `lands` as in
-    `Unknown`.
+    """Return the unknown of a whole line whose free end is below the surface.
 
-    A line that may lie on the seabed ends there instead of at the top of its anchor.
+    If the line may lie on the seabed (`lands`), its target is the seabed instead of the top of the
+    anchor.
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -112,22 +113,20 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """Return the unknown of the part of a line above a float: the top of this part must reach the
-    surface.
-    """
+    """Return the unknown for the part of a line above a float, whose target is the surface."""
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
 
 def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
-    """Return a copy of an unknown that refers to another float."""
+    """Return a copy of an unknown that refers to the buoyancy of another float."""
     return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
 
 def miss_at(about: About, x: float) -> float:
-    """Return the miss [m] at a value of the unknown, NaN if the march stops.
+    """March a line for a value of the unknown and return the miss [m]; NaN if the march stops.
 
-    The other results of the march are left in the work arrays of the problem.
+    The other results of the march stay in the work arrays of the problem.
     """
     problem, unknown, work = about.problem, about.unknown, about.problem.work
     depth, out = place(problem, unknown, x)
@@ -158,8 +157,8 @@ def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, floa
 
     Returns
     -------
-    Depth of the free end [m], and length of the pieces above the surface that determines this
-    depth [m], 0 without such pieces.
+    Depth of the free end [m], and the length [m] of the pieces that are above the surface at the
+    free end; 0 without such pieces.
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -197,7 +196,7 @@ def with_share(load: Load, share: float) -> Load:
 
 
 def as_riding(load: Load, riding: Riding) -> Load:
-    """Return the load of a float at the surface, with its wind force and its drag there."""
+    """Return the load of a float at the surface, with the wind force and the reduced drag there."""
     return changed(
         load, load.buoyancy, load.volume, riding.drag, load.lift, riding.push_east,
         riding.push_north,
@@ -205,8 +204,9 @@ def as_riding(load: Load, riding: Riding) -> Load:
 
 
 def lifted_out(load: Load, share: float, gravity: float) -> Load:
-    """Return the load of a piece of which a given fraction is out of the water, without drag and
-    displacement.
+    """Return the load of a piece that is partly out of the water.
+
+    The given fraction of the piece has no drag and displaces no water.
     """
     wet = 1.0 - share
     buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
@@ -224,9 +224,7 @@ def changed(
     push_east: float,
     push_north: float,
 ) -> Load:
-    """Return a copy of a load with other forces, and with its drag coefficients multiplied by
-    `drag`.
-    """
+    """Return a load with other forces, and with its drag coefficients multiplied by `drag`."""
     return Load(
         load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume,
         drag * load.normal_drag, drag * load.tangential_drag, load.directional, lift, push_east,
@@ -235,7 +233,7 @@ def changed(
 
 
 def coarse_about(search: Search, unknown: Unknown) -> About:
-    """Return the settings of the coarse marches that search for the neighbourhood of a root."""
+    """Return the settings for marches with the coarse angle step, which bracket a root."""
     step = search.problem.limits.coarse_step
     return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
@@ -265,9 +263,9 @@ def coarse_root(
 def planned(search: Search, root: Root, step: float) -> Root:
     """Choose the segments at a given angle step, and find the root of the miss near a coarser root.
 
-    A march that chooses its segments freely is not quite continuous, so this root is not final. On
-    the segments that it chose last, the march is continuous; the root on these segments is one step
-    away, which the caller marches.
+    If the march chooses its segments freely, the miss is not quite continuous, so this root is
+    approximate. On the segments chosen last, the miss is continuous. Its root there is one secant
+    step away; the caller marches at this root.
     """
     limits = search.problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
@@ -282,7 +280,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
 
 
 def segments_of(problem: LineProblem, cuts: int) -> int:
-    """Return the number of chosen segments, or twice this number for halved segments."""
+    """Return the number of segments in a segment list: chosen, or halved and thus twice as many."""
     chosen = 0
     for k in range(len(problem.course.cables)):
         chosen += problem.work.counts[k]
@@ -292,8 +290,7 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
 def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
     """Close the line on fixed segments, starting from a root found on other segments.
 
-    If the unknown belongs to a lower float, the floats above it are first brought back to the
-    surface.
+    If the unknown belongs to a lower float, the floats above it are first placed at the surface.
     """
     unknown, shares = root.unknown, search.problem.work.shares
     if isnan(root.miss):
@@ -335,7 +332,7 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:
-    """Return the outcome of a line that does not close."""
+    """Return the outcome for a line that cannot be closed."""
     return Closed(ending, value, -1, root, 0, 0, False, 0.0, 0)
 
 
@@ -349,14 +346,15 @@ def near_root(
     small: float,
     narrow: float,
 ) -> Root:
-    """Find the root near a known root, on the other side of the surface if necessary.
+    """Find the root of the miss near a known root.
 
-    The last march is the march at this root.
+    If there is none and the free end reaches the surface, the search continues with the buoyancy of
+    the top float as unknown, and vice versa. The last march is the march at the root.
 
     Parameters
     ----------
     step, cuts, given, record : as in `About`
-    small : the miss that is small enough [m]
+    small : the search ends if the miss is at most this [m]
     narrow : width of the last bracket as a share of the whole range
     """
     problem = search.problem

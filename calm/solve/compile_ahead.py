@@ -1,7 +1,7 @@
 """Compile a part of the solver into the cache: `python -m calm.solve.compile_ahead LINE`.
 
-A small line is solved, since every line is packed into arrays of the same types. `two_speeds` runs
-this module in a child process.
+One small line is solved, which compiles the code for all lines, since every line is packed into
+arrays of the same types. `two_speeds` runs this module in a child process.
 """
 
 import sys
@@ -19,7 +19,7 @@ COMPILED = Settings(compiled=True)
 
 
 def small_line(buoyancy: float) -> Line:
-    """Return a test line: a float or a weight of given net buoyancy [N] above 50 m of cable."""
+    """Return a test line: 50 m of cable below a float, or a weight, of given net buoyancy [N]."""
     zero, none = np.zeros(2), np.zeros(0)
     return Line(
         length=np.array([0.0, 50.0]),

@@ -1,9 +1,9 @@
-"""Choice of the number of segments, from the difference between the coarse and the fine shape.
+"""Choice of the number of segments, by comparing the shape on coarse and on halved segments.
 
-Segments are chosen at twice the angle step. The line or net is closed on these, and again with
-every segment halved. The march is of second order, so a third of the change is the error of the
-fine shape (`calm.solve.accuracy`). If the error is too large, both shapes are closed again at a
-smaller angle step.
+The segments are chosen at twice the angle step, and the line or net is closed on them. Then every
+segment is halved, and the line or net is closed again. A third of the change is the error of the
+fine shape (`calm.solve.accuracy`). If this error is too large, both steps are repeated at a smaller
+angle step.
 """
 
 from math import degrees, sqrt
@@ -26,7 +26,7 @@ def finer(errors: Errors, span: float, requested: float, step: float, segments: 
     Parameters
     ----------
     span : length to which errors of depth are relative [m]
-    requested, step : the angle step of the settings, and that of this round [rad]
+    requested, step : angle step in the settings, and in this round [rad]
     segments : number of segments in the fine shape
     """
     target = degrees(requested)

@@ -1,4 +1,4 @@
-"""Conversion of a closed line to a solution, or to the reason why there is no equilibrium."""
+"""Conversion of a closed line to a `Solution`, or to an exception that explains its absence."""
 
 from dataclasses import replace
 
@@ -64,7 +64,7 @@ def solution_of(
     found: FoundShape,
     frequency: float = 0.0,
 ) -> Solution:
-    """Build the solution from the shape on halved segments (record `FINE`).
+    """Build the solution from the shape on halved segments, in the record `FINE`.
 
     Parameters
     ----------
@@ -116,9 +116,7 @@ def solution_of(
 
 
 def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, float]:
-    """Return the used fraction of the buoyancy of the floats at the surface, and the unused
-    buoyancy [N].
-    """
+    """Return the used fraction of the surface floats' buoyancy, and their unused buoyancy [N]."""
     sought = found.closed.root.unknown.sought
     if sought == BELOW:
         return 1.0, 0.0
@@ -131,8 +129,7 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 def carried_by(line: Line, problem: LineProblem) -> Line:
     """Return the line with the buoyancy and drag that its pieces have in the solution.
 
-    They differ from those of the given line for pieces at the surface, of which only the submerged
-    part counts.
+    Only the submerged part of a piece at the surface has buoyancy and drag.
     """
     if not problem.work.left[CHANGED]:
         return line
@@ -148,7 +145,7 @@ def carried_by(line: Line, problem: LineProblem) -> Line:
 def solution_found(
     found: FoundShape, problem: LineProblem, line: Line, water: Water, settings: Settings
 ) -> Solution:
-    """Build the solution of an audited shape from the record `FINE`.
+    """Build the solution of a search that ended with an audited shape.
 
     Raises
     ------
@@ -161,11 +158,12 @@ def solution_found(
 
 
 def refuse_unbalanced(closure: float, moment: float) -> None:
-    """Raise an exception if the forces or the moments of a solution do not balance.
+    """Raise NoEquilibrium if the forces or the moments of a solution do not balance.
 
-    Raises
-    ------
-    NoEquilibrium
+    Parameters
+    ----------
+    closure : relative error of the force balance [-]
+    moment : largest error of the moment balance [rad]
     """
     ending, value = ending_of_audit(closure, moment)
     if ending != solution.FOUND:
@@ -182,7 +180,7 @@ def audit_refusal(ending: int, value: float) -> NoEquilibrium:
 
 
 def closing_refusal(closed: Closed) -> NoEquilibrium:
-    """Return the exception for a line that does not close."""
+    """Return the exception for a line that cannot be closed."""
     if closed.ending == solution.MARCH_STOPPED:
         return march_stopped(closed.value)
     if closed.ending == solution.NO_SHAPE_NEAR:
@@ -197,12 +195,12 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
 
 
 def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
-    """Return the exception for a march that stopped, from its failure number."""
+    """Return the exception for a march that stopped, with the reason that its number stands for."""
     return Status.NOT_CONVERGED.because(f"The march stopped: {FAILURES[int(failure)]}.", piece)
 
 
 def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
-    """Return the exception for a moored line for which no shape was found."""
+    """Return the exception for a moored line without a shape."""
     ending, value, piece = found.closed.ending, found.closed.value, found.closed.piece
     if ending in (
         solution.MARCH_STOPPED,
@@ -242,7 +240,7 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
 
 
 def _longer_than_deep(line: Line, water: Water) -> str:
-    """Return a sentence if the line is longer than the water depth, else an empty string."""
+    """Return a sentence on a line that is longer than the water depth, or "" for other lines."""
     depth, length = water.depth, float(line.length.sum())
     if length <= depth:
         return ""
@@ -262,9 +260,7 @@ def watch_circle_radius(length: float, height: float) -> float:
 
 
 def doubted_depth(depth: float) -> str:
-    """Return the advice to check the water depth, for a line that is far too long for this
-    depth.
-    """
+    """Return a sentence that advises to check the water depth."""
     return f" The water is {depth:.1f} m deep: check `depth` and its unit (m, ft)."
 
 

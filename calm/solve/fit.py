@@ -1,5 +1,6 @@
-"""Fit of a piece's length to the top depth of a mooring in still water, or to the depth of a towed
-body.
+"""Fit of the length of a piece to a wanted depth.
+
+This is the top depth of a mooring in still water, or the depth of a towed body.
 """
 
 from dataclasses import replace
@@ -26,12 +27,14 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
-    """Find the unstretched length of a piece that puts the free end at a given depth in still water
-    [m].
+    """Find the unstretched length [m] of a piece for a wanted depth of the free end.
+
+    The line is in still water.
 
     Parameters
     ----------
-    line : the line; its `piece`, a cable or chain, may have any length
+    line : the line; the present length of its piece is ignored
+    piece : index of the piece, a cable or chain
     top_depth : wanted depth of the free end [m]
 
     Raises
@@ -48,7 +51,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
     def excess(_: None, length: float) -> float:
-        """Return the depth of the free end of the solved line, minus the wanted depth [m]."""
+        """Return the depth of the free end, minus the wanted depth [m]."""
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
         except NoEquilibrium as refusal:
@@ -84,11 +87,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
 def _upright_length(
     line: Line, water: Water, piece: int, top_depth: float, settings: Settings
 ) -> float | None:
-    """Return the piece length that makes an upright line reach from its anchor to the wanted top
-    depth [m], or None.
-
-    `water` is still.
-    """
+    """Return the length [m] of a piece that gives an upright line the wanted top depth, or None."""
     still, goal = Profile(water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
@@ -124,12 +123,13 @@ def _upright_length(
 def fit_tow_length(
     line: Line, water: Water, towing: Towing, piece: int, depth: float, settings: Settings
 ) -> float:
-    """Find the unstretched length of a towed cable that brings its lower end to a given depth [m].
+    """Find the unstretched length of a towed cable that puts its lower end at a given depth [m].
 
     Parameters
     ----------
-    line : line from the ship to the towed body; its `piece`, a cable or chain, may have any length
-    depth : wanted depth of that piece's lower end at the speed of the tow [m]
+    line : line from the ship to the towed body; the present length of its piece is ignored
+    piece : index of the piece, a cable or chain
+    depth : wanted depth of the lower end of the piece at the speed of the tow [m]
 
     Raises
     ------

@@ -1,15 +1,15 @@
-"""Terminal motion of a line that rises after release from its anchor.
+"""Steady motion of a line that rises after release from its anchor.
 
-The line moves as a whole, at the velocity at which weight, buoyancy and drag balance. It is assumed
-to move at the terminal velocity of the water where the rise begins.
+The line moves as a whole, at the velocity at which weight, buoyancy and drag balance. This terminal
+velocity is computed for the water where the rise begins.
 
 In still water, and in a current that is uniform over depth, the line drifts with the water and is
 plumb; only its vertical speed is unknown. If the horizontal current varies with depth, the drift is
 unknown too, and the line is inclined. The drift is then found by iteration from the motion of the
 plumb line, if necessary through steps of weaker shear.
 
-If the force above a part points downward, that part overtakes the part above it and the line
-doubles back. The balance of forces still holds, but the line may tangle.
+A part on which the line above pushes down overtakes that line, and the line doubles back. The
+balance of forces still holds, but the line may tangle.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -37,8 +37,8 @@ class FreeMotion:
     Attributes
     ----------
     velocity : (3,) velocity over the ground: east, north, up [m/s]
-    solution : shape and forces in the flow relative to the line; x and y from the lower
-        end. The error estimates are nan and the number of marches is 0.
+    solution : shape and forces in the flow relative to the line, with x and y relative to the lower
+        end; its error estimates are NaN and its number of marches is 0
     tangles : pieces that have overtaken, wholly or in part, the line above them
     """
 
@@ -50,18 +50,18 @@ class FreeMotion:
 def solve_rise(
     line: Line, water: Water, depth: float, settings: Settings | None = None
 ) -> FreeMotion:
-    """Find the steady motion of a free line, which rises, or sinks if its net buoyancy is negative.
+    """Find the steady motion of a free line, which sinks if its net buoyancy is negative.
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`; the seabed is ignored. Parts above the surface are
+    line, water : see `calm.physics.line`; the seabed is ignored, and parts above the surface are
         treated as submerged
     depth : depth of the line's upper end [m]
     settings : angle step; 1° by default
 
     Returns
     -------
-    FreeMotion : at 1° its velocity is within 1e-4 of the vertical speed of the continuous line's
+    FreeMotion : at 1°, the error of the velocity is at most 1e-4 of the vertical speed
 
     Raises
     ------
@@ -79,7 +79,7 @@ def solve_rise(
 
 
 def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) -> FreeMotion:
-    """March once more at the motion found, audit the shape and return the motion."""
+    """Repeat the march at the motion found, audit the recorded shape and return the motion."""
     flow = rising.flow(place.velocity)
     meeting = rising.meet(flow, place.depth, settings.angle_step, cuts, record=True)
     trace = meeting.trace
@@ -119,9 +119,7 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
 
 
 def _tangles(solution: Solution) -> tuple[int, ...]:
-    """Find the pieces that are partly upside down, and the pieces without length under
-    compression.
-    """
+    """Find the pieces that form loops: pieces partly upside down, and short ones in compression."""
     line, piece = solution.line, solution.element_piece
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0
@@ -130,25 +128,25 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
 
 
 SHORTEST_LOOP = 2.0
-"""Shortest loop of a line that may tangle [m], a default of CALM. A shorter loop is a shackle that
-leans on the float below.
+"""Length of the shortest loop that may tangle [m], a default of CALM. A shorter loop is usually a
+shackle that touches the float below.
 """
 
 
 def looped(
     line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
 ) -> tuple[int, ...]:
-    """Find the pieces in loops of a line, or none if all loops are shorter than `SHORTEST_LOOP`.
+    """Find the pieces that form loops in a line, unless the loops are shorter than `SHORTEST_LOOP`.
 
     Parameters
     ----------
     piece, rise : (k,) piece of every element, and height of its lower end above its upper end [m]
-    pushed : (n,) pieces without length that are under compression; they belong to a loop
+    pushed : (n,) pieces without length that are compressed and therefore belong to a loop
     """
     up = np.zeros(len(line.length))
     np.add.at(up, piece, np.maximum(rise, 0.0))
     back = up > 0.0 if pushed is None else (up > 0.0) | pushed
-    back[: head_count(line)] = False  # nothing is ahead of the free end
+    back[: head_count(line)] = False  # the free end has no line above it to overtake
     loops = up[back].sum() >= SHORTEST_LOOP
     return tuple(np.flatnonzero(back).tolist()) if loops else ()
 

@@ -1,8 +1,8 @@
 """Marches of a freely rising line, in the flow relative to the moving line.
 
 The line is marched from both ends to the node where its tension should be largest. A march that
-arrives at a free end with little tension left is unstable there; a march that starts at the free
-end is stable.
+starts at a free end is stable. A march that arrives at a free end is unstable there, where little
+tension is left.
 """
 
 from dataclasses import dataclass, replace
@@ -20,12 +20,12 @@ from calm.solve.problem import REACH
 
 @dataclass(frozen=True)
 class Meeting:
-    """Imbalance at the meeting point of the marches from the two ends.
+    """Imbalance at the point at which the marches from the two ends of a line meet.
 
     Attributes
     ----------
     force : (3,) sum of all forces [N]
-    gap : distance by which the lower end should start deeper [m]
+    gap : distance by which the lower end must be lowered for the marches to meet [m]
     cuts : the segments used
     trace : the shape, if it was recorded
     """
@@ -38,11 +38,11 @@ class Meeting:
 
 @dataclass(frozen=True)
 class Rising:
-    """A line that rises steadily as a whole, in a current given relative to the ground.
+    """A line that rises steadily as a whole in a current.
 
     Attributes
     ----------
-    line, water : see `calm.physics.line`
+    line, water : see `calm.physics.line`; the current is relative to the ground
     compiled : as in `Settings`
     top : depth of the upper end [m]; the depth of the lower end is unknown
     """
@@ -59,20 +59,24 @@ class Rising:
 
     @cached_property
     def weight(self) -> float:
-        """Scale of forces [N]: the total net buoyancy.
+        """Total net buoyancy as a scale of forces [N].
 
-        At least a thousandth of the sum of the absolute net buoyancies, so that it is never zero.
+        It is at least a thousandth of the sum of the absolute net buoyancies, so that it is never
+        zero.
         """
         return max(abs(float(self.lifts.sum())), 1e-3 * float(np.abs(self.lifts).sum()), 1e-300)
 
     @property
     def plumb(self) -> bool:
-        """Whether the horizontal current is uniform, so that the line hangs vertically."""
+        """Whether the horizontal current is uniform over depth, so that the line is vertical."""
         return not (np.ptp(self.water.u) or np.ptp(self.water.v))
 
     def flow(self, velocity: Floats) -> Water:
-        """Return the flow relative to a line that moves at a velocity (3,) over the ground
-        [m/s].
+        """Return the water as seen from a line that moves over the ground.
+
+        Parameters
+        ----------
+        velocity : (3,) velocity of the line: east, north, up [m/s]
         """
         east, north, up = velocity
         water = self.water
@@ -106,10 +110,10 @@ class Rising:
 
     @cached_property
     def _split(self) -> int:
-        """Index of the first piece that is marched from below; the tension just above should be the
-        largest in the line.
+        """Index of the first piece that is marched from the lower end.
 
-        The tension is estimated for the line at rest, minus the share of each piece in the drag.
+        The tension just above this piece should be the largest in the line. It is estimated from
+        the net buoyancies and from a drag that makes the line rise steadily.
         """
         drag = self.line.plumb_drag
         pace = float(self.lifts.sum()) / max(float(drag.sum()), 1e-300)
@@ -119,9 +123,7 @@ class Rising:
 
     @cached_property
     def _tracks(self) -> tuple[Track, Track]:
-        """Return the march inputs of the part from the upper end and of the part from the lower
-        end.
-        """
+        """March inputs of the part marched from the upper end, and of the part from the lower."""
         below = replace(self.line.reversed(), towed=True)
         return (
             Track.of(self.line).first_pieces(self._split),
@@ -136,10 +138,13 @@ class Rising:
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
-        """March both parts in the flow relative to the line, with the lower end at a given depth
-        [m].
+        """March the line from both ends in the flow relative to the line, and return the imbalance.
 
-        `angle_step` [rad], `cuts` and `record` are as in `calm.physics.march`.
+        Parameters
+        ----------
+        flow : water as seen from the line
+        depth : depth of the lower end [m]
+        angle_step, cuts, record : as in `calm.physics.march`
         """
         above, below = self._tracks
         cables = len(above.cables)

@@ -32,14 +32,16 @@ if this fails, in steps.
 
 @dataclass(frozen=True)
 class FreePlace:
-    """Velocity over the ground (3,) [m/s], and depth of the lower end of a `Rising` [m]."""
+    """Velocity over the ground (3,) [m/s] and depth of the lower end [m] of a `Rising` line."""
 
     velocity: Floats
     depth: float
 
 
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
-    """Find the terminal velocity and position of a free line, and the segments of its last march.
+    """Find the terminal velocity of a free line and the depth of its lower end.
+
+    The segments of the last march are returned, too.
 
     Parameters
     ----------
@@ -50,6 +52,7 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
     NoEquilibrium
         ``no-equilibrium`` if nothing limits the speed, ``not-converged`` if no root is found.
     MarchError
+        The march of the vertical line stopped.
     """
     plumb = _plumb(rising, angle_step)
     for shares in SHEARS:
@@ -63,8 +66,9 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
 
 
 def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
-    """Return the line in a current whose difference from `velocity` (3,) [m/s] is reduced to a
-    fraction.
+    """Return the line in weaker shear.
+
+    The difference of the current from `velocity` (3,) [m/s] is multiplied by `share`.
     """
     (east, north, _), water = velocity, rising.water
     u, v = east + share * (water.u - east), north + share * (water.v - north)
@@ -74,9 +78,10 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 def plumb_speed(line: Line, water: Water, top: float) -> float:
     """Return the terminal speed of a vertical line in still water [m/s], positive up.
 
-    The sum of weight, buoyancy and drag is zero, whether or not the parts pull at one another. Drag
-    is almost proportional to the square of the speed, so secants in the squared speed converge at
-    once. Smooth pieces in the drag crisis may allow several speeds; the search finds one.
+    At this speed the sum of weight, buoyancy and drag is zero; the forces between the parts do not
+    matter. Drag is almost proportional to the square of the speed, so secants in the squared speed
+    converge at once. Smooth pieces in the drag crisis may allow several speeds; the search finds
+    one.
 
     Parameters
     ----------
@@ -106,9 +111,7 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
     ]
 
     def lifted(_: None, squared: float) -> float:
-        """Return the vertical imbalance of forces [N] at a squared speed with the sign of the
-        motion.
-        """
+        """Return the vertical imbalance [N]; the squared speed has the sign of the velocity."""
         drag = across.copy()
         for place, curve, reynolds in smooth:
             drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
@@ -128,9 +131,7 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
 
 
 def _plumb(rising: Rising, angle_step: float) -> FreePlace:
-    """Find the motion of a line that is assumed to hang vertically and to drift with the mean
-    current.
-    """
+    """Estimate the motion, assuming that the line is vertical and drifts with the mean current."""
     still, depth = rising.water.still(), rising.guessed_depth
     velocity = np.array([0.0, 0.0, plumb_speed(rising.line, still, rising.top)])
     upright = replace(rising, water=still)
@@ -140,7 +141,7 @@ def _plumb(rising: Rising, angle_step: float) -> FreePlace:
 
 
 def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats:
-    """Return the (3,) horizontal current averaged over the line, weighted by normal drag [m/s]."""
+    """Return the mean horizontal current (3,) over the line, weighted by normal drag [m/s]."""
     water, line = rising.water, rising.line
     if rising.plumb:
         return np.array([water.u[0], water.v[0], 0.0])
@@ -157,17 +158,18 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
 
 
 _FOLLOWED = 8
-"""Largest number of updates of the lower end's depth for a vertical line; two or three suffice."""
+"""Largest number of updates of the lower end's depth for a vertical line. Two or three suffice."""
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
-    """Find the motion near a known motion, on the segments that the march chooses there, or None.
+    """Find the motion near a known motion, and its segments; None if the search fails.
 
-    A march that chooses its segments freely is not quite continuous, so the line is closed on given
-    segments: first on coarse ones, then on those that the march chooses at that solution.
+    If the march chooses its segments freely, the imbalance is not quite continuous. The line is
+    therefore closed on given segments: first on coarse ones, then on those that the march chooses
+    at that solution.
 
-    For a plumb line only the forces are closed, and the depth of the lower end follows: if the line
-    doubles back within a cable, that depth is not continuous.
+    For a plumb line only the forces are closed by Newton's method, and the depth of the lower end
+    follows. If the line doubles back within a cable, that depth is not continuous.
     """
     sheared = not rising.plumb
     unknown = np.array([sheared, sheared, True, sheared])
@@ -217,18 +219,21 @@ System = Callable[[Floats], Floats]
 def system_root(
     system: System, start: Floats, small: float, slopes: Floats | None = None
 ) -> tuple[Floats, Floats | None] | None:
-    """Find the root of a system of equations near a start, and its derivatives; None if no root is
-    found.
-
-    Parameters
-    ----------
-    system : from k unknowns to k values, both scaled so that 1 is large; may raise `MarchError`
-    small : stop when no absolute value exceeds this
-    slopes : (k, k) derivatives of nearly the same system
+    """Find the root of a system of equations near a start; None if no root is found.
 
     The derivatives are computed once by finite differences, then updated by Broyden's rule. They
     are computed anew if a step with updated derivatives does not halve the residual. A step is
     halved until the residual decreases.
+
+    Parameters
+    ----------
+    system : function from k unknowns to k values, scaled so that 1 is large; may raise `MarchError`
+    small : stop when no absolute value exceeds this
+    slopes : (k, k) derivatives of nearly the same system, if known
+
+    Returns
+    -------
+    The unknowns at the root, and the derivatives there.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """
@@ -258,9 +263,7 @@ def system_root(
 
 
 def _step(system: System, x: Floats, value: Floats, slopes: Floats) -> tuple[Floats, Floats] | None:
-    """Return the next unknowns, with a smaller residual, and the residual; None if no step reduces
-    the residual.
-    """
+    """Return unknowns with a smaller residual, and this residual; None if no step reduces it."""
     try:
         step = -np.linalg.solve(slopes, value)
     except np.linalg.LinAlgError:

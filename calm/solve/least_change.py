@@ -1,4 +1,4 @@
-"""Roots in a bracket, and the smallest change of a value that meets a condition."""
+"""Search for roots in a bracket, and for the smallest change of a value that meets a condition."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -22,21 +22,21 @@ class LeastChange:
     """Search for the smallest change of a value that reduces an excess to zero.
 
     The search goes outward from the start in both directions, in doubling steps, until the excess
-    is gone. If the excess stays positive, the search continues around its minimum. Brent's method
+    is at most zero. If it stays positive, the search continues around its minimum. `bracketed_root`
     then refines the answer (bisection for whole numbers). The excess is assumed to change sign at
     most once between two steps.
 
     Parameters
     ----------
-    excess : excess at a number: at most 0 if the condition holds, None if it cannot be computed
-    low, high : range of the number
+    excess : function of the value; at most 0 if the condition holds, None if it cannot be computed
+    low, high : range of the value
     whole : whether only whole numbers are allowed
     exact : whether the excess must be 0 instead of at most 0
     small : absolute excess that counts as 0 if `exact`
 
     Attributes
     ----------
-    tried : excess of every number tried; inf if it cannot be computed
+    tried : excess at every value tried; inf if it cannot be computed
     """
 
     excess: Callable[[float], float | None]
@@ -48,7 +48,7 @@ class LeastChange:
     tried: dict[float, float] = field(default_factory=dict)
 
     def at(self, x: float) -> float:
-        """Return the excess at a value; each value is computed only once."""
+        """Return the excess at a value, which is computed only once."""
         if x not in self.tried:
             excess = self.excess(x)
             self.tried[x] = inf if excess is None else excess
@@ -66,7 +66,7 @@ class LeastChange:
         if held is None:
             return None
         found = self._nearest(start, held)
-        # try the same distance on the other side, where the steps differed
+        # a value just as near on the other side may have been missed between two steps
         mirrored = 2.0 * start - found
         if self.low <= mirrored <= self.high and self.at(mirrored) <= 0.0:
             return self._nearest(start, mirrored)
@@ -87,14 +87,15 @@ class LeastChange:
         return not (any(step > noise for step in steps) and any(step < -noise for step in steps))
 
     def neighbours(self, x: float) -> tuple[float, float]:
-        """Return the tried values next below and next above x; at an end of the list, x itself."""
+        """Return the tried values next below and next above x, or x itself if there is none."""
         below = max((t for t in self.tried if t < x), default=x)
         above = min((t for t in self.tried if t > x), default=x)
         return below, above
 
     def _outward(self, start: float) -> float | None:
-        """Return the first value that meets the condition, in growing steps on both sides of the
-        start.
+        """Return the first value that meets the condition.
+
+        Values are tried in growing steps on both sides of the start.
         """
         upward = [start + step for step in self._steps(self.high - start)]
         downward = [start - step for step in self._steps(start - self.low)]
@@ -112,10 +113,12 @@ class LeastChange:
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
     def _around_the_least(self) -> float | None:
-        """Search around the smallest excess, by repeatedly halving the wider of the two adjacent
-        gaps.
+        """Search around the smallest excess.
 
-        This finds a dip between two steps, and numbers close to those without an answer.
+        The wider of the two adjacent gaps is halved repeatedly.
+
+        This finds a dip between two steps, and solutions next to values without a computable
+        excess.
         """
         for _ in range(_DEEPENINGS):
             best = self.least
@@ -132,7 +135,10 @@ class LeastChange:
         return None
 
     def _nearest(self, start: float, good: float) -> float:
-        """Return the value nearest to the start that meets the condition, given a `good` value."""
+        """Return the value nearest to the start that meets the condition.
+
+        It is sought between the start and `good`, a value that meets the condition.
+        """
         between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
         bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))
         return self._whole(bad, good) if self.whole else self._root(bad, good)
@@ -164,7 +170,7 @@ class LeastChange:
         return root if self.exact else self._rounded(root, good)
 
     def _rounded(self, root: float, good: float) -> float:
-        """Round the root to few digits, on the side that meets the condition."""
+        """Round a root to few digits, towards the values that meet the condition."""
         towards = ceil if good > root else floor
         for digits in range(SIGNIFICANT, 1, -1):
             unit = 10.0 ** (floor(log10(abs(root))) + 1 - digits) if root else 1e-6
@@ -184,10 +190,10 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function between a and b, at which its signs differ.
+    """Find the root of a continuous function between a and b, where its signs differ.
 
-    Chandrupatla's method: inverse quadratic steps if three values lie on a suitable curve, else
-    bisection; the first step is a secant.
+    Chandrupatla's method takes inverse quadratic steps if the last three values lie on a suitable
+    curve, and bisects otherwise. The first step is a secant.
 
     Parameters
     ----------
@@ -241,8 +247,8 @@ def root_near(
 ) -> tuple[bool, float, float, float]:
     """Find the root of a decreasing function near x, between two limits.
 
-    Secants from x and its slope are used while they halve the value, then ever longer steps until
-    the sign changes, then `bracketed_root`.
+    The search takes secant steps from x as long as they halve the value. Then it takes ever longer
+    steps until the sign changes, and calls `bracketed_root`.
 
     Parameters
     ----------
@@ -252,7 +258,7 @@ def root_near(
 
     Returns
     -------
-    Whether the sign changes; the root, the value there, and the slope of the last secant.
+    Whether a root was found; the root, the value there, and the slope of the last secant.
     """
     x = min(max(x, low), high)
     fx = function(about, x)

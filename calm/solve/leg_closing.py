@@ -1,8 +1,8 @@
-"""Newton's method for a net of legs on fixed segments, as compiled laws.
+"""Closing of a net of legs on fixed segments by Newton's method, as compiled laws.
 
-The Jacobian (`slopes`) is updated by Broyden's rule as long as each step reduces the residual
-(`found`) enough. A net with a single unknown is closed by secants, or by bisection of a bracket if
-these do not converge.
+Broyden's rule updates the Jacobian (`slopes`) as long as each step reduces the residual (`found`)
+enough; otherwise it is computed anew. A net with a single unknown is closed by secants, or by
+bisection of a bracket if these do not converge.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -58,8 +58,8 @@ FLATTEST, MOST_HALVED = -1e-3, 100
 SINGULAR = 1e-14
 """Pivot, in shares, below which the Newton step leaves an unknown unchanged."""
 NEGLIGIBLE_PULL = 1e-5
-"""Largest horizontal pull at a touchdown, as a fraction of the weight of a leg, that cannot hold
-the net in place. This pull exceeds the drag of the weak current that is added to still water.
+"""Largest horizontal pull at a touchdown that counts as none, as a fraction of the weight of a leg.
+It exceeds the drag of the weak current that is added to still water.
 """
 NEEDS_ROOM = -1
 """Outcome of a search for which the work arrays hold too few segments (instead of `FOUND` or
@@ -70,10 +70,10 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
-    """Solve the linear equations of a Newton step, and return the size of the step, in shares.
+    """Solve the linear equations of a Newton step, and return the size of the step.
 
-    The step is written to `net.update`. The method is Gaussian elimination with partial pivoting;
-    an unknown without a pivot keeps its value.
+    The step is written to `net.update`, as shares of the scales of the unknowns. The method is
+    Gaussian elimination with partial pivoting; an unknown without a pivot keeps its value.
     """
     size, matrix, row = len(found), net.matrix, 0
     for r in range(size):
@@ -112,7 +112,7 @@ def squares(values: Sequence[float]) -> float:
 
 
 def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
-    """Copy the values to the array `kept`."""
+    """Copy values into an existing array `kept`."""
     for k in range(len(values)):
         kept[k] = values[k]
 
@@ -120,7 +120,7 @@ def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
     """Close a net with one unknown, whose residual falls as the unknown grows (see `close_net`).
 
-    Uses secants, and bisection if a secant does not halve the residual.
+    Secant steps are used, and bisection if a secant step does not halve the residual.
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
@@ -150,7 +150,9 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net by Newton's method; the last march uses the unknowns found.
+    """Close a net by Newton's method, and return the outcome.
+
+    The last march is the march with the unknowns found.
 
     Parameters
     ----------
@@ -169,7 +171,10 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net on the segments and from the unknowns of its last march (see `close_net`)."""
+    """Close a net on the segments of its last march (see `close_net`).
+
+    The first step starts from the residual of that march.
+    """
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
@@ -219,8 +224,9 @@ def close_on(
 
 
 def drifts(net: NetProblem) -> bool:
-    """Return whether a net is free to drift: no end is held, and all anchored legs lie slack on the
-    seabed.
+    """Return whether a net is free to drift.
+
+    This is so if no end is held and every anchored leg lies slack on the seabed.
     """
     anchored = False
     for i in range(len(net.legs)):
@@ -240,7 +246,7 @@ def drifts(net: NetProblem) -> bool:
 
 
 def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
-    """Reverse the records of all legs that were marched upwards."""
+    """Convert the records of legs that were marched upwards to downward order."""
     for i in range(len(net.legs)):
         if net.legs[i].kind == ANCHORED:
             record_down(net, i, x, how)
@@ -249,9 +255,7 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments at twice an angle step [rad] near approximate unknowns, and close the net on
-    these segments.
-    """
+    """Choose segments at twice an angle step [rad], and close the net on these segments."""
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = write_residual(net, x, choosing, False)
     if failure != GOES_ON:
@@ -261,9 +265,9 @@ def close_coarsely(
 
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
-    """Close a net to full precision from approximate unknowns, on sufficiently fine segments."""
-    # segments chosen near rough unknowns depend on these, so that they are chosen again in the
-    # closed shape; a single unknown is known well enough at once
+    """Close a net to full precision from approximate unknowns, on segments fine enough."""
+    # segments depend on the unknowns for which they are chosen, so choose them again in the closed
+    # shape, unless a single unknown is precise enough at once
     if len(x) > 1 and net.lines.limits.near == 0.0:
         ending = close_coarsely(net, sea, x, step, max(enough, CLOSED_FOR_SEGMENTS))
         if ending != FOUND:
@@ -282,9 +286,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net near its unknowns, first on segments of twice an angle step, then on halved
-    segments.
-    """
+    """Close a net on segments chosen at twice an angle step, and then on halved segments."""
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
@@ -302,7 +304,7 @@ def close_both(
 
 
 def segments_of(net: NetProblem) -> int:
-    """Return the number of segments of the fine shape, twice the number of chosen segments."""
+    """Return the number of halved segments in all legs."""
     segments = 0
     for i in range(len(net.legs)):
         for k in range(net.legs[i].cables):
@@ -311,8 +313,9 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate the shapes of all legs and the positions of the nodes, and return the estimated
-    errors.
+    """Extrapolate all legs and nodes to vanishing segment length.
+
+    Return the estimated errors.
     """
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = relative = 0.0
@@ -340,12 +343,12 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
 
 
 class NetTask(NamedTuple):
-    """One task for `do_task`, the single entry point to the compiled laws of a net.
+    """Arguments of `do_task`, the single entry point to the compiled laws of a net.
 
     Attributes
     ----------
-    task : MARCH or SLOPES marches the net, without its slopes or with them; CLOSE is `close_net`,
-        SETTLE is `settle`, DRIFTS is `drifts` of the net that was settled last
+    task : MARCH marches the net; SLOPES also computes its slopes; CLOSE calls `close_net`; SETTLE
+        calls `settle`; DRIFTS calls `drifts` for the net settled last
     x : the unknowns, which CLOSE and SETTLE replace
     enough, known : as in `close_net`
     """
@@ -362,7 +365,7 @@ MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def do_task(job: NetTask, _: float) -> float:
-    """Perform a task and return its outcome; for the task DRIFTS, 1 if the net drifts, else 0."""
+    """Perform a task and return its outcome; DRIFTS returns 1 if the net drifts, else 0."""
     net, x, how = job.net, job.x, job.how
     if job.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0

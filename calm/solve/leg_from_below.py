@@ -1,9 +1,10 @@
 """March of an anchored leg of a net, upwards from its touchdown.
 
-The unknowns are the components of the force on its lower end. The horizontal ones are the pull at
-the touchdown. The vertical one is the weight carried by the seabed, or minus the pull on the anchor
-if no part lies on the seabed. Upwards from the touchdown the march is stable even if the pull there
-is zero. Then the leg is slack: the part on the seabed is longer than the distance to the anchor.
+The unknowns are the components of the force on the lower end of the leg. The horizontal components
+are the pull at the touchdown. The vertical component is the weight carried by the seabed or, if no
+part lies on the seabed, minus the uplift on the anchor. A march up from the touchdown is stable
+even if the pull there is zero. Then the leg is slack: the part on the seabed is longer than the
+distance to the anchor.
 """
 
 from collections.abc import Sequence
@@ -69,10 +70,10 @@ NO_PULL = 1e-9
 
 
 def course_from_below(course: Course) -> Course:
-    """Reverse the order of a leg for the march upwards: a point load at its lower end, then its
-    stages.
+    """Reverse a leg for the march upwards.
 
-    The point load at its upper end is omitted. Pieces keep their numbers.
+    The new course begins with a point load, which stands for the force at the lower end. The point
+    load at the upper end is omitted. Pieces keep their numbers.
     """
     stages, loads = [course.stages[0]], [course.loads[0]]
     cables: list[CableStretch] = []
@@ -90,7 +91,13 @@ def course_from_below(course: Course) -> Course:
 
 
 def weight_of(course: Course, stage: Stage, excess: float) -> float:
-    """Return the weight [N] of a cable, or of successive rigid pieces, in water near the seabed."""
+    """Return the weight [N] in water of a cable, or of successive rigid pieces, near the seabed.
+
+    Parameters
+    ----------
+    excess : weight of a cubic metre of water at the seabed, minus that of water of the reference
+        density [N/m³]
+    """
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
         return -(cable.buoyancy + excess * cable.volume) * cable.length
@@ -102,7 +109,7 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
 
 @within
 def pull_of(up: float, east: float, north: float) -> Load:
-    """Return the load of a single force [N], without drag."""
+    """Return the load that applies a given force [N] and has no drag."""
     return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
 
 
@@ -118,7 +125,7 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     """March an anchored leg up from its touchdown, or from its anchor, and return the outcome.
 
-    The record runs up the leg; `record_down` reverses it.
+    The shape is recorded from the lower end up; `record_down` reverses it.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -129,7 +136,8 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
         east = north = 0.0
     # the pull at a touchdown is parallel to the seabed
     along = -bed.east * east - bed.north * north
-    lowest = leg.stages - max(leg.landing, 1)  # the highest stage, from below, that may lie
+    # the highest stage that may lie on the seabed, counted from below
+    lowest = leg.stages - max(leg.landing, 1)
     lies = borne > 0.0 and lowest > 0
     height = x[at + 3] if leg.own > 3 else end_height(leg, lies, -borne)
     level = interval_at(how.sea.levels, -height, 0)
@@ -151,7 +159,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
             hanging = whole * (1.0 - left / weight)
             set_row(cables, here.first, of_length(cables[here.first], hanging))
         else:
-            up, hanging = left, inf  # the seabed bears on its lower end
+            up, hanging = left, inf  # the seabed supports its lower end
             if here.kind == ROD:
                 below: State = (0.0, 0.0, height, east, north, along + up, 1.0, level)
                 tx, ty, tz = rod_axis(here, loads, how.sea, below, problem.limits.near)
@@ -196,8 +204,14 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
 def lay(
     net: NetProblem, i: int, sea: Sea, height: float, record: int, recording: bool
 ) -> tuple[State, int, float]:
-    """Lay the lower part of an anchored leg on the seabed, from its touchdown at a height [m]; see
-    `lay_line`. The leg must have been the last that `march_up` marched in its work arrays."""
+    """Lay the lower part of an anchored leg on the seabed, from its touchdown on (see `lay_line`).
+
+    The leg must be the one that `march_up` marched last in its work arrays.
+
+    Parameters
+    ----------
+    height : height of the touchdown [m]
+    """
     state, course = net.state[i], leg_of(net, sea, i).course
     east, north, up, level = state[TO_EAST], state[TO_NORTH], state[TO_UP], 0
     foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
@@ -208,8 +222,9 @@ def lay(
 
 
 def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
-    """Reverse the record of an anchored leg to the order of other legs: the pull at its upper end,
-    the suspended part, the part on the seabed.
+    """Convert the record of an anchored leg to downward order.
+
+    The record then holds the pull at the upper end, the suspended part, and the part on the seabed.
     """
     state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
     nodes, height = int(state[SUSPENDED]), net.lines.work.records[i][how.record][2][0]
@@ -231,8 +246,9 @@ def march_suspended(
 ) -> int:
     """March the suspended part of an anchored leg, and return the outcome.
 
-    Cuts refer to whole cables, counted from below. Given cuts are scaled to the hanging length of
-    their cable, which makes the march a smooth function of this length.
+    The list of segments covers whole cables, counted from below. If the segments are given, those
+    of the cable at the touchdown are scaled to its hanging length. This makes the march a smooth
+    function of this length.
     """
     leg, cuts = net.legs[i], net.cuts
     of_step, counts = work.chosen, work.counts
@@ -288,9 +304,7 @@ def march_suspended(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Reverse the record of a march upwards, so that it begins with the pull at the upper end of
-    the leg.
-    """
+    """Reverse the record of an upward march, so that it begins with the pull at the upper end."""
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]
@@ -307,7 +321,7 @@ def turn_round(record: Record, nodes: int) -> None:
         while a < b:
             column[a], column[b] = column[b], column[a]
             a, b = a + 1, b - 1
-    # refers to the node at the lower end of an element, now that the record is reversed
+    # a segment code belongs to the lower end of an element, which the reversal has changed
     ends = record[SEGMENT]
     for n in range(2, nodes):
         if ends[n] != NO_SEGMENT:
@@ -317,8 +331,7 @@ def turn_round(record: Record, nodes: int) -> None:
 
 @within
 def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
-    """Write the horizontal distance by which a leg misses its anchor, and the height above the
-    seabed of its lower end.
+    """Write the horizontal miss of an anchored leg, and the error of the height of its lower end.
 
     A part on the seabed under tension leads straight to the anchor. A slack part may be longer than
     this distance. One condition covers both. Let d be the vector from the touchdown to the anchor,
@@ -355,9 +368,7 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
 
 
 def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> None:
-    """Draw the part of a slack leg on the seabed as a straight line to its anchor, shortened to
-    this distance.
-    """
+    """Draw the seabed part of a slack leg as a straight line, shortened to end at the anchor."""
     state, suspended, count = net.state[i], int(net.state[i][SUSPENDED]), int(net.state[i][COUNT])
     foot, reach = suspended - 1, max(net.state[i][LIES], 1e-300)
     to_east, to_north, _ = place_of(net, i, x, 1)

@@ -1,4 +1,4 @@
-"""Layout of a net's leg for the march, and conversion of the solved leg to a single line."""
+"""Preparation of a net's legs for the march, and conversion of a solved leg to a single line."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ from calm.solve.solution import FOUND, Settings, Solution, Status
 
 @dataclass(frozen=True)
 class LegEnd:
-    """End of a leg: free, at a node, or held.
+    """End of a leg, which is free, at a node, or held at a fixed position.
 
     Attributes
     ----------
@@ -52,8 +52,8 @@ class LegEnd:
     place : position east, north and up [m] of an end that is held, else None
     seabed : height of the seabed below an anchor [m]; -inf without an anchor
     deeper : slope of the seabed there: increase in depth per metre to the east and to the north [-]
-    past : current at an end that is held [m/s], which sets the strumming frequency of the
-        leg's cables
+    past : current at an end that is held [m/s], which sets the strumming frequency of the leg's
+        cables
     """
 
     node: int = -1
@@ -70,7 +70,7 @@ class LegEnd:
 
 @dataclass(frozen=True)
 class NetLeg:
-    """A leg of a net: its line from its upper to its lower end, without an anchor."""
+    """A leg of a net, with its line listed from the upper to the lower end, without an anchor."""
 
     line: Line
     upper: LegEnd
@@ -79,9 +79,9 @@ class NetLeg:
 
 @dataclass(frozen=True)
 class LaidLeg:
-    """A leg prepared for the march: its line and its single-line problem.
+    """A leg prepared for the march, with the problem of its line.
 
-    The line of a leg that hangs with a free lower end is listed from the free end.
+    The line of a leg with a free lower end is listed from that end.
     """
 
     leg: NetLeg
@@ -91,13 +91,16 @@ class LaidLeg:
 
     @property
     def ends(self) -> tuple[LegEnd, LegEnd]:
-        """The ends at which the march begins and ends."""
+        """The end at which the march begins, and the end at which it stops."""
         upper, lower = self.leg.upper, self.leg.lower
         return (lower, upper) if self.kind == leg_numbers.HANGING_DOWN else (upper, lower)
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns of the leg, on a slope including the height of the touchdown."""
+        """Number of unknowns of the leg.
+
+        On a sloping seabed, the height of its touchdown is also unknown.
+        """
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
         return 3 if self.kind == leg_numbers.PULLED else 1
@@ -109,9 +112,7 @@ class LaidLeg:
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number divided by the diameter at the end of the leg [1/m], and the current
-        there, as in `LegRow`.
-        """
+        """Strouhal number over diameter [1/m], and the current, at the leg's end (see `LegRow`)."""
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -119,7 +120,7 @@ class LaidLeg:
 
     @staticmethod
     def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
-        """Prepare a leg for the march; `rough` as in `problem_of`."""
+        """Prepare a leg for the march; `rough` is as in `problem_of`."""
         line = leg.line
         if leg.upper.free:
             kind = leg_numbers.STANDING
@@ -132,11 +133,11 @@ class LaidLeg:
         return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int, span: float) -> LegRow:
-        """Return the leg as a row of numbers for compiled code.
+        """Return the numbers of the leg for compiled code.
 
         Parameters
         ----------
-        first : index of the first of its unknowns
+        first : index of the first unknown of the leg
         span : as in `NetProblem`
         """
         (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
@@ -155,14 +156,14 @@ class LaidLeg:
 
     @property
     def surface_range(self) -> float:
-        """Range of the leg's unknown for a float at the surface, from immersed to out of the water
-        [m]. The range equals the leg's length, so that a Newton step does not skip it.
+        """Range of the unknown over which a surface float rises out of the water [m].
+
+        The range equals the leg's length, so that a Newton step does not skip it.
         """
         return max(float(self.line.length.sum()), 0.5)
 
     @property
     def bed(self) -> Bed:
-        """The seabed below the leg."""
         lower, bed = self.leg.lower, self.problem.limits.bed
         own = lower.deeper if isfinite(lower.seabed) else bed[:2]
         return bed._replace(east=own[0], north=own[1])
@@ -182,8 +183,13 @@ class LaidLeg:
         return sum(stage.length for stage in stages), sum(weights)
 
     def most_lying(self, height: float) -> float:
-        """Return the largest weight of line on the seabed [N] for a given height of the upper end
-        above the seabed [m]; inf if no part of the leg may touch the seabed.
+        """Return the largest weight of line that can lie on the seabed [N].
+
+        It is inf if no part of the leg may touch the seabed.
+
+        Parameters
+        ----------
+        height : height of the upper end of the leg above the seabed [m]
         """
         course, suspended, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
@@ -198,14 +204,15 @@ class LaidLeg:
 
     @property
     def highest(self) -> float:
-        """Largest allowed height of the leg [m]: that of the surface, or of an end that is held
-        above the surface.
+        """Largest allowed height of any part of the leg [m].
+
+        This is the surface, or an end that is held above the surface.
         """
         return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
 
 def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> NetProblem:
-    """Prepare a net for the search, with work arrays for `room` segments per leg."""
+    """Prepare a net for the search, with work arrays for up to `room` segments per leg."""
     firsts = [0, *np.cumsum([each.unknowns for each in laid]).tolist()]
     size, problems = firsts[-1] + 3 * nodes, [each.problem for each in laid]
     courses = [each.course for each in problems]
@@ -286,12 +293,12 @@ def leg_found(
     errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
-    """Convert a solved leg to the audited solution of a single line.
+    """Convert a solved leg to the solution of a single line, with its audit.
 
     Parameters
     ----------
     i : number of the leg
-    ends : (3,) position of its end in the fine shape, and extrapolated [m]
+    ends : position (3,) of the end of the leg in the fine shape, and the same extrapolated [m]
     errors : errors of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
@@ -301,7 +308,7 @@ def leg_found(
     problem = laid.problem._replace(course=course, work=work)
     first = int(laid.below_a_point)
     if first:
-        work.left[CHANGED] = 1.0  # the pull
+        work.left[CHANGED] = 1.0  # the point load at the upper end
     share, landed = float(state[leg_numbers.SHARE]), bool(state[leg_numbers.STAGE] >= 0.0)
     sought = 0 if share < 1.0 and problem.surfacing else BELOW
     root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
@@ -350,8 +357,12 @@ def leg_found(
 
 
 def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> None:
-    """Raise an exception if part of a leg is out of the water, or below a seabed that this part may
-    not touch.
+    """Raise NoEquilibrium if part of a leg is out of the water, or below the seabed.
+
+    Parameters
+    ----------
+    near : error of depths [m]
+    before : number of pieces in the legs before this leg
     """
     depth = leg.water.depth
     near += 1e-6 * depth
@@ -380,7 +391,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
 
 def unsettled(why: str) -> NoEquilibrium:
-    """Return the exception, with advice, for a net without equilibrium."""
+    """Return the exception for a net without equilibrium, with advice."""
     return Status.NOT_CONVERGED.because(
         f"No equilibrium of the net was found: {why}.",
         advice="Check the lengths of its legs against the distances between their ends. Solve the "

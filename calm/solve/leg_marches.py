@@ -1,8 +1,9 @@
-"""Residual and Jacobian of a net of legs, as compiled laws.
+"""Residual and Jacobian of a net of legs, as functions that can be compiled.
 
-The unknowns are the depths of free ends, the pulls on other ends, and the places of nodes. The
-residual (`found`) is the distance by which each leg misses its end, and the sum of the pulls at
-each node. The Jacobian (`slopes`) is made of differences between marches on the same segments.
+The unknowns are the depths of free ends, the pulls on other ends, and the positions of nodes. The
+residual (`found`) holds the distance by which each leg misses its end, and the sum of the pulls at
+each node. The Jacobian (`slopes`) is computed by finite differences between marches on the same
+segments.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -57,7 +58,8 @@ def load_leg(
 
     Returns
     -------
-    Depth of its start, and length of its part above the surface, as in `place` [m].
+    Depth of the start of the leg [m], and the length of its part above the surface [m], as in
+    `place`.
     """
     leg, state = net.legs[i], net.state[i]
     if leg.kind == PULLED:
@@ -73,11 +75,11 @@ def load_leg(
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from its unknowns, and return the outcome, see `calm.physics.line`.
+    """March a leg from its unknowns, and return an outcome defined in `calm.physics.line`.
 
-    A strumming leg is marched until its frequency equals the shedding frequency of the vortices at
-    its end. The shedding frequency falls as the assumed frequency rises, since more drag raises the
-    line. The solution is found by secants, and by bisection of a bracket if these do not converge.
+    A strumming leg is marched until its frequency equals the vortex shedding frequency at its end.
+    The shedding frequency falls as the assumed frequency rises, since more drag raises the line.
+    The solution is found by secants, and by bisection of a bracket if these do not converge.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
@@ -104,7 +106,7 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
 
 
 def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg once; a strumming leg keeps its last frequency."""
+    """March a leg once, at the present strumming frequency."""
     net.state[i][SHARE] = 1.0
     if net.legs[i].kind == ANCHORED:
         return march_up(net, i, x, how)
@@ -141,7 +143,7 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
 
 
 def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
-    """Return the shedding frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
+    """Return the vortex shedding frequency F = St |V| sin φ/D at the end of a leg [Hz].
 
     φ is the angle between the current and the force there, see `calm.physics.strumming`.
     """
@@ -155,8 +157,9 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Return the row of the residual for result k of a leg's march (see `OUT`), or -1 if no row
-    exists.
+    """Return the row of the residual to which result k of a leg's march belongs, or -1.
+
+    The results are listed at `OUT`.
     """
     leg = net.legs[i]
     pulled = leg.own > 1
@@ -171,8 +174,9 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add a multiple of the results of a leg's march to the residual, or to a column of its
-    slopes.
+    """Add results of a leg's march, times `share`, to the residual or to a column of the slopes.
+
+    The residual is changed if `column` is negative.
     """
     for k in range(OUT):
         row = row_of(net, i, k)
@@ -186,10 +190,9 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """March all legs and write the residual to `found`. If requested, also write its slopes and
-    update the force scales.
+    """March all legs, write the residual to `found`, and return the outcome of the marches.
 
-    Returns the outcome of the marches.
+    If `slopes`, also compute the Jacobian and update the force scales.
     """
     size, nodes = len(net.found), net.nodes_at
     for k in range(size):
@@ -227,7 +230,10 @@ def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, sl
 
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
-    """Add the derivatives of a leg's march to the slopes of the residual."""
+    """Add the derivatives of the residual with respect to a leg's unknowns to the Jacobian.
+
+    Return the outcome of the marches.
+    """
     leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
     start, end = nodes + 3 * leg.start, nodes + 3 * leg.end
     if leg.kind == ANCHORED and leg.start >= 0:
@@ -269,9 +275,9 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
 def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Scale the unknown forces of a leg by the pull in its last march.
 
-    The pull of a slack leg may be a thousandth of other pulls: steps of a size suited to these give
-    no information about its slopes. No scale exceeds the weight of the heaviest leg; otherwise legs
-    that are too short would be stretched until they meet.
+    The pull of a slack leg may be a thousandth of other pulls. Finite differences with steps for
+    such large pulls would not reveal its slopes. No scale exceeds the weight of the heaviest leg;
+    otherwise legs that are too short would be stretched until they meet.
     """
     leg, out = net.legs[i], net.passed[i]
     if leg.own == 1:

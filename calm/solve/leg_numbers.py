@@ -44,13 +44,14 @@ above the seabed at which an anchored leg begins.
 
 
 class LegRow(NamedTuple):
-    """A leg as a row of numbers.
+    """Numbers that compiled code needs for a leg.
 
     Attributes
     ----------
-    kind, first, own : kind of march; index of the first of its own unknowns, and their number
-    start, end : numbers of the nodes at its upper and at its lower end (reversed for a leg that
-        hangs down from its upper end); -1 for none
+    kind, first, own : kind of march; index of the first unknown of the leg, and number of its
+        unknowns
+    start, end : numbers of the nodes at its upper and at its lower end (reversed for a leg with a
+        free lower end); -1 for none
     seabed : height of the seabed below its anchor [m]; -inf without an anchor
     rise : height of its anchor's top above the seabed [m]
     lifts : vertical pull above which its end is at the top of the anchor [N], see `end_height`
@@ -63,7 +64,9 @@ class LegRow(NamedTuple):
         of the leg there; 0 for a leg that does not strum
     past_east, past_north, past_up : current there [m/s]
     weight : sum of the absolute net forces of its pieces [N], the scale of forces on a slack leg
-    stages, landing, cables, surfacing, rows, pieces : number of each, see `Course`
+    stages, cables, surfacing, rows, pieces : numbers of stages, cables, buoyant pieces, rows of the
+        hull table, and pieces
+    landing : first stage that may lie on the seabed, see `Course`
     """
 
     kind: int
@@ -98,20 +101,21 @@ class NetProblem(NamedTuple):
 
     Attributes
     ----------
+    legs : numbers of each leg
     lines : a `LineProblem` whose arrays have a row for each leg, sized for the longest leg
-    up : courses of anchored legs from below, see `calm.solve.leg_from_below`
-    cuts : work array for the segments of such a leg
-    held : (·, 6) positions of held ends of each leg: start and end of its march [m]
-    state : state of each leg: `STAGE` and the following
+    up : courses of the anchored legs in upward order, see `calm.solve.leg_from_below`
+    cuts : work array for the segments of an anchored leg
+    held : (·, 6) positions of held ends of each leg, at the start and the end of its march [m]
+    state : state of each leg, with the indices `STAGE` to `COARSE_GROUNDED`
     passed : (·, `OUT`) results of each march
     first, last : nodes at the ends of each piece
-    found, kept : residual as shares of `rows`: of the last march, and of the unknowns kept
-    slopes, update : the Jacobian of `found` by shares of `scale`, and the Newton step
+    found, kept : residual of the last march, and of the best unknowns so far, as shares of `rows`
+    slopes, update : Jacobian of `found` by shares of `scale`, and the Newton step
     trial, matrix, order : work arrays for the step
-    coarse, better : the unknowns on coarse segments, and extrapolated
-    scale : scales of the unknowns; every leg has its own scale of forces
+    coarse, better : unknowns on coarse segments, and extrapolated unknowns
+    scale, rows : scales of the unknowns and of the residual; every leg has its own scale of forces
     errors : errors of depths [m] and tensions [N]
-    nodes_at : index of the first unknown of the nodes
+    nodes_at : index of the first unknown that belongs to a node
     length, force : length of the longest leg [m]; a typical force [N]
     span : length to which errors of depth are relative [m]
     """
@@ -144,15 +148,21 @@ class NetProblem(NamedTuple):
 
 
 class Marching(NamedTuple):
-    """Settings for the march of all legs: water, angle step, cuts (given, or chosen in the march),
-    and record.
+    """Settings for the march of all legs.
 
-    `exact`: whether segments are split at every level. Marches for slopes must be split like the
-    march that they belong to: the effect of a different split exceeds the effect of the small step.
-
-    `loose`: pull of a slack leg towards its anchor, as a share of its scale. The true value is
-    zero; a search may start with a larger value, so that slack legs determine the direction in
-    which a net drifts.
+    Attributes
+    ----------
+    sea : the water
+    step : angle step [rad]
+    cuts, given : index of the segment list, and whether its segments are given or chosen by the
+        march
+    exact : whether segments are split at every level. Marches for slopes must be split like the
+        march that they belong to: the effect of a different split exceeds the effect of the small
+        step
+    record : index of the record for the shapes
+    loose : pull of a slack leg towards its anchor, as a share of its scale. The true value is zero;
+        a search may start with a larger value, so that slack legs determine the direction in which
+        a net drifts
     """
 
     sea: Sea
@@ -189,14 +199,15 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
 
 @within
 def bed_of(net: NetProblem, i: int) -> Bed:
-    """Return the seabed below a leg."""
+    """Return the seabed below leg i."""
     leg, bed = net.legs[i], net.lines.limits.bed
     return Bed(leg.deeper_east, leg.deeper_north, bed.friction, bed.excess)
 
 
 def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
-    """Return the height of a leg's node above the seabed plane through its anchor, or through the
-    origin if the leg has no anchor [m].
+    """Return the height of a node of a leg above the seabed [m].
+
+    The seabed is a plane through the anchor of the leg, or below the origin if it has no anchor.
     """
     end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
     east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -208,9 +219,7 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
 
 @within
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Return the position of the first node (`end` 0) or last node (`end` 1) in the record of a leg
-    [m].
-    """
+    """Return the position at which the record of a leg begins (`end` 0) or ends (`end` 1) [m]."""
     leg, held = net.legs[i], net.held[i]
     node = leg.end if end else leg.start
     if node >= 0:
@@ -221,11 +230,16 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
 
 @within
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
-    """Return the height of the lower end of an anchored leg [m], given its vertical pull there [N].
+    """Return the height of the lower end of an anchored leg [m].
 
     A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
-    If the pull is less than the weight of a piece of line as long as the anchor height, its end is
-    in between. This avoids a jump, so that neither state has to be guessed.
+    The height changes gradually while the pull is less than the weight of a piece of line as long
+    as the anchor is high. This avoids a jump, so that neither state has to be guessed.
+
+    Parameters
+    ----------
+    lies : whether part of the leg lies on the seabed
+    pull : vertical pull on the anchor [N]
     """
     if lies:
         return leg.seabed

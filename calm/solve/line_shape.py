@@ -1,4 +1,4 @@
-"""Shapes of a moored line on coarse and on halved segments, see `calm.solve.fineness`."""
+"""Shapes of a moored line on coarse and on halved segments, as `calm.solve.fineness` requires."""
 
 from math import inf, isnan
 from typing import NamedTuple
@@ -44,10 +44,10 @@ class FoundShape(NamedTuple):
 
     Attributes
     ----------
-    closed : the shape in the record `FINE`, as marched; its columns from `BETTER` on are
-        extrapolated
+    closed : outcome, and size of the shape in the record `FINE`; the record holds the marched shape
+        and, from column `BETTER` on, the extrapolated one
     errors : see `calm.solve.accuracy`
-    share, grounded : extrapolated unknown, and length on the seabed [m]
+    share, grounded : extrapolated unknown, and extrapolated length on the seabed [m]
     closure, moment : residuals found by the audit
     other : another equilibrium found by the search
     """
@@ -65,7 +65,7 @@ NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
-    """Return a shape that was not audited yet."""
+    """Return a shape before its audit."""
     return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
 
 
@@ -78,11 +78,11 @@ def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
 def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
     """Close a line near a coarse root, on segments that are fine enough.
 
-    The shape is in the record `FINE` and is not yet audited.
+    The shape is written to the record `FINE` and is not yet audited.
 
     Parameters
     ----------
-    hangs : whether the line must hang clear of the seabed; it is rejected if far below the seabed
+    hangs : whether the line must stay clear of the seabed; it is rejected if far below the seabed
     """
     problem, limits = search.problem, search.problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
@@ -106,8 +106,7 @@ def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
 
 
 def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
-    """Close a line near a root, first on the segments chosen at twice an angle step, then on halved
-    segments.
+    """Close a line on segments chosen at twice an angle step, and then on halved segments.
 
     `hangs` is as in `settle_line`.
     """
@@ -127,12 +126,15 @@ def extent_of(closed: Closed) -> Extent:
 
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
-    """Apply `polish`, but reject a line far below the seabed before its segments are refined."""
+    """Close a line by `polish`.
+
+    If it must hang clear of the seabed (`hangs`), reject it if it is far below the seabed.
+    """
     return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
-    """Return a closed line; reject a line that may not touch the seabed but is far below it."""
+    """Return a closed line, or its rejection if it is far below a seabed that it must not touch."""
     if not hangs or closed.ending != FOUND:
         return closed
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
@@ -154,12 +156,12 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
 
 
 def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
-    """Close a line of a batch on its segments and on halved segments, by linear interpolation.
+    """Close a line of a batch on chosen and on halved segments, by linear interpolation.
 
-    Two shapes on the cuts, in the records `OTHER` and `COARSE`, give the change of every node with
-    the unknown. Both closed shapes follow from this change and from one march on the halved cuts.
-    The outcome is not `FOUND` if the closed shapes are too far from the marched ones, or if the
-    line lies on the seabed.
+    Two shapes on the chosen segments, in the records `OTHER` and `COARSE`, show how every node
+    moves with the unknown. Both closed shapes follow from this movement and from one march on the
+    halved segments. The outcome is not `FOUND` if the closed shapes are too far from the marched
+    ones, or if the line may lie on the seabed.
     """
     problem, unknown = search.problem, root.unknown
     limits, work = problem.limits, problem.work
@@ -203,8 +205,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
 
 
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
-    """Move the shapes `COARSE` and `FINE` by given fractions of the change from `OTHER` to
-    `COARSE`.
+    """Move the shapes `COARSE` and `FINE` by fractions of the change from `OTHER` to `COARSE`.
 
     Returns
     -------

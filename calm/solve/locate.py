@@ -1,5 +1,7 @@
-"""Search for equilibria: below the surface in order of depth from the upright line, else with a
-float at the surface.
+"""Search for approximate equilibria of a moored line.
+
+Depths of the free end are tried downwards from that of the upright line. If the upright line would
+reach out of the water, floats at the surface are tried, too.
 """
 
 from math import isnan, nan, sqrt
@@ -43,8 +45,9 @@ current grows or turns with depth. Separate equilibria closer than this spacing 
 distinguished.
 """
 NEAR = (0.02, 0.2)
-"""Additional depths tried near the upright line, as fractions of the first step of `SCAN`. With its
-top in a weak current, a line may miss its anchor, but reach it in the stronger current just below.
+"""Additional depths tried near the upright line, as fractions of the first step of `SCAN`. A line
+whose top is in a weak current may miss its anchor, but reach it with the top just below, in a
+stronger current.
 """
 DIP_SAMPLES = 8
 """Number of depths tried between three samples, to detect a change of sign of the miss."""
@@ -65,14 +68,15 @@ Sample = tuple[float, float]
 
 
 class CoarseRoots(NamedTuple):
-    """Approximate roots for a line: one that is clear of the seabed, one with a touchdown.
+    """Approximate roots for a line that is clear of the seabed, or that has a touchdown.
 
     Attributes
     ----------
-    ending, value : FOUND, or the reason why there is none (see `calm.solve.solution`)
+    ending, value : FOUND, or the reason why there is none (see `calm.solve.solution`), and its
+        value
     root : root of the highest equilibrium
-    other : another root: the deepest of the scan, or a root with another share of the
-        float's buoyancy in use; not `found` if there is none
+    other : another root: the deepest of the scan, or a root with another share of the float's
+        buoyancy in use; not `found` if there is none
     """
 
     ending: int
@@ -82,9 +86,13 @@ class CoarseRoots(NamedTuple):
 
 
 def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
-    """Find approximate roots, or only the `first` root below the surface.
+    """Find approximate roots for a line with a touchdown (`lands`), or clear of the seabed.
 
     Roots at which the miss grows with depth are unstable and are ignored.
+
+    Parameters
+    ----------
+    first : whether the highest root is enough
     """
     problem = search.problem
     unknown = whole_line(problem, lands)
@@ -157,12 +165,13 @@ def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
 
 
 def samples_below(search: Search, unknown: Unknown, count: int) -> int:
-    """Sample the miss at increasing depths so that its roots are separated. Return the number of
-    samples, or 0 if a march stops.
+    """Sample the miss at increasing depths that separate its roots.
 
-    If the current neither grows nor turns with depth, the miss falls by more than the shift. Then
-    there is at most one root, which the first shift brackets. If the current grows or turns
-    significantly, depths are scanned.
+    Return the number of samples, or 0 if a march stops.
+
+    If the current neither grows nor turns with depth, the miss falls by more than the increase in
+    depth. Then there is at most one root, which the first increase brackets. If the current grows
+    or turns significantly, depths are scanned.
     """
     problem, limits = search.problem, search.problem.limits
     samples, deepest = problem.work.samples, limits.depth
@@ -197,10 +206,9 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
 
 
 def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
-    """Find a sample of opposite sign close to the middle of three samples, between which the miss
-    has a dip.
+    """Find a sample of opposite sign near the middle one of three samples, if the miss dips there.
 
-    Uses a golden-section search; returns the middle sample if this fails.
+    A golden-section search is used; if it finds no such sample, the middle sample is returned.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
@@ -222,11 +230,14 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
 
 
 def growth_below(sea: Sea, depth: float) -> float:
-    """Return the largest rate at which the current increases with depth, below a given depth,
-    relative to the maximum speed [1/m].
+    """Return the largest growth of the current with depth below a level [1/m].
 
-    The rate is 0 for a current that only weakens. For a current that turns, the part that is not
-    parallel to the current above counts as an increase.
+    The growth is relative to the maximum speed, and 0 for a current that only weakens. For a
+    current that turns, the part that is not parallel to the current above counts as growth.
+
+    Parameters
+    ----------
+    depth : depth of the level [m]
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1
@@ -248,7 +259,10 @@ def growth_below(sea: Sea, depth: float) -> float:
 
 
 def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
-    """Return the knockdown [m] if the strongest current acted at all levels."""
+    """Return an upper bound of the knockdown [m].
+
+    It assumes that the strongest current acts at all levels.
+    """
     problem, sea = search.problem, search.problem.sea
     greatest, fastest = 1, -1.0
     for k in range(1, len(sea.intervals)):
@@ -263,7 +277,7 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
 
 
 def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineProblem:
-    """Return a copy of the problem in a uniform current."""
+    """Return a copy of the problem with a uniform current."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -275,7 +289,7 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
 
 
 def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
-    """Return a copy of the problem with the current at every level reduced to a fraction."""
+    """Return a copy of the problem with the current multiplied by a fraction."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -298,11 +312,14 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest root with a float at the surface, for a float that could also be immersed.
+    """Find the highest root with a float at the surface, if the line also closes below it.
 
-    Such a float has less drag at the surface, or the wind acts against the current. `immersed` ≥ 0
-    is the miss with all buoyancy in use. A miss of NaN in a root that is `found` marks a march that
-    stopped.
+    Both are possible if the float has less drag at the surface, or if the wind acts against the
+    current. If a march stops, the root is `found` but its miss is NaN.
+
+    Parameters
+    ----------
+    immersed : miss with the free end at the surface and all buoyancy in use, at least 0 [m]
     """
     problem = search.problem
     none = Root(False, unknown, nan, nan, nan)
@@ -330,14 +347,17 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
 
 
 def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
-    """Find the used fraction of buoyancy of the lowest float at the surface, and of the floats
-    above that float.
+    """Find the equilibrium of a line with one or several floats at the surface.
 
-    The top float is tried first. If it closes the line only with the next float out of the water,
-    or not at all, the next float is at the surface too. The share of the upper float then follows
-    from the part of the line between them, and the next float closes the line. A single float rides
-    at its draft; several floats are assumed just below the surface. `deep` < 0 is the miss with the
-    free end at the surface and all buoyancy in use.
+    The root is the fraction of the lowest float's buoyancy that is in use. The top float is tried
+    first. If the line closes only with the next float out of the water, or not at all, the next
+    float is at the surface too. The used fraction of the upper float then follows from the part of
+    the line between them, and that of the next float closes the line. A single float rides at its
+    draft; several floats are assumed just below the surface.
+
+    Parameters
+    ----------
+    deep : miss with the free end at the surface and all buoyancy in use, below 0 [m]
     """
     problem, limits = search.problem, search.problem.limits
     none = Root(False, unknown, nan, nan, nan)
@@ -384,9 +404,9 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
 
 
 def turns_back(sea: Sea) -> bool:
-    """Return whether the direction of the current turns by more than 90° with depth.
+    """Return whether the current turns by more than 90° over depth; weak currents are ignored.
 
-    In such a current, a line at the surface may have several equilibria. Weak currents are ignored.
+    In such a current, a line at the surface may have several equilibria.
     """
     last = len(sea.intervals)
     greatest = 0.0
@@ -407,9 +427,9 @@ def turns_back(sea: Sea) -> bool:
 
 
 def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
-    """Find the used fraction of the top float's buoyancy, and a second stable root.
+    """Find two stable roots for the used fraction of the top float's buoyancy.
 
-    If there are several roots, the first root returned is reached by raising the current from zero.
+    If there are several, the first root is the one that is reached as the current rises from zero.
     The second is not `found` if there is only one root.
     """
     lowest, highest = outer_roots(search, unknown)
@@ -436,8 +456,8 @@ def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
     """Find the stable roots with the smallest and the largest used fraction of buoyancy.
 
-    An equilibrium is stable if more buoyancy in use draws the line down. Without stable roots, the
-    roots are not `found`; a miss of NaN marks a march that stopped.
+    An equilibrium is stable if more buoyancy in use draws the line down. The roots are not `found`
+    if no root is stable; their miss is NaN if a march stopped.
     """
     lowest = highest = Root(False, unknown, nan, nan, nan)
     share, high = 0.0, coarse_miss(search, unknown, 0.0)
@@ -452,15 +472,13 @@ def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:
-    """Return the height of a float's top above the surface [m]."""
+    """Return the height above the surface of the top of the float `lower` [m], at a root."""
     miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
     return nan if isnan(miss) else search.problem.work.left[Z]
 
 
 def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
-    """Find the used fraction of a float's buoyancy that places the top of the next float at the
-    surface.
-    """
+    """Find the used fraction of a float's buoyancy that brings the next float to the surface."""
     part = down_to(search.problem, unknown, lower)
     loaded, unloaded = coarse_miss(search, part, 1.0), coarse_miss(search, part, 0.0)
     if isnan(loaded) or isnan(unloaded):
@@ -473,9 +491,7 @@ def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """Return whether the line in still water stays too deep even with the smallest used
-    buoyancy.
-    """
+    """Return whether the line is too long for still water even with the least buoyancy in use."""
     assert unknown.sought != BELOW
     least = search.problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)

@@ -1,9 +1,9 @@
-"""Static equilibrium of a moored line, interpreted or compiled, and shapes near a solved
-equilibrium.
+"""Static equilibrium of a moored line, and of lines that differ slightly from a solved one.
 
-Two independent solutions cut a line differently and also differ by their truncation errors, which
-hides a small change. Here every neighbouring line keeps the cuts of the first shape and starts at
-its root. Two or three marches close it, and differences between the shapes are derivatives.
+Two independent solutions divide a line into different segments and have different truncation
+errors, which hides a small change. Here every slightly different line keeps the segments of the
+first line and starts at its root. Two or three marches close it, and differences between the shapes
+are derivatives.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -55,14 +55,13 @@ MORE_ROOM = 8
 
 
 SLACK_LINE_CURRENT = 1e-3
-"""Speed of a weak current [m/s] that defines the direction of a slack line and has no other effect.
-"""
+"""Speed of a weak current [m/s] that gives a slack line a direction and has no other effect."""
 
 
 def stirred(water: Water) -> Water | None:
     """Return the water with a weak current added at its still levels, or None if no level is still.
 
-    A slack line that ends in a still layer hangs there in a vertical fold, as in the weakest
+    A slack line that ends in a still layer hangs there in a vertical fold, in the limit of a weak
     current.
     """
     still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
@@ -79,8 +78,8 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
     Returns
     -------
-    Solution : the highest equilibrium found. At 1° its depths and offsets are within 5e-5 of
-        the water depth, and its tensions within 2e-4, of those of the continuous line.
+    Solution : the highest equilibrium found. At 1°, errors of depths and offsets are at most 5e-5
+        of the water depth, and relative errors of tensions at most 2e-4.
 
     Raises
     ------
@@ -108,14 +107,14 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
 
 def find_compiled(search: Search, referee: Referee) -> FoundShape:
-    """Run `find_shape` compiled."""
+    """Run `find_shape` in compiled code."""
     task = SearchTask(search, referee)
     by_address(run_search, task)(task, 0.0)
     return read_found(list(search.problem.work.found))
 
 
 def search_of(problem: LineProblem, compiled: bool) -> Search:
-    """Return the search function of a problem, compiled or interpreted."""
+    """Return a problem with its march, compiled or interpreted."""
     if not compiled:
         return Search(miss_at, problem)
     whole = whole_line(problem, False)
@@ -129,12 +128,7 @@ def lacks_room(problem: LineProblem) -> bool:
 
 
 def refuse_endless(line: Line, water: Water) -> None:
-    """Raise an exception if a line is far longer than the water depth.
-
-    Raises
-    ------
-    NoEquilibrium
-    """
+    """Raise NoEquilibrium if a line is far longer than the water depth."""
     out = float(line.length.sum())
     if out > MOST_DEPTHS * water.depth:
         raise Status.NOT_CONVERGED.because(
@@ -145,16 +139,16 @@ def refuse_endless(line: Line, water: Water) -> None:
 
 
 class SearchTask(NamedTuple):
-    """Arguments of the function `run_search`."""
+    """Arguments of `run_search`."""
 
     search: Search
     referee: Referee
 
 
 def run_search(task: SearchTask, first: float) -> float:
-    """Run a search, write the result to the work arrays of the problem, and return the outcome.
+    """Run a search, write its result to the work arrays of the problem, and return the outcome.
 
-    If `first` is not 0, the starts of a batch are computed instead, before its first profile.
+    If `first` is above 0, compute the starts of a batch instead, as before its first profile.
     """
     if first > 0.0:
         return float(fill_starts(task.search))
@@ -172,7 +166,7 @@ at `FIRST_OTHER`.
 
 
 def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
-    """Write a found shape to the result array."""
+    """Write a shape, or the reason why there is none, to the result array."""
     closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
@@ -195,7 +189,7 @@ def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
 
 
 def read_found(values: Sequence[float]) -> FoundShape:
-    """Return the found shape from the result array."""
+    """Read a shape, or the reason why there is none, from the result array."""
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = (
         int(values[i]) for i in WHOLE
     )
@@ -225,7 +219,7 @@ class Nearby:
 
     Attributes
     ----------
-    solution : solution of the line itself
+    solution : solution of the line as given
 
     Raises
     ------
@@ -250,8 +244,9 @@ class Nearby:
         self._trace = Trace.of(work.records[FINE], closed.nodes)
 
     def node(self, piece: int, clamp: int = -1) -> int:
-        """Return the node number of a piece's top, or of a clamp; the number holds for all slightly
-        different lines.
+        """Return the number of the node at the top of a piece, or at a clamp.
+
+        The number holds for all slightly different lines.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
@@ -262,8 +257,8 @@ class Nearby:
 
         Returns
         -------
-        (k+1, 3) east and north of the anchor, up from the surface [m]; and the share in use of
-        the buoyancy of the floats at the surface, 1 below it.
+        Positions (k+1, 3) east and north of the anchor and up from the surface [m]. The second
+        result is the used fraction of the surface floats' buoyancy, 1 without such floats.
 
         Raises
         ------
@@ -279,7 +274,7 @@ class Nearby:
     def solved(self, line: Line, water: Water) -> Solution:
         """Solve a different line on the segments of this line.
 
-        The error estimates are those of this line, since the cuts are the same.
+        The error estimates are those of this line, since the segments are the same.
 
         Parameters
         ----------
@@ -288,7 +283,7 @@ class Nearby:
         Raises
         ------
         NoEquilibrium
-            No shape passes every check, or none of the same kind is near.
+            No shape passes every check, or only one of the two lines has a touchdown.
         """
         search, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled
@@ -321,7 +316,7 @@ class Nearby:
         return search, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:
-        """Return the root for another water depth."""
+        """Return the approximate root of this line for water of another depth."""
         root, deeper = self._root, water.depth - self._water.depth
         was, x = root.unknown, root.x
         unknown = Unknown(was.goal - deeper, was.sought, was.rides, was.lands, was.stages)
@@ -331,7 +326,10 @@ class Nearby:
 
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line on segments chosen at its angle step, in the record `FINE`."""
+    """Close a line on segments chosen at its angle step.
+
+    The shape is written to the record `FINE`.
+    """
     located, step = locate(search, lands, False), search.problem.limits.angle_step
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)

@@ -1,9 +1,10 @@
 """Equilibrium of a net of legs: lines that are joined at nodes.
 
-Every leg is integrated by the march of a single line: from its free end if it has one, else from
-its upper end with an unknown pull. Further unknowns are the depths of the free ends and the
-positions of the nodes. The conditions are that every leg ends at its held position and that the
-pulls at every node balance (see `calm.solve.leg_marches`).
+Each leg is integrated by the march of a single line: from its free end if it has one, else from its
+upper end with an unknown pull, or upwards from the seabed if it is anchored. Further unknowns are
+the depths of the free ends and the positions of the nodes. The conditions are that every leg ends
+at its held position or its node, and that the pulls at every node balance (see
+`calm.solve.leg_marches`).
 """
 
 from collections.abc import Callable, Sequence
@@ -51,8 +52,8 @@ class NetSolution:
         listed from its lower end
     nodes : (n, 3) positions [m]
     imbalance : (n,) size of the resultant force at each node [N]
-    miss : largest distance between a leg's end and its held position [m]
-    depth_error, tension_error : estimates of the largest errors [m], [N]
+    miss : largest distance between the end of a leg and its held position or node [m]
+    depth_error, tension_error : estimates of the largest error of depths [m] and tensions [N]
     marches : number of marches
     unknowns : unknowns of the solution, used to start the search for similar nets
     """
@@ -68,7 +69,7 @@ class NetSolution:
 
 
 class LacksRoom(Exception):
-    """A leg needs more segments than there is room for."""
+    """Raised if a leg needs more segments than the work arrays hold."""
 
 
 class NetSearch:
@@ -88,12 +89,12 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the current; the new water has equal depth and density."""
+        """Replace the water by water with another current but the same depth and density."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:
-        """Return the unknowns that correspond to an approximate start."""
+        """Convert approximate positions and forces to the unknowns of the net."""
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
@@ -114,7 +115,7 @@ class NetSearch:
         return x
 
     def do(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
-        """Run a task of `NetTask`, and return its outcome and the resulting unknowns."""
+        """Run a task (see `NetTask`), and return its outcome and the resulting unknowns."""
         own: Any = x.copy() if self.compiled else x.tolist()
         job = NetTask(task, self.net, own, how, enough, False)
         run = by_address(do_task, job) if self.compiled else do_task
@@ -142,7 +143,7 @@ class NetSearch:
     def settled(self, x: Floats) -> Floats:
         """Return the unknowns to full precision, on segments that are fine enough.
 
-        Raises NoEquilibrium if Newton's method does not converge.
+        Raise NoEquilibrium if Newton's method does not converge.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
         # slack legs may not meet the first limit; the audit decides if only the second is met
@@ -165,10 +166,9 @@ class NetSearch:
         return trace
 
     def solution(self, x: Floats) -> NetSolution:
-        """Return the last equilibrium found, after an audit of every leg and of the balance at
-        every node.
+        """Return the equilibrium settled last, after the audit of every leg and every node.
 
-        Raises NoEquilibrium if the solution fails a check.
+        Raise NoEquilibrium if the solution fails a check.
         """
         net, legs, better = self.net, [], np.array(self.net.better)
         water = self.water
@@ -250,9 +250,7 @@ def with_room(
     solve: Callable[[NetSearch], Answer],
     legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
 ) -> Answer:  # fmt: skip
-    """Return the result of a search, repeated with larger work arrays until these hold all
-    segments.
-    """
+    """Run a search, and repeat it with larger work arrays until these hold all segments."""
     room = ROOM
     while True:
         try:
@@ -266,11 +264,8 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 
     If a net in still water is held by slack legs alone, no force determines the direction in which
     it drifts. Newton's method then begins with slack legs that pull slightly towards their anchors.
-    This pull is reduced to a tenth at a time, or by less if that does not converge.
-
-    Raises
-    ------
-    NoEquilibrium
+    This pull is reduced by a factor of ten at a time, or by less if that does not converge. Raise
+    NoEquilibrium if no equilibrium is found.
     """
     try:
         return net.settled(roughly_closed(net, near))
@@ -291,15 +286,9 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
     """Return approximate unknowns of a net in equilibrium.
 
     If another solution is given, the search starts near it. Otherwise the current is raised from
-    still water in steps, which leads to the highest of several equilibria. If that fails, the
-    search starts from the rest positions of lumped masses released in the current
-    (`calm.solve.net_start`).
-
-    `loose` is as in `Marching`.
-
-    Raises
-    ------
-    NoEquilibrium
+    still water in steps, which leads to the highest equilibrium. If that fails, the search starts
+    from the rest positions of lumped masses released in the current (`calm.solve.net_start`).
+    `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
@@ -327,8 +316,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 
 
 class NearbyNet:
-    """A net and its solution, from which nets with a slightly different leg are solved on the same
-    segments.
+    """A solved net, whose segments are used to solve nets with one slightly different leg.
 
     Parameters
     ----------
@@ -357,8 +345,9 @@ class NearbyNet:
         net.do(leg_closing.MARCH, self._x, self._how)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
-        """Return the node number of a piece's top in a leg, or of a clamp; the number holds for all
-        slightly different lines.
+        """Return the number of the node at the top of a piece of a leg, or at a clamp.
+
+        The number holds for all slightly different lines.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
@@ -369,14 +358,15 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Return the nodes and the used fraction of buoyancy of leg `number`, if that leg has
-        another line.
+        """Return the nodes and the used fraction of buoyancy of a leg, if one leg has another line.
 
-        Two steps with the slopes of the original net leave an error of third order in the change.
+        Two Newton steps with the slopes of the original net leave an error of third order in the
+        change. Raise NoEquilibrium if a march stops.
 
-        Raises
-        ------
-        NoEquilibrium
+        Parameters
+        ----------
+        number, line : number of the leg that is changed, and its line
+        leg : number of the leg to return
         """
         net, x = self._net, self._x
         legs = [each.leg for each in net.laid]

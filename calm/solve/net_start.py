@@ -1,7 +1,7 @@
-"""Approximate start for a net: lumped masses on springs are released and come to rest.
+"""Approximate start for a net, from the rest positions of lumped masses on springs.
 
-This is only a start for the march, which solves the net anew: cables stretch here by some
-hundredths, and tangential friction is ignored.
+The march then solves the net accurately from this start. Here, cables stretch by some hundredths,
+and tangential friction is ignored.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class NetStart(NamedTuple):
 
 
 class _Lumps:
-    """Lumped masses of all legs: positions, net forces, and the springs between them."""
+    """The lumped masses of all legs, with the springs between them."""
 
     def __init__(self, legs: tuple[NetLeg, ...], nodes: int, water: Water) -> None:
         self.water, self.nodes = water, nodes
@@ -95,9 +95,7 @@ class _Lumps:
         self.stiffness = self.typical / SOFTEST / self.lengths
 
     def _spread(self, place: Floats, legs: tuple[NetLeg, ...]) -> Floats:
-        """Place all lumps: nodes between the points that hold the net, other lumps along their
-        legs.
-        """
+        """Place nodes between the held ends of their legs, and other lumps along their legs."""
         for _ in range(200):
             before = place.copy()
             for lump in range(self.nodes):
@@ -125,9 +123,7 @@ class _Lumps:
         return place
 
     def settle(self) -> None:
-        """Release all lumps and stop them at every peak of their kinetic energy, until they
-        rest.
-        """
+        """Release all lumps and stop them at every peak of kinetic energy, until they rest."""
         a, b = self.springs.T
         mass = np.zeros(len(self.place))
         for ends in (a, b):
@@ -158,7 +154,7 @@ class _Lumps:
             self.place += speed
 
     def pulls(self) -> Floats:
-        """Return (m, 3) force of every spring on its first lump [N]."""
+        """Return the force (m, 3) of every spring on its first lump [N]."""
         a, b = self.springs.T
         vector = self.place[b] - self.place[a]
         size = np.maximum(np.linalg.norm(vector, axis=1), 1e-12)
@@ -167,7 +163,7 @@ class _Lumps:
         return pull
 
     def _flow(self) -> Floats:
-        """Return (n, 3) drag on the lumps [N]."""
+        """Return the drag (n, 3) on the lumps [N]."""
         current = self.water.current_at(-self.place[:, 2])
         axis = np.zeros_like(self.place)
         a, b = self.springs.T
@@ -183,8 +179,10 @@ class _Lumps:
 
 
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
-    """List the bodies on a line: distance from the top [m], net force [N], drag normal to the axis
-    only, and drag in all directions, per squared speed.
+    """List the bodies on a line for the lumped masses.
+
+    Each has a distance from the top [m], a net force [N], and two drag factors per squared speed:
+    for flow across the axis only, and for flow in any direction.
     """
     found, top = [], 0.0
     density = water.density_at(np.array(0.5 * water.depth))
@@ -208,7 +206,7 @@ def start_of(legs: tuple[NetLeg, ...], nodes: int, water: Water) -> NetStart:
 
     Parameters
     ----------
-    legs : from their upper to their lower ends
+    legs : legs of the net
     nodes : number of nodes
     """
     lumps = _Lumps(legs, nodes, water)

@@ -1,4 +1,4 @@
-"""A line prepared for the search: plain numbers and work arrays."""
+"""A line prepared for the search, as plain numbers and work arrays."""
 
 from collections.abc import Callable, MutableSequence, Sequence
 from itertools import accumulate
@@ -46,8 +46,6 @@ SHARE_TOLERANCE = 1e-9
 ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
 """Tolerances in a batch: allowed miss, as a fraction of the water depth; used fraction of buoyancy;
 distance of a load from its water sample, as a fraction of the water depth.
-
-
 """
 
 FOUND_SIZE = 32
@@ -72,11 +70,11 @@ class BuoyantPiece(NamedTuple):
     Attributes
     ----------
     piece : index of the piece in the line
-    load, stage : its indices among the loads and stages of the course
-    length : of the piece [m]
+    load, stage : index of its load and of its stage in the course
+    length : length of the piece [m]
     rigid_above : length of the rigid pieces connected to it above [m]
-    upto : length of all pieces down to its lower end [m]
-    surface_lift : its net force in surface water [N]
+    upto : length of the line from its top to the lower end of the piece [m]
+    surface_lift : net force of the piece in surface water [N]
     least : smallest share of its buoyancy that holds the line below it upright in still water [-]
     """
 
@@ -98,7 +96,8 @@ class Limits(NamedTuple):
     span : scale of lengths [m]: the water depth, or for a tow the length of line paid out
     depth : water depth [m]
     anchor_height : height of the top of the anchor above the seabed [m]
-    angle_step, coarse_step : turn of one segment [rad]
+    angle_step, coarse_step : largest rotation of a segment, in the final shape and in the search
+        [rad]
     allowed : the largest miss of a solution [m]
     share_allowed : tolerance of the share of a float's buoyancy in use [-]
     bed : the seabed
@@ -136,12 +135,12 @@ class SearchArrays(NamedTuple):
 
     Attributes
     ----------
-    left : see `calm.physics.passing` and above
+    left : results of the last march, see `calm.physics.passing`, followed by `MARCHES` to `LAST`
     chosen : segments chosen by the march [m]
     counts : number of segments of each cable
     records : records of shapes, COARSE to OTHER
-    shares : share in use of every float at the surface, the slope of its miss, and the shares of
-        the shapes in the records KEPT and OTHER
+    shares : four rows with a value for each float at the surface: share of buoyancy in use, slope
+        of its miss, and the shares in the records KEPT and OTHER
     samples : sampled unknowns and misses
     even : intervals of a uniform current
     elements : (3, n) values for every element of a shape
@@ -165,11 +164,13 @@ class LineProblem(NamedTuple):
     Attributes
     ----------
     course : the line, with its loads reduced for floats at the surface
+    sea : the water
     loads : the loads without this reduction
     flexible : whether a piece is a cable or chain
-    surfacing : the floats, from the top down
+    surfacing : the rigid buoyant pieces, from the top down
     afloat, hull : the first float at the surface, and the rows of its hull
-    starts : solutions in uniform currents of growing speed, see `calm.solve.starts`
+    limits, work : limits and work arrays of the search
+    starts : solutions in uniform currents of increasing speed, see `calm.solve.starts`
     """
 
     course: Course
@@ -185,8 +186,7 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """The unknown that closes a line: the depth of its free end, or the used fraction of a float's
-    buoyancy.
+    """Unknown that closes a line: depth of its free end, or used share of a float's buoyancy.
 
     Attributes
     ----------
@@ -214,9 +214,9 @@ class About(NamedTuple):
     Attributes
     ----------
     step : angle step [rad]
-    cuts : index of the cuts that are used, or written
-    given : whether these cuts are used
-    record : record for the shape, or `NOT_RECORDED`
+    cuts : index of the segment list, CHOSEN or HALVED
+    given : whether the march uses the listed segments; otherwise it chooses segments and lists them
+    record : index of the record for the shape, or `NOT_RECORDED`
     """
 
     problem: LineProblem
@@ -228,7 +228,7 @@ class About(NamedTuple):
 
 
 class Search(NamedTuple):
-    """A problem, and the function that marches its line (see `calm.solve.closing.miss_at`)."""
+    """A problem, and the function that computes its miss (see `calm.solve.closing.miss_at`)."""
 
     miss: Callable[[About, float], float]
     problem: LineProblem
@@ -249,10 +249,10 @@ def problem_of(
 
     Parameters
     ----------
-    compiled : whether it is for compiled code; its sequences are then arrays
-    rough : whether it is solved in a batch, without an audit
+    compiled : whether the problem is for compiled code; its sequences are then arrays
+    rough : whether the line is solved in a batch, without an audit
     room : number of segments that the work arrays hold
-    intervals : largest number of intervals of other water in which it will be solved
+    intervals : largest number of intervals of other water in which the line will be solved
     lift : the `standing_lift` of the line, if known
     """
     track = Track.of(line)
@@ -314,7 +314,7 @@ def problem_of(
 
 
 def work_for(course: Course, intervals: int, room: int, compiled: bool) -> SearchArrays:
-    """Create work arrays for a given number of water intervals and of segments."""
+    """Create work arrays for given numbers of water intervals and of segments (`room`)."""
     cables = len(course.cables)
     nodes = 2 * room + 3 * len(course.loads) + 2 * len(course.stages) + 2
     if compiled:
@@ -348,7 +348,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
 
 
 def reach_of(limits: Limits, step: float) -> float:
-    """Return the longest segment at an angle step [m]."""
+    """Return the largest length of a segment at an angle step [m]."""
     reach = ROUGH_REACH if limits.near > 0.0 else REACH
     return reach * degrees(step) * limits.span
 

@@ -1,7 +1,7 @@
-"""The whole search for a moored line, from the problem to a shape that has passed every check.
+"""The complete search for a moored line, from the problem to a shape that has passed every check.
 
-A shape found clear of the seabed, or lying on it, is closed on fine segments, checked for parts out
-of the water or below the seabed, and audited.
+An approximate shape, clear of the seabed or with a touchdown, is closed on fine segments. The
+result is checked for parts out of the water or below the seabed, and audited.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -78,7 +78,7 @@ class Referee(NamedTuple):
     Attributes
     ----------
     moored : the line with its loads in use, and its water
-    bodies : bodies without the reduction of floats at the surface
+    bodies : the bodies of the line, without the reduction for floats at the surface
     first, last : work arrays for the nodes of every piece
     """
 
@@ -89,9 +89,7 @@ class Referee(NamedTuple):
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
-    """Search for a shape clear of the seabed and for a shape with a touchdown, the likelier
-    first.
-    """
+    """Find a shape clear of the seabed or with a touchdown, trying the likelier kind first."""
     problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
@@ -114,11 +112,10 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
 
 
 def rising(search: Search, referee: Referee) -> FoundShape:
-    """Find the shape of a line in a batch that could touch the seabed but clearly rises from its
-    anchor.
+    """Find the shape of a line that may touch the seabed but clearly rises from its anchor.
 
-    It is sought if the line does not descend anywhere from its start. A line with a sag, for
-    example, is rejected here, since it could also lie on the seabed.
+    The line belongs to a batch. A line that descends anywhere, such as a line with a sag, is
+    rejected here, since it could also lie on the seabed.
     """
     problem = search.problem
     lying, start = start_of(search, True), start_of(search, False)
@@ -143,14 +140,14 @@ def is_slack(found: FoundShape) -> bool:
 
 
 def with_other(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
-    """Attach another equilibrium to a shape."""
+    """Return a shape with another equilibrium attached."""
     return FoundShape(
         found.closed, found.errors, found.share, found.grounded, found.closure, found.moment, other
     )
 
 
 def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
-    """Convert the shape in the record `FINE` to another equilibrium."""
+    """Describe the shape in the record `FINE` as another equilibrium."""
     record, closed = problem.work.records[FINE], found.closed
     end = closed.nodes - 1
     x, y, z = record[BETTER + 3][end], record[BETTER + 4][end], record[BETTER + 5][end]
@@ -160,7 +157,10 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 
 
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
-    """Find the highest shape of a kind, and attach the deepest shape if the two differ."""
+    """Find the highest shape of one kind, and attach the deepest shape if the two differ.
+
+    The kind is a shape with a touchdown (`lands`), or one clear of the seabed.
+    """
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
@@ -181,7 +181,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         return shape_near(search, referee, located.other, lands) if located.other.found else found
     if found.closed.ending != FOUND or not located.other.found:
         return found
-    if problem.limits.near > 0.0:  # in a batch, only its share is reported, found roughly
+    if problem.limits.near > 0.0:  # a batch reports only the approximate share
         afloat = located.other.unknown.sought != BELOW
         share = OtherEquilibrium(0.0, 0.0, located.other.x, nan, nan)
         return with_other(found, share) if afloat else found
@@ -200,7 +200,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
-    """Copy a shape and the used buoyancy of its surface floats from one record to another."""
+    """Copy a shape and the used buoyancy of its surface floats to another record."""
     source, kept = problem.work.records[of], problem.work.records[to]
     shares = problem.work.shares
     for k in range(found.closed.root.unknown.sought):
@@ -214,13 +214,16 @@ def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
 
 
 def load_again(problem: LineProblem, found: FoundShape) -> None:
-    """Set the loads of the pieces at the surface to those of a shape."""
+    """Set the loads of the pieces at the surface to the loads that they have in a shape."""
     root = found.closed.root
     place(problem, root.unknown, root.x)
 
 
 def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
-    """Return the audited shape near an approximate root."""
+    """Return the audited shape near an approximate root, with a touchdown (`lands`) or without.
+
+    If only little of the line lies on the seabed, a shape clear of the seabed is sought as well.
+    """
     problem, limits = search.problem, search.problem.limits
     if not lands:
         return audited(problem, referee, settle_line(search, root, True))
@@ -256,7 +259,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """Return an approximate root for a line that hangs clear of the seabed."""
+    """Return the approximate root of the same line if it hangs clear of the seabed."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
@@ -264,7 +267,7 @@ def hanging_clear(problem: LineProblem, root: Root) -> Root:
 
 
 def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundShape:
-    """Complete the error estimates of a shape, and reject it if a check fails."""
+    """Complete the error estimates of a shape, check it, and reject it if a check fails."""
     closed, off, moment = found.closed, 0.0, 0.0
     if closed.ending != FOUND:
         return found
@@ -282,7 +285,10 @@ def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundS
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
-    """Return the force closure and the moment residual of the shape in the record `FINE`."""
+    """Return two residuals of the shape in the record `FINE`.
+
+    They are the relative force imbalance and the moment residual.
+    """
     record, elements = problem.work.records[FINE], problem.work.elements
     shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
     take_loads(problem, referee)
@@ -296,7 +302,7 @@ def residuals(
     landed: bool,
     limits: Limits,
 ) -> tuple[float, float]:
-    """Compute the force closure and the moment residual of a shape from its coordinates.
+    """Compute the relative force imbalance and the moment residual of a shape from its coordinates.
 
     Parameters
     ----------
@@ -310,7 +316,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return the outcome of the audit, and any residual that exceeds its limit."""
+    """Return the outcome of the audit, and the residual that exceeds its limit, else 0."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
@@ -319,7 +325,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """Complete the error estimates with the errors that are equal at both step sizes."""
+    """Add to the error estimates the errors that the comparison of two step sizes cannot reveal."""
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0
@@ -338,10 +344,11 @@ def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
 
 
 def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
-    """Find a piece out of the water or below the seabed. Return its index and its height above the
-    surface, or (negative) above the seabed [m]; the index is -1 if there is none.
+    """Find a piece out of the water or below the seabed.
 
-    A float at the surface may extend above the surface by its length, whatever its inclination.
+    Return its index and its height [m]: positive above the surface, or negative below the seabed.
+    The index is -1 if there is none. A float at the surface may extend above the surface by its
+    length, whatever its inclination.
     """
     record = problem.work.records[FINE]
     margin = max(depth_error, 1e-6 * problem.limits.depth)
@@ -363,7 +370,7 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Set the loads of the audit to the loads of the pieces at the surface in this solution."""
+    """Give the bodies of the audit the loads that pieces at the surface have in this solution."""
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
         set_row(bodies, k, referee.bodies[k])
@@ -374,7 +381,7 @@ def take_loads(problem: LineProblem, referee: Referee) -> None:
 
 
 def loaded(body: RefereeBody, load: Load) -> RefereeBody:
-    """Return an audit body with the forces of a load."""
+    """Return a body of the audit with the forces of a load."""
     return RefereeBody(
         body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
         load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,

@@ -1,4 +1,4 @@
-"""Settings of a solve, and its result: a solution, or a status that explains why there is none."""
+"""Settings of the solver, and its result: a solution, or a status that explains its absence."""
 
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -20,15 +20,15 @@ LOOSEST_TOLERANCE = 2e-4
 
 @dataclass(frozen=True)
 class Settings:
-    """Step size of the march and tolerance of the closure.
+    """Step size of the march, tolerance of its end, and other settings of the solver.
 
     Attributes
     ----------
-    angle_step : turn of one segment [rad]
+    angle_step : largest rotation of a segment [rad]
     tolerance : allowed miss of the anchor, as a share of the water depth
     seabed_friction : friction coefficient of a line on the seabed [-]
-    compiled : whether the solver is compiled or interpreted, with identical
-        results; None leaves the choice to `calm.solve.two_speeds`
+    compiled : whether the solver is compiled or interpreted, with identical results; None leaves
+        the choice to `calm.solve.two_speeds`
     """
 
     angle_step: float = radians(1.0)
@@ -65,7 +65,7 @@ class OtherEquilibrium(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """A converged shape: k elements between k + 1 nodes, free end first.
+    """A line in equilibrium: k elements between k + 1 nodes, free end first.
 
     Attributes
     ----------
@@ -74,24 +74,24 @@ class Solution:
     position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m];
         extrapolated from two shapes, as are the forces and tensions
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
-    element_piece : (k,) piece of the line that each element belongs to
-    element_clamp : (k,) clamp that the element represents (without length), or -1
+    element_piece : (k,) index of the piece that each element belongs to
+    element_clamp : (k,) index of the clamp that the element represents (without length), or -1
     landed : whether the line has a touchdown before its end
     hanging : number of hanging elements; the others lie on the seabed
     grounded_length : unstretched length on the seabed [m]
-    cut : (k,) unstretched length [m]
+    cut : (k,) unstretched length of each element [m]
     strain : (k,) strain of cables and chains
-    afloat : the pieces that float at the surface, none for a sub-surface line
+    afloat : the pieces that float at the surface; empty for a subsurface line
     buoyancy_used : share of the buoyancy of the floats at the surface that the line needs
-    reserve : the unused buoyancy of these floats [N]
+    reserve : unused buoyancy of these floats [N]
     carried : the line with the buoyancies and drags in use (floats at the surface reduced)
     riding : draft and forces of the float at the surface; None if it is immersed
-    marches, segments : the work done for this solution
+    marches, segments : numbers of marches and of segments for this solution
     miss : height of the line's end above the anchor's top, or the tow point [m]
     closure : |recomputed sum of the loads - force at the line's end| / |force at the line's end|
     moment_residual : largest deviation of an element's axis from its moment balance [rad]
-    depth_error, tension_error : estimates of the largest error of any depth or offset [m] and
-        of any tension [N]
+    depth_error, tension_error : estimates of the largest error of any depth or offset [m] and of
+        any tension [N]
     lift_error, pull_error : errors of the upward and of the horizontal force at the line's end [N]
     other : another equilibrium that the solver found; None if it found none
     frequency : strumming frequency of the cables [Hz]; 0 without strumming
@@ -134,7 +134,7 @@ class Solution:
 
     @property
     def as_marched(self) -> "Solution":
-        """The shape on fine segments that passed the audit, before extrapolation."""
+        """The solution before extrapolation: the shape on fine segments, which passed the audit."""
         closed = self.marched
         if closed is None:
             return self
@@ -147,13 +147,13 @@ class Solution:
 
     @cached_property
     def tension(self) -> Floats:
-        """(k+1,) magnitude of the force at the nodes [N]."""
+        """Tension at the nodes (k+1,) [N]."""
         size: Floats = np.linalg.norm(self.force, axis=1)
         return size
 
     @cached_property
     def piece_nodes(self) -> Integers:
-        """(n, 2) first and last node of every piece."""
+        """First and last node of every piece (n, 2)."""
         pieces = self.element_piece
         n = len(self.line.length)
         first = np.searchsorted(pieces, np.arange(n), side="left")
@@ -171,14 +171,15 @@ class Solution:
 
 
 def sizes(vectors: Floats) -> Floats:
-    """Return the (n,) lengths of vectors (n, 3)."""
+    """Return the lengths (n,) of vectors (n, 3)."""
     lengths: Floats = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
     return lengths
 
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
-    """Return the nodes and the forces, (k+1, 3) each: positions relative to the line's end, with
-    heights above the surface.
+    """Return positions and forces (k+1, 3) at the nodes of a recorded shape.
+
+    Positions are relative to the end of the line, with heights above the surface [m].
     """
     position = trace.position.copy()
     position[:, :2] -= position[-1, :2]
@@ -186,7 +187,7 @@ def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
 
 
 class Status(Enum):
-    """Outcome of a solve, with its name in files and its advice."""
+    """Outcome of a solve, with its name in files and the advice to the user."""
 
     CONVERGED = ("converged", "")
     NO_EQUILIBRIUM = (
@@ -218,9 +219,13 @@ class Status(Enum):
     def because(
         self, message: str, piece: int | None = None, advice: str | None = None
     ) -> NoEquilibrium:
-        """Return the exception for this outcome, with the index of the piece concerned, if any.
+        """Build the exception for this outcome.
 
-        `advice` replaces the outcome's own advice, which applies to moorings.
+        Parameters
+        ----------
+        message : reason; `{piece}` in it stands for the piece concerned
+        piece : index of this piece, if any
+        advice : replaces the advice of the outcome, which applies to moorings
         """
         return NoEquilibrium(self.label, message, self.advice if advice is None else advice, piece)
 
@@ -246,8 +251,7 @@ class Status(Enum):
 
 
 def standing_lift(line: Line, water: Water) -> Floats:
-    """Return the (n,) net force of every piece with its clamps, in an upright line, positive up
-    [N].
+    """Return the net force (n,) of every piece with its clamps in an upright line [N], positive up.
 
     The line is upright and unstretched, from the anchor up; parts that would be out of the water
     are assumed just below the surface.
@@ -259,17 +263,22 @@ def standing_lift(line: Line, water: Water) -> Floats:
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
-    """Return the (n,) net force of every piece without its clamps in surface water, positive up
-    [N].
+    """Return the net force (n,) of every piece in surface water [N], positive up.
+
+    The clamps of the pieces are not included.
     """
     excess = float(water.density_at(np.zeros(()))) - REFERENCE_DENSITY
     return line.buoyancy + excess * water.gravity * line.volume
 
 
 def standing_length(line: Line, lift: Floats) -> float:
-    """Return the length of the upright line in still water, each piece stretched by its mean
-    tension [m]. The position of clamps on a piece is ignored. `lift` is the result of
-    `standing_lift`.
+    """Return the length of the upright line in still water [m].
+
+    Each piece is stretched by its mean tension. The position of clamps on a piece is ignored.
+
+    Parameters
+    ----------
+    lift : result of `standing_lift`
     """
     tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
     strain: Floats = line.compliance * tension
@@ -284,8 +293,10 @@ SUPPORTED, TOO_HEAVY, FOLDS = range(3)
 
 
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
-    """Return whether a line has enough buoyancy; if not, also the piece below which the line folds
-    and the missing buoyancy [N].
+    """Check whether a line has enough buoyancy.
+
+    Return `SUPPORTED`, `TOO_HEAVY` or `FOLDS`, the piece below which the line folds (or -1), and
+    the missing buoyancy [N].
 
     Parameters
     ----------
@@ -308,11 +319,13 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
 
 def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
-    """Raise an exception if the buoyancy of a line is insufficient, or if the line folds in still
-    water.
+    """Raise an exception if a line has too little buoyancy, or folds in still water.
 
-    Below its first buoyant part, the line must be held up down to its lowest float. `lift` is the
-    `standing_lift`.
+    In still water, the line must be held up from its first buoyant part down to its lowest float.
+
+    Parameters
+    ----------
+    lift : the `standing_lift`
 
     Raises
     ------
@@ -332,8 +345,11 @@ def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
 
 
 def too_heavy(lift: Floats) -> NoEquilibrium:
-    """Return the exception for a line with insufficient buoyancy, from the net force of each piece
-    [N].
+    """Return the exception for a line with too little buoyancy.
+
+    Parameters
+    ----------
+    lift : (n,) net force of each piece [N]
     """
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(

@@ -1,7 +1,7 @@
 """Start values for the profiles of a batch, from solutions in uniform currents.
 
-The start depends on the profile alone, so that neither the order of the profiles nor the
-composition of the batch changes any digit.
+The start depends on the profile alone. The results are thus identical to the last digit in any
+order of the profiles, and in any batch.
 """
 
 from collections.abc import Sequence
@@ -31,11 +31,12 @@ LEAST_CURRENT_GROWTH = 0.25
 
 
 def fill_starts(search: Search) -> int:
-    """Solve a line in uniform currents, and return the number of currents with a solution.
+    """Solve a line in uniform currents, and return the number of solutions found.
 
-    The rows of `Problem.starts` are, first for a line clear of the seabed and then for a line lying
-    on it: the unknown, which is the depth of the free end [m] or, below 0, the share in use minus
-    one; the slope of the miss; and the knockdown [m]. The last row is `lean_of`.
+    `LineProblem.starts` has three rows for a line clear of the seabed, and three for a line with a
+    touchdown: the unknown, the slope of the miss, and the knockdown [m]. The unknown is the depth
+    of the free end [m] or, if negative, the share of buoyancy in use minus one. The last row is
+    `lean_of`.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts
@@ -65,7 +66,10 @@ def fill_starts(search: Search) -> int:
 
 
 def start_of(search: Search, lands: bool) -> Root:
-    """Return the start of a search; `found` is false if the complete search is needed."""
+    """Return the approximate root from which a search starts.
+
+    It is not `found` if the line needs the complete search.
+    """
     problem, limits = search.problem, search.problem.limits
     unknown = whole_line(problem, lands)
     nowhere = Root(False, unknown, nan, nan, nan)
@@ -76,7 +80,7 @@ def start_of(search: Search, lands: bool) -> Root:
     x, slope = expected(problem, row, upright, upright)
     if isnan(x) or not slope < 0.0:
         return nowhere
-    if upright > 0.0:  # a line that is knocked down may leave the strongest current
+    if upright > 0.0:  # knockdown may take a line out of the strongest current
         before, fell = upright, x - upright
         for _ in range(DROPS):
             below, slope = expected(problem, row, upright, x)
@@ -92,11 +96,10 @@ def start_of(search: Search, lands: bool) -> Root:
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Return whether the equilibrium found from its start is certainly the highest.
+    """Return whether an equilibrium found from its start is certainly the highest.
 
     This is certain if the current does not grow significantly with depth. Otherwise the knockdown
-    in the currents at shallower depths is estimated from `lean_of`, relative to its value at the
-    position found.
+    in the currents at shallower depths is estimated by `lean_of`, relative to the knockdown found.
     """
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:
@@ -122,12 +125,13 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
 
 
 def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
-    """Interpolate the unknown of a line and the slope of its miss, from the uniform current that
-    inclines the line equally.
+    """Interpolate the unknown of a line and the slope of its miss between uniform currents.
+
+    The uniform current is the one that inclines the line equally.
 
     Parameters
     ----------
-    row : index of the first row of this kind in `starts`
+    row : index in `starts` of the first row for this kind of line
     upright, top : depth of the free end in still water, and after knockdown [m]
     """
     starts = problem.starts
@@ -148,12 +152,12 @@ def greatest_speed(sea: Sea) -> float:
 
 
 def between(row: Sequence[float], k: int, share: float) -> float:
-    """Interpolate a row between uniform current k and the next current."""
+    """Interpolate a row of `starts` between the uniform currents k and k + 1."""
     return row[k] + share * (row[k + 1] - row[k])
 
 
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
-    """Return the approximate knockdown of a line that the current inclines only slightly [m].
+    """Return the approximate knockdown [m] of a line that the current inclines slightly.
 
     The inclination is the drag on the part above divided by its tension, and the knockdown grows
     with the square of the inclination. In a uniform current it is thus proportional to the fourth
@@ -162,8 +166,8 @@ def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> f
     Parameters
     ----------
     top, depth : depth of the top of the line, and of the water [m]
-    taut : whether all its buoyancy is in use; otherwise the result is for the cables alone, up to
-        a factor
+    taut : whether all its buoyancy is in use; otherwise the result is for the cables alone, up to a
+        factor
     """
     length = 0.0
     for i in range(len(course.stages)):

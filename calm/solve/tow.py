@@ -1,8 +1,8 @@
 """Steady shape of a line towed by a ship.
 
-A tow is a leg of a net, held at the ship, and `calm.solve.net` closes it. This module finds the
-approximate depth of the free end: rough marches with ever shallower free ends, until the upper end
-of the line reaches the tow point.
+A tow is treated as a leg of a net, held at the ship, and `calm.solve.net` closes it. This module
+finds the approximate depth of the free end. It makes rough marches from ever shallower free ends,
+until the upper end of the line reaches the tow point.
 """
 
 from dataclasses import dataclass, replace
@@ -86,16 +86,17 @@ def solve_tow(
     Parameters
     ----------
     line : the line from the ship to the towed body
-    water : current over the ground; its depth is inf if the seabed is ignored
+    water : water with the current over the ground; its depth is inf if the seabed is ignored
+    towing : motion of the ship and height of the tow point
     settings : angle step, and tolerance as a fraction of the paid-out length; 1° and 1e-7 by
         default
 
     Returns
     -------
-    Solution : listed from the free end: its piece 0 is the last of `line`; x and y are relative to
-        the tow point. Of several equilibria, the solution is the deepest, which an accelerating
-        ship reaches first. At 1° positions are within 5e-5 of the paid-out length, tensions within
-        2e-4.
+    Solution : lists the line from its free end, so that its piece 0 is the last of `line`; x and y
+        are relative to the tow point. Of several equilibria, it is the deepest, which an
+        accelerating ship reaches first. At 1°, errors of positions are at most 5e-5 of the paid-out
+        length, and relative errors of tensions at most 2e-4.
 
     Raises
     ------
@@ -120,8 +121,9 @@ def solve_tow(
 
 
 def _refuse_limp(line: Line) -> None:
-    """Raise an exception for a free cable end with neither weight nor tangential drag, whose
-    direction is undefined.
+    """Raise NoEquilibrium if the free end is a cable whose direction is undefined.
+
+    Such a cable has neither weight nor tangential drag, and no body at its end.
     """
     bears = line.buoyancy[-1] or line.volume[-1] or line.tangential_drag[-1]
     last = len(line.length) - 1
@@ -136,8 +138,7 @@ def _refuse_limp(line: Line) -> None:
 
 
 def _relative(line: Line, water: Water, towing: Towing) -> Water:
-    """Return the flow relative to the ship, with air above the surface if the line extends above
-    it.
+    """Return the water as seen from the ship, with air above it if the tow point is in air.
 
     Flow and density change between water and air over a thin band about the surface. It is thin
     enough not to change the shape, and smooth enough for the march.
@@ -187,15 +188,13 @@ class _Marches:
         return self.net.shape(0, np.zeros(1))
 
     def miss(self, _: None, depth: float) -> float:
-        """Return the height of the upper end above the tow point [m]; NaN if the march stops."""
+        """Return the height of the upper end above the tow point [m], or NaN if the march stops."""
         self.failure, _same = self.net.do(leg_closing.MARCH, np.array([depth]), self._how)
         return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Find the deepest equilibrium, and the depth of the free end in the next higher equilibrium
-    [m].
-    """
+    """Find the deepest equilibrium, and the depth of the free end in the next higher one [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
@@ -206,9 +205,7 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
 
 
 def _lacking(net: NetSearch) -> bool:
-    """Return whether the frequency of the last march differs from the shedding frequency at the
-    ship.
-    """
+    """Return whether the strumming and shedding frequencies at the ship still differ."""
     return bool(abs(net.net.state[0][LACKING]) > SAME * net.net.state[0][FREQUENCY])
 
 
@@ -260,8 +257,9 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 
 
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
-    """Return the depths of the free end to try, the deepest first. In uniform water, the miss is
-    the distance to the root.
+    """Return the depths of the free end to try, the deepest first.
+
+    In uniform water one depth is enough, as the miss is the distance to the root.
     """
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
@@ -284,7 +282,12 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
 
 
 def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEquilibrium:
-    """Diagnose why a tow does not close near a rough root; `last` is the depth tried last [m]."""
+    """Diagnose why a tow does not close near a rough root.
+
+    Parameters
+    ----------
+    start, last : depth of the free end at the rough root, and in the last attempt [m]
+    """
     net, nearly_out = rough.net, LEAVING_DEPTH * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
     failure = Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
@@ -307,14 +310,15 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
 
 
 def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | None:
-    """Diagnose a rigid piece or a clamp at the surface, at which the miss or the frequency jumps.
+    """Diagnose a rigid piece or a clamp that would be half out of the water, or return None.
 
-    Such a body is treated as either in the water or out of it, by the position of its midpoint. If
-    the line closes in neither state, the body would be half out of the water.
+    Such a body is treated as either in the water or in air, by the position of its midpoint.
+    When the midpoint crosses the surface, the miss or the frequency jumps. If the line closes in
+    neither state, the body would be half out of the water.
 
     Parameters
     ----------
-    depth : depth of the free end at which the search for a root has ended [m]
+    depth : depth of the free end in the last attempt to close the line [m]
     lacking : whether the frequency did not converge there
     """
     step, flexible = net.settings.angle_step, net.laid[0].line.flexible
@@ -324,7 +328,7 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
         shape, height = kept.shape, kept.shape.position[:, 2]
         bodies = np.flatnonzero(~flexible[shape.piece] | (shape.clamp >= 0))
         ends = np.sort([height[bodies], height[bodies + 1]], axis=0)
-        off = np.maximum(ends[0], -ends[1])  # from the surface
+        off = np.maximum(ends[0], -ends[1])  # distance from the surface
         if not (lacking or above > 0.0 > below) or off.min(initial=inf) > AT_THE_JUMP * kept.span:
             continue
         body = bodies[np.argmin(off)]
@@ -342,8 +346,9 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
 
 
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
-    """Raise an exception for parts in the air, except between the surface and the ship, and for
-    parts below the seabed.
+    """Raise NoEquilibrium if a part is below the seabed, or rises out of the water.
+
+    The line between the surface and the ship may be in air.
     """
     height, depth = solution.position[:, 2], solution.water.depth
     margin = max(solution.depth_error, 1e-6 * float(solution.line.length.sum()))

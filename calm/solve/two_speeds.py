@@ -1,10 +1,10 @@
-"""The two speeds of the solver: interpreted, or compiled by LLVM. Both give the same digits.
+"""Choice between the interpreted solver and the solver compiled by LLVM.
 
-Compiled code is loaded from the cache as soon as this saves time. If the cache has none, a child
-process compiles the solver as soon as compilation pays. Meanwhile this process continues with the
-interpreted solver, and switches when the child has finished. `CALM_COMPILED=never` and `always`,
-and the `compiled` of a `Settings`, override this choice; with `always`, this process compiles by
-itself.
+Both give the same digits. Compiled code is loaded from the cache as soon as this saves time. If the
+cache has none, a child process compiles the solver as soon as compilation pays. Meanwhile this
+process continues with the interpreted solver, and switches when the child has finished.
+`CALM_COMPILED=never` and `always`, and the attribute `compiled` of `Settings`, override this
+choice. With `always`, this process compiles the solver itself.
 """
 
 import os
@@ -32,8 +32,9 @@ TYPICAL_PARTS = 8
 
 
 class CompiledPart(Enum):
-    """A part of the solver that is compiled separately. Its value is the name of the function
-    compiled last.
+    """A part of the solver that is compiled separately.
+
+    Its value is the name of the function that is compiled last.
     """
 
     LINE = "run_search"
@@ -42,9 +43,9 @@ class CompiledPart(Enum):
 
 
 class _Pace:
-    """Number of lines that one part of the solver has solved, and the speed at which it runs.
+    """Work done so far by one part of the solver, and whether it runs compiled.
 
-    `announced` and `solved` are numbers of lines; `work` is the computing time, in ordinary lines.
+    `announced` and `solved` are numbers of lines; `work` is the computing time, in typical lines.
     """
 
     def __init__(self, solver: CompiledPart) -> None:
@@ -84,7 +85,7 @@ def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
 def runs_compiled(
     settings: Settings, line: Line | None = None, solver: CompiledPart = CompiledPart.LINE
 ) -> bool:
-    """Count the next line, and return whether compiled code runs for it."""
+    """Return whether the next line is solved by compiled code, and count the line."""
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
@@ -96,8 +97,11 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are about to be solved; `work` is the computing time relative to a typical
-    line.
+    """Count lines that are about to be solved.
+
+    Parameters
+    ----------
+    work : computing time for these lines, in typical lines; by default their number
     """
     pace = _paces[solver]
     pace.solved += lines

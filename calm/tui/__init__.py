@@ -1,3 +1,4 @@
-"""Line builder in the terminal: screens and widgets; the module `live` solves and judges the
-line.
+"""Line builder in the terminal: its screens and widgets.
+
+The module `live` solves and judges the line while it is edited.
 """

@@ -1,6 +1,7 @@
-"""Suggest changes to the file that correct findings of the design check.
+"""Suggested changes to the file that correct findings of the design check.
 
-This module does not depend on the screen. Targets are met by the search of `calm size`.
+This module does not depend on the screen. The search of `calm size` finds the changes that meet a
+target.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -34,7 +35,8 @@ class Offer:
     ----------
     title : purpose and effect
     label : name in the history
-    make : returns the changed file; may solve for a value, and raise `CalmError` without a remedy
+    make : function that returns the changed file; it may solve for a value, and raise `CalmError`
+        if the change does not help
     """
 
     title: str
@@ -43,15 +45,18 @@ class Offer:
 
 
 def single(view: View) -> LegResult | None:
-    """Return the solved line of a mooring; None for a tow, several legs, or no equilibrium."""
+    """Return the solution of a mooring with a single line.
+
+    Return None for a tow, a net, or a mooring without equilibrium.
+    """
     result = view.result
     return None if result is None or result.several or result.towed else result.leg
 
 
 def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
-    """Return suggested changes for the failures and warnings of a line, the most severe first.
+    """Suggest changes for the failures and warnings of a line, the most severe first.
 
-    The line is solved in every situation if it lacks an anchor or needs a heavier one.
+    If the line lacks an anchor or needs a heavier one, it is solved in every situation.
 
     Parameters
     ----------
@@ -70,7 +75,7 @@ def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()
 
 
 def _needs_an_anchor(view: View) -> bool:
-    """Return whether a single moored line has no anchor, or one that is too light."""
+    """Return whether the anchor of a single moored line is missing or too light."""
     if (
         view.file is None
         or view.file.legs
@@ -89,8 +94,11 @@ def _is_of_anchor(finding: Finding) -> bool:
 
 
 def sized(mooring: Design, target: str, change: str) -> Offer:
-    """Suggest the smallest change of a quantity that meets a target; both are in the syntax of
-    `calm size`.
+    """Suggest the smallest change of a quantity that meets a target.
+
+    Parameters
+    ----------
+    target, change : target and quantity, in the syntax of `calm size`
 
     Raises
     ------
@@ -127,8 +135,10 @@ def _for(finding: Finding, mooring: Design) -> Iterator[Offer]:
 
 
 def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -> Iterator[Offer]:
-    """Suggest the lightest anchor of the catalogue that holds in every environment and situation,
-    and a weight for an anchor that the catalogue of CALM does not define.
+    """Suggest the lightest anchor that holds in every environment and situation.
+
+    It is taken from the catalogue. For an anchor that the catalogue of CALM does not define, a
+    weight is suggested, too.
     """
     loads = view.held or held_lines(view, catalogs)
     if view.file is None or not loads:
@@ -167,8 +177,9 @@ def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -
 
 
 def _anchors_of(catalogue: Catalogue) -> Iterator[tuple[str, Anchor]]:
-    """Yield the anchors of known weight in water; of several entries for one product, only the
-    recommended one.
+    """Yield the anchors whose weight in water is known.
+
+    If a product has several entries, only the recommended entry is considered.
     """
     for id in catalogue.ids():
         entry = catalogue.entry(id)
@@ -192,7 +203,7 @@ def _no(reason: str) -> Callable[[Draft], Draft]:
 
 
 def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer]:
-    """Offer more floats between a break and the release."""
+    """Suggest more floats between a break and the release."""
     file, release = mooring.file, mooring.file.release
     broken = next((p.index for p in file.pieces if p.place == finding.place), -1)
     if release is None:
@@ -207,8 +218,9 @@ def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Return a change that writes a value; with a new component, the `weight` of the row is
-    deleted.
+    """Return a change that sets a key of an item.
+
+    A new component (`use`) also deletes the `weight` of the item.
     """
 
     def make(draft: Draft) -> Draft:
@@ -226,7 +238,7 @@ def _is_float(piece: Piece) -> bool:
 
 
 def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
-    """Offer more buoyancy of the highest float to reduce a knockdown, an excursion or a tilt."""
+    """Suggest more buoyancy of the highest float, to reduce a knockdown, an excursion or a tilt."""
     floats = [piece for piece in mooring.file.pieces if _is_float(piece)]
     if not floats:
         return
@@ -239,7 +251,7 @@ def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
 
 
 def differences(before: View, after: View) -> list[str]:
-    """Return the effects of a change on values and findings, each as ``from → to``."""
+    """Describe the effects of a change on values and numbers of findings, each as ``from → to``."""
     effects = []
     one, other = single(before), single(after)
     if one is not None and other is not None:

@@ -1,4 +1,7 @@
-"""Application: order of key presses, workers and exit. The screens display the draft."""
+"""The application, which handles key presses in order, runs workers, and ends the builder.
+
+The screens display the draft.
+"""
 
 import os
 import time
@@ -27,33 +30,33 @@ from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_them
 
 _AUTOSAVE_DELAY = 0.3  # seconds
 _DISK_INTERVAL = 2.0  # seconds between two checks of the file
-_MAX_WAITS = 50  # a widget that keeps sending itself messages is not waited for
+_MAX_WAITS = 50  # limit for a widget that keeps sending messages to itself
 _COLOURLESS = NoColor()
 
 
 class BuildApp(App[int]):
     """The line builder.
 
-    It handles keys, pastes and the mouse one after the other: a screen opened by a key is there
-    before the next key is handled. Keys that are typed ahead, or arrive together over a slow
-    connection, would otherwise go to the widget in focus on arrival, such as the line instead of
-    the field that the first key opens.
+    Keys, pastes and mouse presses are handled one after the other, so that a screen opened by a key
+    is there before the next key is handled. Otherwise keys typed ahead, or arriving together over a
+    slow connection, would go to the widget that has the focus on arrival, such as the line instead
+    of the field that the first key opens.
 
-    A key is handled once all message queues that it may have filled are empty. Each widget
-    handles messages in the order of its queue: a call posted after the key returns when the key is
-    handled, and a second round waits for messages that the widgets sent each other. Rounds are
+    A key is handled once all message queues that it may have filled are empty. Each widget handles
+    messages in the order of its queue, so a call posted after the key returns when the key is
+    handled. A second round waits for messages that the widgets sent to each other. Rounds are
     repeated until all queues are empty.
 
     Parameters
     ----------
-    session : the file that is built
-    kept : unsaved work of an earlier session, offered at the start
+    session : editing session of the file
+    kept : unsaved work of an earlier session, which the user is offered at the start
     environ : environment variables that describe the terminal
 
     Attributes
     ----------
     not_kept : reason if unsaved work could not be kept at the end, else empty
-    has_keys_waiting : whether a key is still waiting
+    has_keys_waiting : whether any key has not been handled yet
     """
 
     TITLE = "calm build"
@@ -98,7 +101,7 @@ class BuildApp(App[int]):
     # the order of keys
 
     async def on_event(self, event: events.Event) -> None:
-        """Queue user input until earlier input is handled, except mouse movements."""
+        """Queue keys, pastes and mouse presses until earlier ones are handled."""
         is_done = isinstance(event, events.InputEvent | events.Paste)
         if not is_done or event.is_forwarded or isinstance(event, events.MouseMove):
             await super().on_event(event)
@@ -116,18 +119,18 @@ class BuildApp(App[int]):
             self._wait_for_listeners(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """Return the widgets that a key press may affect: focused widget, its ancestors, and the
-        screen.
+        """Return the widgets that a key press may affect.
 
-        Screens below are excluded: each message would repaint the whole screen. Lists are included:
-        they post their selection without having the focus.
+        They are the focused widget, its ancestors, and the screen. Screens below are excluded, as
+        each message would repaint the whole screen. Lists are included, as they post their
+        selection without having the focus.
         """
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
         lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
         return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
     def _wait_for_listeners(self, listeners: list[MessagePump]) -> None:
-        """Wait for all listeners in turn; removed widgets are skipped."""
+        """Wait until all listeners have handled their messages, skipping removed widgets."""
         while listeners:
             first, *others = listeners
             if first.call_later(self._wait_for_listeners, others):
@@ -146,19 +149,22 @@ class BuildApp(App[int]):
     # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
-        """Return the line screen as the lowest screen; any screen below it would be painted,
-        too.
+        """Return the line screen as the lowest screen.
+
+        Any screen below it would be painted, too.
         """
         return self.builder
 
     def on_mount(self) -> None:
-        """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
         self.set_interval(_DISK_INTERVAL, self.saving.check_external_change)
 
     def _begin(self) -> None:
-        """Read the catalogue, solve the line and report, once the line is on the screen."""
+        """Read the catalogue, solve the line, and show the messages for the start.
+
+        This begins after the line is on the screen.
+        """
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
@@ -173,11 +179,14 @@ class BuildApp(App[int]):
             self.tell(f"{self.session.name} is open elsewhere{who}, {what}", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Yield the command for colours; Textual's other commands have keys in the builder."""
+        """Yield the command to choose colours.
+
+        The other commands of Textual have keys in the builder.
+        """
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return Textual's filters, and a filter for legible colours or for none."""
+        """Return a filter that removes colours, or Textual's filters and one for legibility."""
         if self.no_color:
             return [_COLOURLESS]
         theme = self.current_theme
@@ -185,16 +194,15 @@ class BuildApp(App[int]):
         return [*super().get_line_filters(), own]
 
     def get_driver_class(self) -> type[Driver]:
-        """Return the driver of this terminal, which sends only changed cells."""
+        """Return a driver for this terminal that sends only changed cells."""
         return self.output.driver_class(super().get_driver_class())
 
     @cached_property
     def output(self) -> TerminalOutput:
-        """What the driver writes to the terminal."""
         return TerminalOutput()
 
     def on_cursor_position(self) -> None:
-        """Send the next frame; a reported position means that the last frame is displayed."""
+        """Send the next frame, since a reported position means that the last frame is displayed."""
         self.output.answered()
 
     def on_resize(self) -> None:
@@ -202,15 +210,14 @@ class BuildApp(App[int]):
         self.output.clear()
 
     def action_repaint(self) -> None:
-        """Redraw the whole screen."""
         self.output.forget()
         self.screen.refresh()
 
     # the screens
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Show a message in the last line of the screen."""
-        if self.is_running:  # else the screens are being taken apart
+        """Show a message in the last line of the screen; `wrong` marks an error."""
+        if self.is_running:  # at the end, the screens are being removed
             screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
             screen.tell(text, wrong=wrong)
 
@@ -219,38 +226,33 @@ class BuildApp(App[int]):
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Accept a value that is being typed; return False, with a message, if it is invalid."""
+        """Accept the value being typed; if it is invalid, show a message and return False."""
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def show_replaced_draft(self, message: str) -> None:
-        """Update all screens after the draft was replaced by another text."""
+        """Update all screens after another text has replaced the draft."""
         for screen in self.draft_screens():
             screen.replaced()
         self.tell(message)
         self._edited()
 
     def action_save(self) -> None:
-        """Save, asking for a file name if needed."""
         if self.is_settled():
             self.saving.save()
 
     def action_save_as(self) -> None:
-        """Save under another name."""
         if self.is_settled():
             self.saving.save_as()
 
     async def action_quit(self) -> None:
-        """Quit; prompts for unsaved changes."""
         if self.is_settled():
             self.saving.quit()
 
     def action_command_palette(self) -> None:
-        """Find a command by its name."""
         if not isinstance(self.screen, CommandPalette):
             self.push_screen(palette.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
-        """Show all keys."""
         self.push_screen(dialogs.LongText(key_table.all_keys()))
 
     # judging
@@ -271,7 +273,7 @@ class BuildApp(App[int]):
             self._autosaving = self.set_timer(_AUTOSAVE_DELAY, self._autosave)
 
     def _show_views(self, *, is_first: bool = False) -> None:
-        if self.is_running:  # else the screens are being taken apart
+        if self.is_running:  # at the end, the screens are being removed
             for screen in self.draft_screens():
                 if screen.is_mounted and screen.is_attached:  # mounted, and not being removed
                     screen.show_view()
@@ -284,7 +286,10 @@ class BuildApp(App[int]):
             self.tell(message)
 
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
-        """Open the text editor if the draft cannot be parsed or, with `as_judged`, has mistakes."""
+        """Open the text editor if the draft cannot be parsed.
+
+        With `as_judged`, also open it if the last view has mistakes.
+        """
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
             self.call_later(self._open_text)
@@ -294,7 +299,7 @@ class BuildApp(App[int]):
 
         screens = self.draft_screens()
         if isinstance(screens[-1], TextScreen) or self.screen is not screens[-1]:
-            return  # open already, or a question is open, after which the view is shown again
+            return  # the text is open, or a question, after which the view is shown again
         while self.screen is not self.builder:
             await self.pop_screen()
         self.builder.action_text()
@@ -319,7 +324,7 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save unsaved work to its backup copy; return the reason for a failure, else ""."""
+        """Save unsaved work to its backup copy, and return the reason for a failure, else ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -333,7 +338,7 @@ class BuildApp(App[int]):
 
     @work(thread=True, group="keeping", exit_on_error=False)
     def _keep_aside(self, file: editing.WorkingFile) -> None:
-        """Keep unsaved work in a thread, so that a slow disk does not block keys."""
+        """Back up unsaved work in a thread, so that a slow disk does not block keys."""
         try:
             file.keep()
         except (CalmError, OSError) as error:
@@ -345,7 +350,7 @@ class BuildApp(App[int]):
         self.save_copy_on_exit()
 
     def take_typed(self) -> None:
-        """Accept a value that is being typed, if it is valid."""
+        """Accept the value that is being typed, if it is valid."""
         if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
             self.screen.settle()
 
@@ -355,14 +360,17 @@ class BuildApp(App[int]):
             self.not_kept = self.keep()
 
     def leave(self) -> None:
-        """End the application without a backup copy of unsaved changes."""
+        """End the application and discard unsaved changes without a backup copy."""
         self._is_left, self._ends_at = True, time.monotonic() + 1.0
         if not self.session.changed:
             self.keep()  # removes an outdated copy
         self._exit_answered()
 
     def _exit_answered(self) -> None:
-        """End after the terminal has answered, or the shell would read the answer as keys."""
+        """End once the terminal has answered.
+
+        The shell would otherwise read the answer as keys.
+        """
         if self.output.is_out and self._ends_at > time.monotonic():
             self.set_timer(0.02, self._exit_answered)
         else:

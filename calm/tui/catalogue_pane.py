@@ -1,4 +1,4 @@
-"""Catalogue pane: incremental search, component card, and questions for length or position."""
+"""Catalogue pane, with incremental search, a component card, and fields for length or position."""
 
 from collections.abc import Callable, Sequence
 from itertools import zip_longest
@@ -58,7 +58,6 @@ class ComponentList(TableCells, can_focus=False):
 
     @property
     def chosen(self) -> Listed | None:
-        """The component under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
     def show(
@@ -68,7 +67,15 @@ class ComponentList(TableCells, can_focus=False):
         by: str | None = None,
         favourites: frozenset[str] = frozenset(),
     ) -> None:
-        """List components sorted by the quantity `by`, with the cursor on the first."""
+        """List components, and move the cursor to the first.
+
+        Parameters
+        ----------
+        found : components in their order
+        index : search index of the catalogue
+        by : quantity whose column must be visible
+        favourites : ids of favourites
+        """
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
         self._index, self._by, self._favourites = index, by, favourites
@@ -85,7 +92,7 @@ class ComponentList(TableCells, can_focus=False):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns for ids, as many values as fit, and names in the remaining width."""
+        """Columns for the ids, for as many values as fit, and for the names."""
         width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)
         columns, start = [TableColumn("id", "component", _LEAD, id_width)], _LEAD + id_width + 1
@@ -98,8 +105,9 @@ class ComponentList(TableCells, can_focus=False):
         return [*columns, TableColumn("name", "", start, max(width - start, 0))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell: id, value or name. Names too long for the column are only on
-        the card.
+        """Return the text of a cell: id, value or name.
+
+        A name that is too long for the column appears only on the card.
         """
         each: Listed = self.rows[number]
         if column.name == "id":
@@ -111,20 +119,20 @@ class ComponentList(TableCells, can_focus=False):
         return figure.shown(figures.get(column.name))
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the leading cells of a row: cursor, star of a favourite, and sign of the role."""
+        """Return the signs before a row: cursor, star of a favourite, and role."""
         each: Listed = self.rows[number]
         cursor = theme.CURSOR if number == self.cursor else " "
         star = theme.FAVOURITE if each.id in self._favourites else " "
         return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
-        """Style of a row; the row of the cursor is marked even without the focus."""
+        """Return the style of a row; the row under the cursor is marked even without the focus."""
         if number != self.cursor:
             return self.rich_style
         return self.rich_style + self.look("component-list--cursor")
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Style of a cell with an id or a name; cells with values have the style of the row."""
+        """Return the style of a cell; ids and names have their own, values that of the row."""
         look = {"id": "own" if self.rows[number].own else "id", "name": "name"}.get(column.name)
         if look is None:
             return style
@@ -143,8 +151,9 @@ _TITLES = {
 
 
 class CataloguePane(Vertical):
-    """Pane with search field, list and card; it asks for the length of a cable or the position of a
-    clamp.
+    """Pane with search field, list and card.
+
+    It asks for the length of a cable or the position of a clamp.
 
     Parameters
     ----------
@@ -154,7 +163,7 @@ class CataloguePane(Vertical):
     """
 
     BINDINGS = key_table.bindings("catalogue")
-    SCOPED_CSS = False  # the width of the screen counts
+    SCOPED_CSS = False  # styles depend on the width of the screen
     DEFAULT_CSS = """
     CataloguePane {
         display: none; width: 1fr; height: 1fr; padding: 0 1; background: $background;
@@ -190,7 +199,6 @@ class CataloguePane(Vertical):
         self._target = ""
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the search field, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
         yield self.search
         with Horizontal(id="catalogue-found"):
@@ -214,10 +222,15 @@ class CataloguePane(Vertical):
     def open(
         self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
-        """Open the search for a component next to the row `target` ("" in an empty line).
+        """Open the search for a component.
 
-        Favourites come first; then, until words are typed, components with this `role`, recent
-        components, and components of the line. With `clampable`, only components for clamps.
+        Favourites come first. Until words are typed, components with the given role, recent
+        components, and components of the line follow.
+
+        Parameters
+        ----------
+        target : name of the row next to which the component is added; "" in an empty line
+        clampable : whether only components for clamps are listed
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)
@@ -227,7 +240,7 @@ class CataloguePane(Vertical):
         self.search.focus()
 
     def retitle(self, target: str) -> None:
-        """Update the title, which names the row next to which the component will be added."""
+        """Update the title, which names the row next to which the component is added."""
         self._target = target
         text = f"{_TITLES[self.purpose]} {target}" if target else "The top of the line"
         if self._by is not None:
@@ -267,14 +280,12 @@ class CataloguePane(Vertical):
             card.show(Text(str(error)))
 
     def action_sort(self) -> None:
-        """Sort by the next quantity, or by relevance."""
         keys = [None, *(column.key for column in COLUMNS)]
         self._by = keys[(keys.index(self._by) + 1) % len(keys)]
         self.retitle(self._target)
         self._search()
 
     def action_mark(self) -> None:
-        """Toggle the favourite mark of the component."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:
@@ -287,13 +298,11 @@ class CataloguePane(Vertical):
             self._search_again()
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor of the list."""
         self.listing.cursor += by
 
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
-        """Add the component to the line, after asking for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return
@@ -322,5 +331,4 @@ class CataloguePane(Vertical):
         dialogs.enter(self.app, chosen.id, "", [form_field, label], take)
 
     def action_close(self) -> None:
-        """Close the catalogue."""
         self._close()

@@ -1,4 +1,4 @@
-"""Table with in-place editing of values."""
+"""Table whose values are edited in place."""
 
 from collections.abc import Callable
 from typing import Literal
@@ -16,7 +16,7 @@ Then = Literal["stay", "edit next", "right", "up", "down"]
 
 
 class EditableTable(Vertical):
-    """A table with an input line over the edited cell.
+    """Table with an input line over the edited cell.
 
     Subclasses call `open_editor`, and implement `write` and the movement of the cursor (`go_on`).
     `tell` shows a message in the last line of the screen.
@@ -31,7 +31,6 @@ class EditableTable(Vertical):
         self.tell, self.table, self.editor = tell, table, CellEditor(self)
 
     def compose(self) -> ComposeResult:
-        """Yield the rows, and the editor above them."""
         yield self.table
         yield self.editor
 
@@ -40,18 +39,17 @@ class EditableTable(Vertical):
         raise NotImplementedError
 
     def tell_reading(self, reading: Reading) -> None:
-        """Show how the text typed so far is interpreted."""
+        """Show how the typed text is interpreted."""
         self.tell(reading.feedback(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Move the cursor after a text was accepted; the text is None if the value is unchanged."""
+        """Move the cursor after a text was accepted; `text` is None if the value is unchanged."""
         raise NotImplementedError
 
     def abandoned(self) -> None:
-        """Hook that is called when editing is cancelled."""
+        """React to the cancellation of editing; does nothing by default."""
 
     def action_move_column(self, by: int) -> None:
-        """Move the cursor to the left or the right."""
         self.table.column += by
 
     @property
@@ -66,9 +64,9 @@ class EditableTable(Vertical):
 
         Parameters
         ----------
-        text, check : the text to edit, and its check
+        text, check : initial text, and check of the typed text
         least_width : minimum width of the editor [cells]
-        begun : whether the text was typed by the user
+        begun : whether the user has typed the initial text
         """
         region, editor = self.table.cell_region(), self.editor
         editor.styles.offset = region.offset
@@ -76,7 +74,10 @@ class EditableTable(Vertical):
         editor.open(text, check, begun=begun)
 
     def settle(self) -> bool:
-        """Write the typed text; an invalid text is reported and stays in the editor."""
+        """Write the typed text to its cell; return whether it is valid.
+
+        An invalid text stays in the editor, with a message.
+        """
         reading = self.editor.settle()
         if not reading.is_good:
             self.editor.focus()
@@ -86,7 +87,7 @@ class EditableTable(Vertical):
         return reading.is_good
 
     def _take_typed(self) -> str | None:
-        """Write the typed text to its cell, if it is valid."""
+        """Close the editor, and write the typed text to its cell if it is valid."""
         text = self.editor.text
         self.leave_cell()
         if text is not None:
@@ -102,14 +103,14 @@ class EditableTable(Vertical):
             self.tell("")
 
     def done(self, then: Then) -> None:
-        """Write a valid text, and move the cursor unless the focus is elsewhere."""
+        """Write the typed text, and move the cursor unless the focus is elsewhere."""
         is_here = self.editor.is_here
         text = self._take_typed()
         if is_here:
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Cancel editing; if an invalid text is discarded, report the `reason`."""
+        """Cancel editing, and show why an invalid text was discarded, if a `reason` is given."""
         self.leave_cell()
         self.abandoned()
         if reason:
@@ -117,7 +118,7 @@ class EditableTable(Vertical):
 
 
 class CellEditor(field.ScrolledEntry):
-    """Input line over a cell, which shows how its text is interpreted at each key press."""
+    """Input line over a cell, which interprets its text at each key press."""
 
     BINDINGS = key_table.bindings("cell")
     DEFAULT_CSS = """
@@ -133,22 +134,21 @@ class CellEditor(field.ScrolledEntry):
         super().__init__(compact=True, select_on_focus=True)
         self._owner = owner
         self._check: Check = anything
-        self._before = ""  # the text that typing began with
+        self._before = ""  # text at the start of editing
 
     @property
     def is_open(self) -> bool:
-        """Whether a value is being edited."""
         return self.has_class("-open")
 
     @property
     def is_here(self) -> bool:
-        """Whether the editor receives key presses; `has_focus` is updated too late for this."""
+        """Whether the editor has the focus; `has_focus` is updated too late for this."""
         return self.screen.focused is self
 
     def open(self, text: str, check: Check, *, begun: bool = False) -> None:
         """Open the editor with a text.
 
-        The first key replaces the text, or continues a text that is `begun`.
+        The first key replaces the text; if the user has typed the text (`begun`), it is appended.
         """
         self._check, self._before = check, "" if begun else text
         self.select_on_focus = not begun
@@ -174,7 +174,7 @@ class CellEditor(field.ScrolledEntry):
         return reading.text if reading.is_good and (self.is_typing or is_completed) else None
 
     def settle(self) -> Reading:
-        """Accept a valid or unchanged text; an invalid text stays in the editor."""
+        """Return the interpretation of the text; unchanged text is always valid."""
         if not self.is_typing:
             return Reading(self.value)
         return self._judged()
@@ -185,12 +185,10 @@ class CellEditor(field.ScrolledEntry):
         return reading
 
     def watch_value(self) -> None:
-        """Check the text at each key press."""
         if self.is_open:
             self._owner.tell_reading(self._judged())
 
     def action_done(self, then: Then = "stay") -> None:
-        """Accept the text and move the cursor."""
         reading = self._judged()
         if reading.is_good:
             self._owner.done(then)
@@ -199,8 +197,9 @@ class CellEditor(field.ScrolledEntry):
             self.correct(reading)
 
     def action_right(self) -> None:
-        """Accept typed text if the cursor is at its end, as in a spreadsheet; otherwise move the
-        text cursor.
+        """Accept typed text if the cursor is at its end, as in a spreadsheet.
+
+        Otherwise move the cursor to the right.
         """
         if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
             self.action_done("right")
@@ -208,15 +207,14 @@ class CellEditor(field.ScrolledEntry):
             self.action_cursor_right()
 
     def action_abandon(self) -> None:
-        """Cancel editing."""
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:
-        """Accept a valid value when the mouse is pressed elsewhere."""
+        """Accept a valid value, since the mouse was pressed elsewhere."""
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:
-        """Finish editing, unless the next value is edited or the window has lost the focus."""
+        """Finish editing, unless another value is edited now or the window has lost the focus."""
         if not self.is_open or self.is_here or not self.app.app_focus:
             return
         reading = self._check(self.value)
@@ -225,6 +223,6 @@ class CellEditor(field.ScrolledEntry):
         elif reading.is_good:
             self._owner.done("stay")
         else:
-            # after the focus handlers, which remove messages
+            # runs after the focus handlers, which remove messages
             reason = f"`{self.value}` was not accepted: {reading.note}"
             self.call_after_refresh(self._owner.abandon, reason)

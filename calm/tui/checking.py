@@ -1,4 +1,4 @@
-"""Check typed text at each key press: accept it, complete its unit, or reject it."""
+"""Checks of typed text at each key press: accept it, complete its unit, or reject it."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -21,9 +21,9 @@ class Reading:
     Attributes
     ----------
     text : text to write, with a missing unit added
-    complaint : reason why it is invalid; empty if valid
+    complaint : reason why the text is invalid; empty if valid
     offer : corrected text, if known
-    explained : meaning of a valid text, if the text alone is not clear
+    explained : meaning of a valid text, if it is not obvious
     """
 
     text: str
@@ -33,20 +33,17 @@ class Reading:
 
     @property
     def is_good(self) -> bool:
-        """Whether the text is valid."""
         return not self.complaint
 
     @property
     def note(self) -> str:
-        """Message for the user: the error and the correction."""
+        """Error, and the correction if known."""
         if self.offer:
             return f"{self.complaint}: {self.offer}?"
         return self.complaint
 
     def feedback(self, typed: str) -> str:
-        """Text for the user: the error in an invalid text, or the meaning of a valid text if not
-        obvious.
-        """
+        """Return the error in an invalid text, or the meaning of a valid text if not obvious."""
         is_completed = self.text and self.text != " ".join(typed.split())
         return self.note or self.explained or (f"= {self.text}" if is_completed else "")
 
@@ -56,12 +53,15 @@ Check = Callable[[str], Reading]
 
 
 def anything(text: str) -> Reading:
-    """Accept any text, without surrounding blanks."""
+    """Accept any text, and remove superfluous blanks."""
     return Reading(" ".join(text.split()))
 
 
 def one_of(words: Sequence[str]) -> Check:
-    """Accept one of the given words, or empty text; an abbreviated word is completed."""
+    """Return a check that accepts one of the given words or an empty text.
+
+    For an abbreviated word, the full word is offered as correction.
+    """
 
     def check(text: str) -> Reading:
         tidy = text.strip()
@@ -74,7 +74,10 @@ def one_of(words: Sequence[str]) -> Check:
 
 
 def needed(what: str) -> Check:
-    """Accept any nonempty text."""
+    """Return a check that accepts any text that is not empty.
+
+    `what` names the text in the error message.
+    """
 
     def check(text: str) -> Reading:
         reading = anything(text)
@@ -86,7 +89,10 @@ def needed(what: str) -> Check:
 def quantity(
     kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None
 ) -> Check:
-    """Accept a quantity. A bare number gets the unit `usual_unit`, by default the SI unit."""
+    """Return a check that accepts a quantity.
+
+    A bare number gets the unit `usual_unit`, by default the SI unit.
+    """
 
     def check(text: str) -> Reading:
         tidy = " ".join(text.split())
@@ -117,7 +123,7 @@ def _refused(
 
 
 def unit_of(text: str) -> str | None:
-    """Return the unit in a text, if any."""
+    """Return the unit in a text, or None."""
     found = _UNIT.search(text)
     return found[1].strip() if found else None
 
@@ -127,7 +133,7 @@ number = quantity(QuantityField("number"))
 
 
 def count(text: str) -> Reading:
-    """Accept a count, a whole number; empty text means 1."""
+    """Accept a whole number of pieces, or an empty text for 1."""
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")
@@ -139,13 +145,19 @@ def count(text: str) -> Reading:
 
 
 def distance(before: str = "") -> Check:
-    """Accept the distance of a clamp from the upper end of its piece."""
+    """Return a check for the distance of a clamp from the upper end of its piece.
+
+    The unit of the previous text is added to a bare number.
+    """
     return quantity(LENGTH, usual_unit=unit_of(before))
 
 
 def length(before: str = "", *, towed: bool = False) -> Check:
-    """Accept a length, a length with the load at which it was measured (``at``), or ``fit`` with
-    the depth to reach.
+    """Return a check for the length of a piece.
+
+    The text is a length, a length with the load at which it was measured (``98 m at 2 kN``), or
+    ``fit`` with the depth to reach. `before` is the previous text, whose unit is added to a bare
+    number.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
@@ -168,7 +180,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
 
 
 def _joined(long: Reading, load: Reading) -> Reading:
-    """Combine the readings of a length and of the load at which the length is measured."""
+    """Combine the interpretations of a length and of the load at which it was measured."""
     offers = [each.offer or each.text for each in (long, load)]
     offer = " at ".join(offers) if long.offer or load.offer else None
     complaint = long.complaint or load.complaint
@@ -176,7 +188,7 @@ def _joined(long: Reading, load: Reading) -> Reading:
 
 
 def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Value | None]:
-    """Convert a length text accepted by `length` to keys of an item."""
+    """Convert a text accepted by `length` to keys of an item; None deletes a key."""
     key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
     fit, measured = _FIT.fullmatch(text), _AT_LOAD.fullmatch(text)
     if fit is not None:
@@ -189,7 +201,7 @@ def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Val
 
 
 def length_text(values: Mapping[str, str]) -> str:
-    """Format the length of an item in the form in which it is typed."""
+    """Format the length of an item as the user would type it."""
     written = values.get("length", "") or values.get("length_at", "")
     if written != "fit":
         return written

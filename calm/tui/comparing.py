@@ -1,4 +1,4 @@
-"""Actions on the main screen: advice, comparisons, reports and deck sheets."""
+"""Actions of the main screen for advice, comparisons, reports and deck sheets."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DOCUMENTS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 
 
 class ComparingScreen(line_screen.LineScreen):
-    """Screen that compares the line with the saved file and with proposed changes.
+    """Part of the main screen that compares the line with the saved file and with proposed changes.
 
     Lines are judged in a thread; a question or a message shows the outcome.
     """
@@ -68,7 +68,10 @@ class ComparingScreen(line_screen.LineScreen):
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _effects(self, before: View, after: View) -> list[str]:
-        """Compare two lines after a full check of both; runs in a thread."""
+        """Return the differences between two lines after a full check of both lines.
+
+        This is called in a thread.
+        """
         from calm.tui.advice import differences
         from calm.tui.live import judge_fully
 
@@ -78,7 +81,6 @@ class ComparingScreen(line_screen.LineScreen):
     # advice
 
     def action_advise(self) -> None:
-        """Suggest changes that correct findings or meet a target."""
         from calm.tui.advice import offers, single
 
         if not self.settle():
@@ -138,7 +140,7 @@ class ComparingScreen(line_screen.LineScreen):
         enter(self.app, "A target to meet", text, fields, take)
 
     def _try(self, offer: Offer, before: View) -> None:
-        """Compute a suggested change in a thread, show its effects, and ask for confirmation."""
+        """Make a suggested change in a thread, show its effects, and ask for confirmation."""
         session, draft = self.session, self.session.draft
 
         def work() -> None:
@@ -224,7 +226,7 @@ class ComparingScreen(line_screen.LineScreen):
 
 
 def changed_lines(before: str, after: str) -> list[str]:
-    """Return the first removed (``-``) and added (``+``) lines of a text comparison."""
+    """Return the first lines that differ between two texts, ``-`` removed and ``+`` added."""
     diff = unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
     lines = [line for line in diff if not line.startswith(("---", "+++", "@@"))]
     more = len(lines) - _MOST_LINES

@@ -1,5 +1,6 @@
-"""Form for a component of the file; each value is checked as it is typed, and all values on
-completion.
+"""Form for a component defined in the file.
+
+Each value is checked during typing, and the whole component on completion.
 """
 
 from collections.abc import Collection
@@ -30,7 +31,7 @@ class ComponentScreen(dialogs.Form[Defined]):
     ----------
     listed : ids of the catalogue, which a component of the same id overrides
     own : ids that the file defines already, which cannot be used again
-    begun : id and all keys of a component to change
+    begun : id and all keys of a component to be changed
     """
 
     BINDINGS = key_table.bindings("form")
@@ -60,7 +61,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         self._values = dict(self._begun)
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the fields with the resulting card, and the keys."""
         yield TitleBar()
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
@@ -81,7 +81,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         yield KeyBar()
 
     async def on_mount(self) -> None:
-        """Show the fields of the first kind."""
         what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(key_table.hints("form"))
@@ -119,7 +118,7 @@ class ComponentScreen(dialogs.Form[Defined]):
     @on(Field.Judged)
     @on(events.DescendantFocus)
     def _judge(self) -> None:
-        """Show the component that results from the entered values, with errors."""
+        """Show the card of the component with the entered values, and any errors."""
         from rich.console import Group, RenderableType
         from rich.text import Text
 
@@ -143,7 +142,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_take(self) -> None:
-        """Return the component if all values are valid."""
         if not all_settled(self.all_parts):
             return
         component, problems = defined(*self._all())
@@ -158,8 +156,10 @@ _FIRST = ("name", "manufacturer", "role")
 
 
 def form_fields(kind: str) -> list[FormField]:
-    """Return the form fields of a component kind, in the order: names, required keys, keys of the
-    kind, common keys.
+    """Return the form fields for a kind of component.
+
+    Names come first, followed by required keys, other keys of the kind, and keys common to all
+    kinds.
     """
     fields = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
 
@@ -172,7 +172,7 @@ def form_fields(kind: str) -> list[FormField]:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Return a check for a new component id, which may not be one of the ids `own` in the file."""
+    """Return a check for the id of a new component, which must not be among the ids `own`."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()

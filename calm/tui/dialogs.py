@@ -1,4 +1,4 @@
-"""Dialogs over the screen: questions with answers, input sheets, long texts."""
+"""Dialogs over the screen: questions, input sheets and long texts."""
 
 from __future__ import annotations
 
@@ -40,7 +40,10 @@ Then = Callable[[], object]
 
 
 def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
-    """Open a screen on top of the others, and pass its result to `take` unless it is cancelled."""
+    """Open a screen on top of other screens.
+
+    Call `take` with its result, unless it is cancelled.
+    """
 
     def taken(given: T | None) -> None:
         if given is not None:
@@ -50,7 +53,7 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
 
 
 def choose(app: App[Any], question: Question) -> None:
-    """Ask a question, and run the action of the chosen answer."""
+    """Show a question, and run the action of the chosen answer."""
     ask(app, question, lambda then: then())
 
 
@@ -61,13 +64,13 @@ def enter(
     fields: Sequence[FormField],
     take: Callable[[dict[str, str]], object],
 ) -> None:
-    """Ask for several texts on an `InputSheet`, and pass them to `take`."""
+    """Request several texts on an `InputSheet`, and call `take` with the texts."""
     ask(app, InputSheet(title, text, fields), take)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A possible answer, with its key, text and action."""
+    """Answer to a question, with its key, text and action."""
 
     key: str
     title: str
@@ -75,14 +78,14 @@ class Answer:
 
 
 def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
-    """Number answers, given as (title, action), from 1; each number is the key of its answer."""
+    """Create answers whose keys are the numbers from 1, from pairs of title and action."""
     return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
 class Question(ModalScreen[Then | None]):
-    """A question, answered by key, by arrows and Enter, or by mouse.
+    """Question that is answered by key, by arrows and Enter, or by mouse.
 
-    Esc calls `back` unless one `must` answer.
+    Esc calls `back`, unless an answer is compulsory (`must`).
     """
 
     BINDINGS = key_table.bindings("question")
@@ -103,7 +106,6 @@ class Question(ModalScreen[Then | None]):
         self._marked: int | None = None
 
     def compose(self) -> ComposeResult:
-        """Yield the question, and its answers below."""
         with Vertical():
             yield Static(self._title, classes="title", markup=False)
             yield Static(self._text, classes="text", markup=False)
@@ -117,7 +119,6 @@ class Question(ModalScreen[Then | None]):
                 yield Static("[@click=screen.leave][b]Esc[/b]  go back[/]")
 
     def on_key(self, event: Key) -> None:
-        """Choose an answer by its key; ignore all other keys."""
         for answer in self._answers:
             if event.key in (answer.key, answer.key.lower()):
                 event.stop()
@@ -125,12 +126,10 @@ class Question(ModalScreen[Then | None]):
                 return
 
     def on_mount(self) -> None:
-        """Mark the first answer of a numbered list."""
         if self._answers[0].key == "1":
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Mark the answer above or below."""
         if self._marked is None:
             self._marked = 0 if by > 0 else len(self._answers) - 1
         else:
@@ -139,28 +138,26 @@ class Question(ModalScreen[Then | None]):
             shown.set_class(number == self._marked, "-marked")
 
     def action_give(self) -> None:
-        """Choose the marked answer."""
         if self._marked is not None:
             self.action_answer_number(self._marked)
 
     def action_answer_number(self, number: int) -> None:
-        """Choose an answer by its number."""
         self.dismiss(self._answers[number].then)
 
     def action_leave(self) -> None:
-        """Close the question without an answer."""
         if not self._must:
             self.dismiss(self._back)
 
 
 class Form(Screen[T | None]):
-    """Fields that are entered together: Enter moves to the next field, and on the last field
-    accepts all.
+    """Fields that are entered together.
+
+    Enter moves to the next field; on the last field it accepts all fields.
     """
 
     @property
     def fields(self) -> list[Field]:
-        """All fields in order; tables are not included."""
+        """All fields in order, without tables."""
         return list(self.query(Field))
 
     @property
@@ -175,7 +172,7 @@ class Form(Screen[T | None]):
         return {part.key: part.text for part in self.all_parts}
 
     def parts_of(self, fields: Iterable[FormField]) -> Iterator[Widget]:
-        """Yield the widgets of the fields, each group under its name."""
+        """Yield widgets for fields, with a heading above each group."""
         for each in fields:
             if each.above:
                 yield Static(each.above, classes="above", markup=False)
@@ -197,11 +194,9 @@ class Form(Screen[T | None]):
             self.focus_next()
 
     def action_take(self) -> None:
-        """Return the entered texts if all are valid."""
         raise NotImplementedError
 
     def action_leave(self) -> None:
-        """Close the form without a result."""
         self.dismiss(None)
 
 
@@ -211,9 +206,9 @@ _TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ g
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
-    """Sheet with several text fields; Esc discards all changes.
+    """Sheet with several text fields, which Esc discards.
 
-    It is wide if the fields have notes next to them.
+    The sheet is wide if there are notes next to the fields.
     """
 
     BINDINGS = key_table.bindings("sheet")
@@ -233,7 +228,6 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
         self._title, self._text, self._form_fields = title, text, fields
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the fields and the keys."""
         with Vertical():
             with VerticalScroll(id="asked", can_focus=False):
                 yield Static(self._title, classes="title", markup=False)
@@ -247,11 +241,9 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
             )
 
     def on_mount(self) -> None:
-        """Give the first field the focus."""
         self.all_parts[0].input.focus()
 
     def on_resize(self) -> None:
-        """Keep the note below the fields visible."""
         self.query_one("#asked").styles.max_height = max(self.size.height - _BELOW, 1)
 
     @on(Field.Judged)
@@ -270,19 +262,17 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
                 self.tell(reading.note or _TABLE_KEYS, wrong=not reading.is_good)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Show a message below the fields."""
         note = self.query_one("#sheet-note", Static)
         note.update(text)
         note.set_class(wrong, "-wrong")
 
     def action_take(self) -> None:
-        """Return the texts if all are valid."""
         if all_settled(self.all_parts):
             self.dismiss(self.texts)
 
 
 class LongText(ModalScreen[None]):
-    """Scrollable text over the screen, `wide` for tables."""
+    """Scrollable text over the screen; `wide` gives room for tables."""
 
     BINDINGS = key_table.bindings("help")
     DEFAULT_CSS = (
@@ -295,6 +285,5 @@ class LongText(ModalScreen[None]):
         self._text = text
 
     def compose(self) -> ComposeResult:
-        """Yield the text."""
         with VerticalScroll():
             yield Static(self._text)

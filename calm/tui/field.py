@@ -1,4 +1,4 @@
-"""Input fields that show how their text is interpreted at each key press."""
+"""Input fields that interpret their text at each key press."""
 
 from __future__ import annotations
 
@@ -23,47 +23,50 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Text input that leaves pasted text of several lines to its container."""
+    """Text input that ignores pasted text of several lines, which its container handles."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def on_mount(self) -> None:
-        """Switch off cursor blinking, so that an idle builder sends no data."""
+        """Switch off the blinking cursor, so that an idle builder sends no data."""
         self.cursor_blink = False
 
     def on_paste(self, event: events.Paste) -> None:
-        """Ignore a pasted table; Textual would insert its first row."""
+        """Prevent Textual from inserting the first row of a pasted table."""
         if len(event.text.splitlines()) > 1:
             event.prevent_default()
 
     def correct(self, reading: Reading) -> None:
-        """Insert the suggested correction, if any."""
+        """Replace the text by the suggested correction, if any."""
         if reading.offer:
             self.value = reading.offer
             self.cursor_position = len(self.value)
 
 
 class Part(Protocol):
-    """A part of a form: a field or a table."""
+    """Part of a form, either a field or a table."""
 
     @property
     def key(self) -> str:
-        """Key of the value in the file."""
+        """Key in the file."""
 
     @property
     def text(self) -> str:
-        """Entered text, in the form that is written to the file."""
+        """Entered text in the form of the file."""
 
     @property
     def input(self) -> Widget:
-        """Widget that receives the key presses."""
+        """Widget that receives key presses."""
 
     def settle(self) -> bool:
         """Accept the typed text; return whether it is valid."""
 
 
 def all_settled(fields: Iterable[Part]) -> bool:
-    """Accept all texts; return False and focus the first invalid field, if any."""
+    """Accept the texts of all parts; return whether all are valid.
+
+    If not, the first invalid part gets the focus.
+    """
     wrong = [field for field in fields if not field.settle()]
     if wrong:
         wrong[0].input.focus()
@@ -71,16 +74,17 @@ def all_settled(fields: Iterable[Part]) -> bool:
 
 
 class Field(Horizontal):
-    """Name, text input, and a note on the input.
+    """Field of a form, with a name, a text input, and a note.
 
-    Only the input is a widget of its own: each of the dozens in a form takes time to start. The
-    field writes the name into the margin of the input, and the note behind the input.
+    Only the input is a widget of its own, because each widget in a form of dozens of fields takes
+    time to start. The field draws the name and the note into the margins of the input.
 
-    The field posts `Committed` when the user leaves it, by Enter or focus, with a valid text that
-    differs from the initial text. An invalid text stays, marked, and is not committed.
+    The field posts `Committed` when the user leaves it, by Enter or by focus, with a valid text
+    that differs from the initial text. An invalid text stays in the field, marked, and is not
+    committed.
     """
 
-    SCOPED_CSS = False  # the width of the screen counts
+    SCOPED_CSS = False  # styles depend on the width of the screen
     DEFAULT_CSS = """
     Field {
         height: 1; width: 1fr; color: $text-muted;
@@ -92,20 +96,20 @@ class Field(Horizontal):
 
     @dataclass
     class Committed(Message):
-        """A valid text was entered."""
+        """Message that a valid text was entered."""
 
         field: Field
         text: str
 
     @dataclass
     class Entered(Message):
-        """Enter was pressed in the field."""
+        """Message that Enter was pressed in the field."""
 
         field: Field
 
     @dataclass
     class Judged(Message):
-        """Interpretation of the text typed so far."""
+        """Message with the interpretation of the text typed so far."""
 
         field: Field
         reading: Reading
@@ -120,11 +124,9 @@ class Field(Horizontal):
         )
 
     def compose(self) -> ComposeResult:
-        """Yield the input."""
         yield self.input
 
     def render(self) -> Content:
-        """Render the name and, if there is room, the note."""
         before, width = self.input.styles.margin.left, self.input.outer_size.width + 1
         title = Content(self.form_field.title).truncate(before, ellipsis=True, pad=True)
         room = max(self.content_size.width - before - width, 0)
@@ -133,7 +135,7 @@ class Field(Horizontal):
         return Content.assemble(title, " " * width, (note.plain, style))
 
     def notify_style_update(self) -> None:
-        """Render again, since the margin and width of the input may have changed."""
+        """Render again, since margin and width of the input may have changed."""
         super().notify_style_update()
         self.refresh()
 
@@ -144,7 +146,7 @@ class Field(Horizontal):
 
     @property
     def text(self) -> str:
-        """Typed text in the form that is written to the file, or the initial text if unchanged."""
+        """Typed text in the form of the file, or the initial text if unchanged."""
         return self.reading.text if self.is_typing else self.begun
 
     @property
@@ -153,14 +155,14 @@ class Field(Horizontal):
         return self.check(self.input.value)
 
     def reset(self, text: str) -> None:
-        """Replace the initial text."""
+        """Set another initial text."""
         self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
         self._tell(Reading(text))
 
     def tell(self, note: str) -> None:
-        """Replace the note unless the text is invalid; "" shows the description of the field."""
+        """Show another note, unless the text is invalid; "" shows the description of the field."""
         self._note = note or self.form_field.takes
         if not self.has_class("-wrong"):
             self._show_note(self._note)
@@ -192,13 +194,13 @@ class Field(Horizontal):
             self.post_message(self.Entered(self))
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Accept a valid text when the focus leaves."""
         if self.reading.is_good:
             self.settle()
 
     def settle(self) -> bool:
-        """Accept a valid text, or insert a suggested correction; return whether the text was
-        valid.
+        """Accept a valid text; return whether the text is valid.
+
+        For an invalid text, the suggested correction is inserted, if any.
         """
         reading = self.reading
         if not reading.is_good:
@@ -216,7 +218,7 @@ class Field(Horizontal):
 
 
 class Cycle(Widget, can_focus=True):
-    """Selector of one word from a list, between two arrows."""
+    """Selector of one word from a list, by two arrows."""
 
     BINDINGS = bindings("choice")
     DEFAULT_CSS = """
@@ -226,7 +228,7 @@ class Cycle(Widget, can_focus=True):
 
     @dataclass
     class Turned(Message):
-        """Another word was chosen."""
+        """Message that another word was chosen."""
 
         word: str
 
@@ -244,30 +246,25 @@ class Cycle(Widget, can_focus=True):
 
     @property
     def hint(self) -> str:
-        """Keys of this widget."""
         return "← → another, ↑ ↓ go on"
 
     def show(self, word: str) -> None:
-        """Select a word."""
         self.word = word
         self.refresh()
 
     def next_word(self, by: int) -> str:
-        """Return the next or the previous word of the list."""
+        """Return the word `by` places after the selected one; the list is circular."""
         here = self.words.index(self.word) if self.word in self.words else 0
         return self.words[(here + by) % len(self.words)]
 
     def action_turn(self, by: int) -> None:
-        """Select the next or the previous word."""
         self.show(self.next_word(by))
         self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
-        """Select the next word."""
         self.action_turn(1)
 
     def render(self) -> Text:
-        """Render the name, the arrows and the word."""
         return Text.assemble(
             (self._title, "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),

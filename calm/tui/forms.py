@@ -1,7 +1,7 @@
 """Forms for sections of the file: fields for the keys of a model, and conversion of values to text.
 
-A structured value is typed as YAML in brackets, `[98 m, 104 m]`; a list of rows is a table, whose
-text is also YAML.
+A structured value is typed as YAML in brackets, such as `[98 m, 104 m]`. A list of rows is edited
+as a table, whose text is also YAML.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ _EXAMPLE = re.compile(r",? ?e\.g\. [^;]+;? ?")
 
 @dataclass(frozen=True)
 class FormColumn:
-    """A table column, with the key of its values in each row ("" if the rows are lists)."""
+    """Column of a table in a form.
+
+    `key` is the key of its values in each row, or "" if the rows are lists.
+    """
 
     key: str
     heading: str
@@ -36,14 +39,14 @@ class FormColumn:
 
 @dataclass(frozen=True)
 class FormField:
-    """A form field: a text that the user enters.
+    """Description of a text field in a form.
 
     Attributes
     ----------
     key : name; for a key of the file, its path, such as `position.latitude`
     takes : description next to the field
     above : heading of a group that begins with this field
-    columns : columns of a table, whose rows are in the text
+    columns : columns, if the field is a table, whose rows are in the text
     is_needed : whether its model requires it
     """
 
@@ -59,11 +62,11 @@ class FormField:
 
 
 def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[FormField]:
-    """Create the form fields of a model: required keys first, keys of nested models last.
+    """Create the form fields of a model, with required keys first and nested models last.
 
     Parameters
     ----------
-    at : path of its keys in the file, such as `deployed.`
+    at : path of the model in the file, such as `deployed.`
     needed : whether the model is required; otherwise its required keys may be blank
     """
     model.model_rebuild()  # resolves forward references
@@ -80,7 +83,10 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Return the model in a type annotation; None if there is none, or a choice of several."""
+    """Return the model in a type annotation.
+
+    Return None if there is no model, or a choice between several types.
+    """
     members = _members(annotation)
     return members[0] if len(members) == 1 and _is_model(members[0]) else None
 
@@ -111,7 +117,7 @@ def _form_field(model: type[BaseModel], name: str, at: str, *, needed: bool) -> 
 
 
 def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Reading:
-    """Check a text by validating its value with the model."""
+    """Interpret a typed text by validating it as the value of a key in the model."""
     tidy = " ".join(text.split())
     if not tidy:
         return Reading("", "a value is needed" if needed else "")
@@ -119,7 +125,7 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the table columns for a list of models or of fixed-length rows, else ()."""
+    """Return the table columns for a list of models or of rows with a fixed length, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]
@@ -138,7 +144,7 @@ def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
 
 
 def _members(annotation: Any) -> tuple[Any, ...]:
-    """Return the types of a union except None, without annotations."""
+    """Return the types in a union without None and without metadata."""
     if get_origin(annotation) in (Union, UnionType):
         return tuple(member for each in get_args(annotation) for member in _members(each))
     if hasattr(annotation, "__metadata__"):
@@ -151,7 +157,7 @@ def _is_model(member: Any) -> bool:
 
 
 def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
-    """Return the allowed words of a field that takes only certain words."""
+    """Return the allowed words of a field, or () if the field allows other texts."""
     if members == (bool,):
         return "true", "false"
     if all(get_origin(each) is Literal for each in members):
@@ -160,7 +166,6 @@ def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
 
 
 def _as_texts(value: Any) -> Value:
-    """Convert an example to the texts of the file."""
     if isinstance(value, dict):
         return {key: _as_texts(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
@@ -174,24 +179,28 @@ def _as_texts(value: Any) -> Value:
 
 
 def text_of(value: Value | None) -> str:
-    """Convert a value to typed form: a text unchanged, any other value as inline YAML."""
+    """Convert a value to the text that the user would type.
+
+    A text stays unchanged, any other value becomes inline YAML.
+    """
     return value or "" if isinstance(value, str | None) else inline(value)
 
 
 def value_of(text: str) -> Value | None:
-    """Parse a typed value; None if the text is empty."""
+    """Parse a typed value, or return None for an empty text."""
     value = read_inline(text) if text[:1] in ("[", "{") else text
     return None if value in ("", [], {}) else value
 
 
 def rows_of(text: str, columns: Sequence[FormColumn]) -> Rows | None:
-    """Parse a text to table rows; None if a row does not fit the columns."""
+    """Parse a text to table rows; None if the text does not fit the columns."""
     return rows_in(value_of(text), columns)
 
 
 def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
-    """Convert a table in the file to rows of text; None if it does not fit. Missing cells are
-    blank.
+    """Convert a table in the file to rows of text, with blanks for missing cells.
+
+    Return None if the value does not fit the columns.
     """
     keys = {column.key for column in columns}
     rows = []
@@ -218,7 +227,7 @@ def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
 
 
 def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
-    """Return the form fields with texts from the file."""
+    """Return form fields with the values of the file as texts."""
 
     def at(key: str) -> Any:
         found = values
@@ -230,7 +239,7 @@ def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
 
 
 def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
-    """Return form values by key, nested as in the model, without blank values."""
+    """Return the values of a form, nested as in the model, without blank values."""
     values: dict[str, Any] = {}
     for place, text in texts.items():
         *outer, key = place.split(".")
@@ -243,7 +252,10 @@ def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
 
 
 def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
-    """Return the file with the texts of a form written to it; a blank text deletes its key."""
+    """Write the texts of a form to the file, and return the changed draft.
+
+    A blank text deletes its key.
+    """
     for key, text in texts.items():
         place = (*below, *key.split("."))
         old, new = draft.value(place), value_of(text)

@@ -1,4 +1,7 @@
-"""All actions of the builder with their keys, used for bindings, key bar, help and palette."""
+"""All actions of the builder with their keys.
+
+Key bindings, key bar, help and command palette derive from this table.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,12 +24,12 @@ class Action:
 
     Attributes
     ----------
-    place : the focused widget or the screen on which its keys work
+    place : the focused widget, or the screen, on which its keys work
     name : name of the method, without ``action_``, with its arguments
     keys : keys in Textual's notation, separated by commas; the first is displayed
     title : two or three words, for the palette and the key bar
     meaning : a sentence for the help
-    hint : rank in the key bar, 0 first; None if it is not shown there
+    hint : rank in the key bar, from 0; None if it is not shown there
     palette : whether the command palette lists it (actions of the line and of the main screen)
     """
 
@@ -251,12 +254,12 @@ def shown_keys(keys: str) -> str:
 
 
 def bindings(place: str) -> list[BindingType]:
-    """Return the key bindings for a widget or screen, which has the action methods."""
+    """Return the key bindings for a widget or screen, which must define the actions as methods."""
     return [Binding(each.keys, each.name, each.title, show=False) for each in ACTIONS[place]]
 
 
 def hints(place: str) -> list[Action]:
-    """Return the actions for the key bar of a focused widget, most used first."""
+    """Return the actions shown in the key bar for a focused widget, the most used first."""
     places = ("line", "anywhere") if place == "line" else (place,)
     own = [each for where in places for each in ACTIONS[where] if each.hint is not None]
     return sorted(own, key=lambda action: action.hint or 0)
@@ -278,7 +281,7 @@ _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
 
 
 def all_keys() -> RenderableType:
-    """Return a table of all keys by part of the builder."""
+    """Return tables of all keys, one for each part of the builder."""
     listed = {
         title: [(action.keys, action.meaning) for action in ACTIONS[place]]
         for place, title in PLACES.items()

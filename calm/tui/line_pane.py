@@ -1,4 +1,4 @@
-"""The line pane: rows of the line and the actions on them."""
+"""The line pane, with the rows of the line and the actions on them."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -29,7 +29,7 @@ _FROM_A_ROW = frozenset(
 
 
 class LinePane(LineSearch):
-    """Pane in which the line is edited: cells, rows and their order.
+    """Pane in which the cells and rows of the line are edited.
 
     Parameters
     ----------
@@ -46,13 +46,11 @@ class LinePane(LineSearch):
         self._cell: LineCell | None = None  # the cell edited now or last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable row actions while a value is typed, and actions that need a row in an empty
-        line.
-        """
+        """Disable actions on rows while a value is typed or if the line is empty."""
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the current rows with their known values."""
+        """Show the rows of the draft, with values from the last view that fits."""
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()
         figures = view if view is not None and (view.rows or view.problems) else workspace.good
@@ -60,7 +58,7 @@ class LinePane(LineSearch):
         self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Place | None = None) -> None:
-        """Show a new draft; the cursor moves to `spot`, if given."""
+        """Show a new draft, and move the cursor to `spot`, if given."""
         here = self.table.spot if spot is None else spot
         self.leave_cell()
         self.table.mark(frozenset())
@@ -68,7 +66,7 @@ class LinePane(LineSearch):
         self.table.go_to(here)
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
-        """Accept typed text, then make a change; return whether the change was made."""
+        """Accept typed text and make a change; return whether the change was made."""
         if not self.settle():
             return False
         self.session.followed = []
@@ -85,33 +83,28 @@ class LinePane(LineSearch):
     # the cursor and the marks
 
     def action_move_cursor(self, by: int) -> None:
-        """Go up or down."""
         self.table.cursor += by
 
     def action_move_page(self, by: int) -> None:
-        """Go a page up or down."""
         self.table.cursor += by * max(self.table.size.height - 2, 1)
 
     def action_move_to_end(self, direction: int) -> None:
-        """Go to the top or the bottom."""
         self.table.cursor = 0 if direction < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
-        """Toggle the mark of the row, or extend the marks and move on."""
         table = self.table
         marked, spot = table.marked, table.chosen_here
         table.cursor += by
         table.mark(marked | {spot, table.chosen_here} if by else marked ^ {spot})
 
     def action_mark_all(self) -> None:
-        """Mark all pieces, or remove all marks if all are marked."""
         pieces = frozenset(row.spot for row in self.table.rows if not row.spot.is_clamp)
         self.table.mark(frozenset() if self.table.marked >= pieces else pieces)
 
     # findings
 
     def action_next_finding(self) -> None:
-        """Go to the next row with a failure, else a warning, else a missing value."""
+        """Move to the next row with a failure, else with a warning, else with a missing value."""
         rows, here = self.table.rows, self.table.cursor
         around = [*range(here + 1, len(rows)), *range(here + 1)]
         for state in (State.FAIL, State.WARN, State.UNKNOWN):
@@ -129,7 +122,6 @@ class LinePane(LineSearch):
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
     def action_why(self) -> None:
-        """Show all findings of the row under the cursor."""
         row = self.table.rows[self.table.cursor]
         found = self._found_of(row.spot)
         if not found:
@@ -142,14 +134,12 @@ class LinePane(LineSearch):
     # rows
 
     def action_search(self, purpose: Purpose) -> None:
-        """Search the catalogue for a component for the row."""
         if self.table.rows or purpose in ("below", "above"):
             self._search(purpose)
         elif purpose == "clamp":
             self.workspace.tell("Add a piece before clamping an instrument")
 
     def action_equipment(self) -> None:
-        """Edit the serial number, calibration and other equipment keys of the row."""
         spot = self.table.chosen_here
         values = self.session.written(spot)
         label = str(values.get("label") or values.get("use") or "")
@@ -165,9 +155,7 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Fill one column of the marked rows, or of all rows with the same component as this
-        row.
-        """
+        """Edit one column of the marked rows, or of all rows with the component of this row."""
         table = self.table
         spots = table.chosen
         if not table.marked:
@@ -191,7 +179,6 @@ class LinePane(LineSearch):
         choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
-        """Add several copies of the selected rows."""
         chosen = self._chosen_of_a_kind()
 
         def take(texts: dict[str, str]) -> None:
@@ -202,7 +189,6 @@ class LinePane(LineSearch):
             enter(self.app, "Repeat", "", fields, take)
 
     def action_duplicate(self) -> None:
-        """Duplicate the selected rows."""
         chosen = self._chosen_of_a_kind()
         named = [each for spot in chosen for each in references_to(self.session.draft, spot)]
 
@@ -220,13 +206,11 @@ class LinePane(LineSearch):
             duplicate()
 
     def action_delete(self) -> None:
-        """Delete the selected rows."""
         chosen = self.table.chosen
         what = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
         self.attempt(lambda: self.session.delete(chosen), f"{what}; u restores")
 
     def action_move_piece(self, by: int) -> None:
-        """Move the selected rows up or down."""
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
         moved: list[Place] = []
 
@@ -238,29 +222,26 @@ class LinePane(LineSearch):
             self.table.mark(frozenset(moved))
 
     def action_copy(self) -> None:
-        """Copy the selected rows for pasting."""
         if copied := self.session.copy(self._chosen_of_a_kind()):
             self.table.mark(frozenset())
             self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
 
     def action_cut(self) -> None:
-        """Cut the selected rows for pasting."""
         chosen = self._chosen_of_a_kind()
         if self.session.copy(chosen):
             self.attempt(lambda: self.session.delete(chosen), "cut; v pastes below")
 
     def action_paste(self, below: int) -> None:
-        """Paste the copied rows."""
         if not self.session.copied:
             self.workspace.tell("There are no copied rows to paste")
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """Return the selected rows; if pieces are mixed with clamps of other pieces, show a message
-        and return ().
+        """Return the selected rows, unless pieces are mixed with clamps of other pieces.
 
-        Such clamps have no position among pieces that are pasted or moved.
+        Such clamps have no position among pieces that are pasted or moved. If there are any, a
+        message is shown and () is returned.
         """
         chosen = self.table.chosen
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
@@ -272,7 +253,6 @@ class LinePane(LineSearch):
     # a value in place
 
     def action_edit(self) -> None:
-        """Edit the value under the cursor."""
         self.action_edit_column(EDITABLE[self.table.column])
 
     @on(LineTable.Pressed)
@@ -280,7 +260,6 @@ class LinePane(LineSearch):
         self.action_edit()
 
     def action_edit_column(self, column: Column) -> None:
-        """Edit a value of the row under the cursor."""
         spot = self.table.spot
         if spot is None:
             self._search("below")
@@ -290,7 +269,7 @@ class LinePane(LineSearch):
             self._edit(LineCell(self.workspace, spot, column))
 
     def _edit(self, cell: LineCell) -> None:
-        """Edit a value after accepting text typed in another cell."""
+        """Edit a value, after accepting the text typed in another cell."""
         if refused := cell.refused:
             self.workspace.tell(refused)
         if refused or not self.settle():
@@ -301,7 +280,6 @@ class LinePane(LineSearch):
         self.open_editor(cell.text, cell.check, least_width=least)
 
     def write(self, text: str) -> None:
-        """Write a valid text into the draft."""
         cell, before = self._cell, self.session.draft
         is_put = cell is not None and self.workspace.attempt(lambda: cell.put(text))[0]
         if is_put and self.session.draft is not before:

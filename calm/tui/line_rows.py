@@ -1,4 +1,4 @@
-"""Rows of the line table, from the file and its results, and editing of values and columns."""
+"""Rows of the line table from the file and its results, and editing of their values and columns."""
 
 from __future__ import annotations
 
@@ -41,11 +41,10 @@ _MOST_USE = 9.99
 def table_rows(
     draft: Draft, view: View | None, index: Index | None, added: Collection[Place] = ()
 ) -> list[TableRow]:
-    """Return a row for each item and clamp; an item with several pieces shows their governing
-    values.
+    """Return the rows of the line table, one for each item and clamp.
 
-    If the view belongs to an earlier text, its values are shown in rows with the same names, except
-    in rows that were `added`.
+    An item of several pieces shows their governing values. If the view belongs to an earlier text,
+    its values are shown in rows of equal name, except in the rows `added` since.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
@@ -63,7 +62,7 @@ def table_rows(
 
 
 def _wrong_items(draft: Draft, view: View | None) -> set[int]:
-    """Return the numbers of items whose lines of text contain mistakes."""
+    """Return the numbers of the items with mistakes in their lines of text."""
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
@@ -77,7 +76,7 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
 def _figures(
     draft: Draft, view: View | None, added: Collection[Place]
 ) -> dict[Place, Sequence[FoundRow]]:
-    """Return the results for each row."""
+    """Return the results that belong to each row of the draft."""
     if view is None:
         return {}
     found: dict[Place, list[FoundRow]] = {}
@@ -99,9 +98,7 @@ def _figures(
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return a key that identifies a row in the file: component, label, and whether it is
-    clamped.
-    """
+    """Return component, label, and whether it is clamped, to identify a row in another text."""
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")
@@ -133,7 +130,7 @@ def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
 
 
 def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
-    """Return the text in each column for an item: the governing value of its pieces."""
+    """Return the governing value of an item's pieces in each column, as text."""
     texts = {}
     for one in table_columns(Output.BUILDER):
         known = [row.figures[one.name] for row in found if one.name in row.figures]
@@ -154,7 +151,7 @@ _NO_LENGTH = "The component determines the length"
 
 @dataclass(frozen=True)
 class LineCell:
-    """An editable value of a row in the current file of a workspace."""
+    """Editable value of a row in the file of a workspace."""
 
     workspace: Workspace
     spot: Place
@@ -163,7 +160,7 @@ class LineCell:
 
     @property
     def listed(self) -> Listed | None:
-        """Component of the row, if it is in the loaded catalogue."""
+        """Component of the row, or None if the catalogue is not loaded or lacks it."""
         index = self.workspace.index
         return None if index is None else index.get(self._values.get("use", ""))
 
@@ -179,7 +176,7 @@ class LineCell:
 
     @property
     def text(self) -> str:
-        """Text shown when editing starts."""
+        """Text at the start of editing."""
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":
@@ -188,7 +185,7 @@ class LineCell:
 
     @property
     def check(self) -> Check:
-        """Check applied to a new text."""
+        """Check of a typed text."""
         if self.column != "length":
             return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
@@ -196,18 +193,19 @@ class LineCell:
         return length(self._values.get("length", ""), towed=self._is_towed)
 
     def put(self, text: str) -> None:
-        """Write a valid text to the file; an unchanged text has no effect.
+        """Write a valid text to the file, unless it is unchanged.
 
         Raises
         ------
         EditError
+            The file does not allow the change.
         """
         if given := self.values_of(text):
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """Return the keys that a text changes, with their values; None deletes a key."""
+        """Return new values for the keys that a text changes; None deletes a key."""
         written = self._values
         if text == self.text:
             return {}
@@ -223,7 +221,7 @@ class LineCell:
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
     def onward(self) -> LineCell | None:
-        """Return the next editable cell of the row, if any."""
+        """Return the next editable cell of the row, or None."""
         for column in EDITABLE[EDITABLE.index(self.column) + 1 :]:
             cell = LineCell(self.workspace, self.spot, column)
             if not cell.refused:
@@ -250,7 +248,7 @@ class ColumnSheet(InputSheet):
     """Sheet with a field for each row; a pasted list fills the fields downwards."""
 
     def on_paste(self, event: Paste) -> None:
-        """Fill the fields downwards from the edited field."""
+        """Fill the fields with the pasted lines, from the focused field downwards."""
         lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
         fields = self.fields
         first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
@@ -266,7 +264,7 @@ class ColumnSheet(InputSheet):
 
 
 class ColumnFilling:
-    """Values of one column in several rows, edited on a sheet."""
+    """Values of one column in several rows, which are edited on one sheet."""
 
     def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
         self._session, self._column = workspace.session, column
@@ -278,13 +276,13 @@ class ColumnFilling:
 
     @property
     def sheet(self) -> ColumnSheet | None:
-        """Sheet for editing the values; None if no row can have a value in this column."""
+        """Sheet to edit the values; None if no row can have a value in this column."""
         return (
             ColumnSheet(_TITLES[self._column], "", self._form_fields) if self._form_fields else None
         )
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write all changed values as one step of the history."""
+        """Write all changed values to the file in a single step of the history."""
         begun, draft = {each.key: each.text for each in self._form_fields}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"

@@ -1,4 +1,4 @@
-"""Layout of the main screen: the line next to its picture and verdict, or next to the catalogue."""
+"""Layout of the main screen: the line, and next to it the picture and verdict, or the catalogue."""
 
 from collections.abc import Collection
 
@@ -15,7 +15,7 @@ from calm.tui.workspace import Workspace
 
 
 class LineScreen(screen.DraftScreen):
-    """Main-screen layout, and navigation between line, picture, verdict and catalogue."""
+    """Layout of the main screen, and navigation between line, picture, verdict and catalogue."""
 
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
     DEFAULT_CSS = """
@@ -55,7 +55,6 @@ class LineScreen(screen.DraftScreen):
         self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
-        """Yield the line, and the picture and verdict, which the catalogue may replace."""
         with Horizontal(id="body"):
             yield self.line
             yield self.catalogue
@@ -73,13 +72,12 @@ class LineScreen(screen.DraftScreen):
         return self.line.settle()
 
     def show_draft(self) -> None:
-        """Show the current draft."""
         self.line.show_draft()
         self._show_side_panes()
         self.show_title()
 
     def show_view(self) -> None:
-        """Show the last view; values of an earlier draft are dimmed."""
+        """Show the last view, dimmed if it belongs to an earlier draft."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_side_panes()
@@ -91,7 +89,7 @@ class LineScreen(screen.DraftScreen):
         self._show_side_panes()
 
     def _show_side_panes(self) -> None:
-        """Show catalogue, picture and verdict of the last view, dimmed if out of date."""
+        """Update catalogue, picture and verdict from the last view, dimmed if it is out of date."""
         self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh
         last = None if view is None or view.result is not None else self.workspace.good
@@ -103,7 +101,7 @@ class LineScreen(screen.DraftScreen):
         self.verdict.set_class(self.workspace.is_old, "-old")
 
     def titles(self) -> tuple[str, str]:
-        """Return the title (file, unsaved changes, name) and the status (environment, verdict)."""
+        """Return name and file with unsaved changes, and environment with verdict."""
         name = " ".join(self.session.draft.text_at(("name",)).split())
         standing, parts = self.session.standing, []
         here = standing.environment
@@ -126,7 +124,7 @@ class LineScreen(screen.DraftScreen):
         table.focus()
 
     def action_back(self) -> None:
-        """Return to the verdict if the cursor came from there."""
+        """Return to the verdict, if the cursor was moved from there."""
         if self._came_from_verdict:
             self._came_from_verdict = False
             self.add_class("-reading")
@@ -156,7 +154,6 @@ class LineScreen(screen.DraftScreen):
         return "anchor" if is_last and "release" in roles and "anchor" not in roles else ""
 
     def _target(self, purpose: Purpose) -> str:
-        """Return the name of the row for which a component is searched."""
         spot = self.line.table.spot
         if spot is None:
             return ""
@@ -182,7 +179,6 @@ class LineScreen(screen.DraftScreen):
         self.catalogue.retitle(self._target(self.catalogue.purpose))
 
     def close_catalogue(self) -> None:
-        """Close the catalogue and return to the line."""
         self.remove_class("-searching")
         self.line.table.focus()
 

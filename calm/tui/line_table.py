@@ -1,4 +1,4 @@
-"""The line as a table from top to bottom, with cursor, marks, values and searches."""
+"""The line as a table from top to bottom, with cursor, marks, values and search."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class LineTable(TableCells, can_focus=True):
     BEYOND = 2
 
     class Moved(TableCells.Moved):
-        """The cursor has moved to another cell of the line."""
+        """Message that the cursor has moved to another cell of the line."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -72,7 +72,6 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def columns(self) -> tuple[TableColumn, ...]:
-        """Columns that fit the current width."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
             names = ("component", "label", "length", "leg")
@@ -86,33 +85,31 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """Names of the editable columns."""
         return EDITABLE
 
     @property
     def row(self) -> TableRow | None:
-        """The row under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
     @property
     def spot(self) -> Place | None:
-        """Position of the row under the cursor; None in an empty line."""
+        """Position in the line of the row under the cursor; None in an empty line."""
         return self.row.spot if self.row else None
 
     @property
     def chosen_here(self) -> Place:
-        """Position of the row under the cursor; the line must have rows."""
+        """Position in the line of the row under the cursor, in a line that is not empty."""
         return self.rows[self.cursor].spot
 
     @property
     def chosen(self) -> tuple[Place, ...]:
-        """Positions of the marked rows, or of the row under the cursor."""
+        """Positions of the marked rows, else of the row under the cursor."""
         if self.marked:
             return tuple(row.spot for row in self.rows if row.spot in self.marked)
         return (self.spot,) if self.spot else ()
 
     def show_rows(self, rows: Sequence[TableRow], *, old: bool = False) -> None:
-        """Replace the rows; dim their values if `old` (values of a previous solve)."""
+        """Replace the rows; values of an earlier draft (`old`) are dimmed."""
         self.old = old
         self._arranged = (-1, self._arranged[1])
         self.marked &= {row.spot for row in rows}
@@ -126,16 +123,15 @@ class LineTable(TableCells, can_focus=True):
                 self.follow()
 
     def mark(self, spots: frozenset[Place]) -> None:
-        """Mark the given rows, and unmark all others."""
+        """Mark these rows only."""
         self.marked = spots
         self.refresh()
 
     def on_resize(self) -> None:
-        """Keep the cursor visible as the window changes."""
         self.follow()
 
     def below(self, y: int) -> list[Segment]:
-        """Return the hints that are shown below an empty line."""
+        """Return the hints below an empty line."""
         width = max(self.size.width, 20)
         hints = [line for text in _EMPTY for line in wrap(text, width, subsequent_indent=" " * 6)]
         if self.rows or not 1 < y < len(hints) + 2:
@@ -143,11 +139,10 @@ class LineTable(TableCells, can_focus=True):
         return [Segment(hints[y - 2], self.get_component_rich_style("line-table--clamp"))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell."""
         return self.rows[number].texts.get(column.name, "")
 
     def row_style(self, number: int) -> Style:
-        """Style of a row: clamped, under the cursor, wrong or marked."""
+        """Return the style of a row, which marks a clamp, the cursor, a mistake or a selection."""
         row = self.rows[number]
         base = "line-table--clamp" if row.spot.is_clamp else "line-table--row"
         style = self.get_component_rich_style(base)
@@ -161,13 +156,13 @@ class LineTable(TableCells, can_focus=True):
         return style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Style of a cell; values of a previous solve are dimmed."""
+        """Return the style of a cell; values of an earlier draft are dimmed."""
         if self.old and column.name not in EDITABLE:
             style += self.look("line-table--old")
         return style
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the leading cells of a row: cursor, mark or state, and sign."""
+        """Return the signs before a row: cursor, mark or state, and kind."""
         row = self.rows[number]
         sign = Segment(" ", style)
         if row.spot in self.marked:
@@ -200,9 +195,15 @@ LEAD = 4
 
 @dataclass(frozen=True)
 class TableRow:
-    """Table row of a piece or a clamp, as displayed.
+    """Row of a piece or a clamp, as displayed.
 
-    `texts` are by the name of the column; `wrong` marks an unknown component.
+    Attributes
+    ----------
+    spot : position in the line
+    sign : sign of the kind
+    texts : texts by name of the column
+    state : most severe state of its findings
+    wrong : whether the component is unknown
     """
 
     spot: Place
@@ -225,9 +226,10 @@ def layout_for(
 
     Parameters
     ----------
-    component, label : cells of the longest text in these columns, which share the remaining width
-    length : cells of the longest length
-    leg : cells of the longest name of a leg of a net; 0 for a single line
+    width : width of the table [cells]
+    component, label : width of the longest text in these columns, which share the remaining width
+    length : width of the longest length
+    leg : width of the longest name of a leg in a net; 0 for a single line
     planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
@@ -268,20 +270,18 @@ def _heading(figure: ResultColumn) -> str:
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
-    """Return the cells that remain for component and label."""
+    """Return the width that remains for the columns component and label [cells]."""
     return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)
 
 
 class LineSearch(cell_editor.EditableTable):
-    """Line table with search commands, which move the cursor and report the match."""
+    """Search commands of the line table, which move the cursor and report the match."""
 
     table: LineTable
     workspace: Workspace
     words = ""
 
     def action_find(self) -> None:
-        """Ask for words, and go to the next row that contains them."""
-
         def take(texts: dict[str, str]) -> None:
             self.words = texts["words"]
             self.action_find_next(1)
@@ -291,7 +291,7 @@ class LineSearch(cell_editor.EditableTable):
         dialogs.enter(self.app, "Find in the line", "", fields, take)
 
     def action_find_next(self, by: int) -> None:
-        """Go to the next or previous row that contains all words (id, label, serial, maker)."""
+        """Move to the next or previous row whose id, label, serial or maker contains all words."""
         wanted = self.words.casefold().split()
         if not wanted:
             self.workspace.tell("/ finds words in the line first")
@@ -301,7 +301,6 @@ class LineSearch(cell_editor.EditableTable):
         )
 
     def action_weakest(self) -> None:
-        """Go to the row with the highest utilisation of strength."""
         view = self.workspace.judged("Checks are still running; try again in a moment")
         if view is None:
             return
@@ -333,7 +332,7 @@ class LineSearch(cell_editor.EditableTable):
         self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
     def _searched_text(self, row: TableRow) -> str:
-        """Return the searchable text of a row, including its catalogue entry."""
+        """Return the text of a row that is searched, including its catalogue entry."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
         serial = self.workspace.session.written(row.spot).get("serial", "")

@@ -1,4 +1,4 @@
-"""Solve and judge a text while it is edited.
+"""Solve and judge a text while the user edits it.
 
 This module does not depend on the screen. `judge` runs in a worker after every change;
 `judge_fully` adds the slower checks.
@@ -45,27 +45,27 @@ UNNAMED = "unnamed.yaml"
 
 @dataclass(frozen=True)
 class View:
-    """Results and mistakes for a text.
+    """Results and mistakes of a text.
 
     Attributes
     ----------
     text, path, environment : the judged text, its path and its environment
-    problems : mistakes in the text, which then has no solution
-    missing : missing parts of the line, in words
-    file : the file as read; None if there are mistakes or missing parts, except an anchor or a
-        float. A line without an anchor is solved with an anchor that holds any load.
+    problems : mistakes in the text; if there are any, it has no solution
+    missing : names of missing parts of the line
+    file : the file as read; None if it has mistakes, or if a part other than an anchor or a float
+        is missing. A line without an anchor is solved with an anchor that holds any load.
     result : the solution, or None
     failure : the reason if there is no solution
     findings : findings of the design check; none for a tow
-    tighter : findings with a higher use in another situation, but of the same severity
+    tighter : findings of the same severity, but with a higher utilisation in another situation
     environments : names of the environments besides the default environment
     rows : results in the order of the file, clamps below their piece
     complete : whether these are all findings of `calm check`, see `judge_fully`; true for a tow,
         which has no findings
-    cases : results in each environment, once they are judged
+    cases : results in each environment, after the full check
     elsewhere : mistakes in other environments
-    held : a line without an anchor in every environment and situation, once solved
-    memory : previous solutions, for the next text
+    held : for a line without an anchor, its solutions in every environment and situation
+    memory : previous solutions, which are reused for the next text
     """
 
     text: str
@@ -87,12 +87,11 @@ class View:
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
-        """Whether the view belongs to a given text, path and environment."""
+        """Return whether the view belongs to a given text, path and environment."""
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @cached_property
     def items(self) -> tuple[editing.LineItem, ...]:
-        """Items of the line in the text."""
         return editing.Draft(self.text).items
 
     @property
@@ -102,7 +101,7 @@ class View:
 
     @property
     def anchored(self) -> bool:
-        """Whether the line has an anchor, or needs none."""
+        """Whether the line has an anchor or needs none."""
         return self.file is not None and self.file.pieces[-1].use != pieces.STAND_IN
 
 
@@ -113,8 +112,9 @@ def judge(
     catalogs: Sequence[str | Path] = (),
     keep: View | None = None,
 ) -> View:
-    """Solve a text, and apply the design rules for a line in equilibrium; may be called in any
-    thread.
+    """Solve a text, and apply the design rules to the line in equilibrium.
+
+    This may be called in any thread.
 
     Parameters
     ----------
@@ -140,15 +140,15 @@ def judge(
 
 
 def _placed(path: str | Path | None) -> Path:
-    """Return the path relative to which file names in a text are resolved."""
+    """Return the path by which relative file names in a text are resolved."""
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
-    """Return the view with the complete findings of `calm check`.
+    """Return a view with the complete findings of `calm check`.
 
-    These include every environment and situation, waves, launch, recovery and breaks. A tow, and a
-    line without equilibrium, is returned unchanged; a line without an anchor is solved in every
+    They cover every environment and situation, waves, launch, recovery and breaks. A tow, or a line
+    without equilibrium, is returned unchanged. A line without an anchor is only solved in every
     environment and situation.
     """
     if view.complete or view.result is None or view.result.towed:
@@ -168,28 +168,31 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 
 @dataclass(frozen=True)
 class HeldLine:
-    """A line in one environment and situation, with an anchor that holds any load.
+    """A line solved in one environment and situation, with an anchor that holds any load.
 
-    `when` names the environment, unless it is that of the view, and the situation, unless as given.
+    `when` names the environment and the situation, unless they are those of the view.
     """
 
     when: str
     result: LegResult
 
     def needed(self, anchor: Anchor) -> float:
-        """Return the weight in water that an anchor needs here, with its own friction [N]."""
+        """Return the weight in water that a given anchor must have in this situation [N].
+
+        It depends on the friction coefficient of the anchor.
+        """
         load, file = self.result.anchor_load, _anchored_by(self.result.file, anchor)
         factor = file.checks.anchor_factor
         return float(required_weight(load.vertical, load.horizontal, factor, file.anchor_friction))
 
     def weight(self, anchor: Anchor) -> float:
-        """Return the weight of an anchor and its clamps in the water here [N]."""
+        """Return the weight of a given anchor and its clamps in this water [N]."""
         leg = self.result.leg
         return Leg(_anchored_by(leg.file, anchor), given_water=leg.water).anchor_weight
 
 
 def _anchored_by(file: MooringFile, anchor: Anchor) -> MooringFile:
-    """Return a file with another anchor, of the same height, at the end of its line."""
+    """Return a file whose line ends with another anchor of the same height."""
     last = replace(file.pieces[-1], component=anchor)
     return replace(file, pieces=(*file.pieces[:-1], last))
 
@@ -199,8 +202,9 @@ _HOLDS_ANY_LOAD = 1e9
 
 
 def held_lines(view: View, catalogs: Sequence[str | Path] = ()) -> tuple[HeldLine, ...]:
-    """Solve a single line in every environment and situation, with an anchor that holds any load;
-    empty if it has no equilibrium even so.
+    """Solve a single line in every environment and situation, with an anchor that holds any load.
+
+    The result is empty if the line has no equilibrium.
     """
     found: list[HeldLine] = []
 
@@ -228,8 +232,9 @@ def held_lines(view: View, catalogs: Sequence[str | Path] = ()) -> tuple[HeldLin
 def in_all_environments(
     view: View, here: Design, catalogs: Sequence[str | Path] = ()
 ) -> tuple[list[Design], list[Problem]]:
-    """Return the mooring in each environment, with the cut lengths for the environment `here`; also
-    return mistakes.
+    """Return a mooring in each environment, and mistakes in environments that cannot be read.
+
+    The lengths are those cut for the environment `here`.
     """
     found: list[Design] = []
     problems: list[Problem] = []
@@ -271,7 +276,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 
 def _missing_parts(file: MooringFile) -> Iterator[str]:
-    """Yield missing parts that a mooring needs for an equilibrium; a tow needs none."""
+    """Yield the parts that a mooring lacks for an equilibrium; tows and nets are not examined."""
     if file.tow is not None or file.legs:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
@@ -303,7 +308,7 @@ def _solved(view: View, file: MooringFile) -> View:
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
-    """Return a view with mistakes and missing parts separated."""
+    """Return a view with mistakes and missing parts as separate lists."""
     lacking = dict.fromkeys(problem.lacks for problem in problems if problem.lacks)
     wrong = tuple(problem for problem in problems if not problem.lacks)
     return replace(view, problems=wrong, missing=tuple(lacking))
@@ -311,7 +316,7 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 
 @dataclass(frozen=True)
 class FoundRow:
-    """A row for a piece, or for an instrument clamped on the piece above the row.
+    """Results of a piece, or of an instrument clamped on the piece above.
 
     Attributes
     ----------
@@ -336,7 +341,7 @@ class FoundRow:
 def rows_of(
     file: MooringFile, result: Result | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
-    """Yield rows in file order, with findings and any results."""
+    """Yield the results of pieces and clamps in file order, with their findings."""
     solved = {} if result is None else rows_by_place(result)
     columns = table_columns(Output.BUILDER)
     found: defaultdict[Place | None, list[Finding]] = defaultdict(list)
@@ -370,7 +375,7 @@ def rows_of(
 
 
 def _lacks_strength(finding: Finding) -> bool:
-    """Whether `strength` lacks a value, accepted or not."""
+    """Return whether a finding shows that the rule `strength` lacks a value, accepted or not."""
     if finding.missing is not None:
         return strength.name in finding.missing.needed_by
     lacks = finding.lacks is not None and finding.utilisation is None

@@ -1,6 +1,4 @@
-"""Input sheets for file-level keys and for single rows of the line, derived from the file
-models.
-"""
+"""Input sheets for keys of the file and for single rows, derived from the file models."""
 
 from __future__ import annotations
 
@@ -53,18 +51,19 @@ _ABOUT = {
 
 
 def settings() -> list[str]:
-    """Return the sections of the file that have a form and are not in `SHEETS`."""
+    """Return the sections of the file that have a model but no sheet in `SHEETS`."""
     known = {key for _, keys in SHEETS.values() for key in keys}
     fields = MooringKeys.model_fields.items()
     return [name for name, each in fields if name not in known and model_in(each.annotation)]
 
 
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
-    """Create a sheet from `SHEETS` or for a section from `settings`, with the values in the file.
+    """Create a sheet with the values in the file.
 
     Parameters
     ----------
-    hung : piece or clamp of the row under the cursor
+    name : name of a sheet in `SHEETS`, or of a section from `settings`
+    part : piece or clamp of the row under the cursor
     """
     fields = MooringKeys.model_fields
     title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
@@ -85,9 +84,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the piece or clamp of a row; None if the row has several pieces, or if the piece is
-    unknown.
-    """
+    """Return the piece or clamp of a row; None if it is unknown or if there are several pieces."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -95,7 +92,7 @@ def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp |
 def _deployed_sheet(
     draft: Draft, part: Piece | Clamp | None, form_fields: list[FormField]
 ) -> Sheet:
-    """Return the sheet *As deployed*, with the keys of the row's part, else of all parts."""
+    """Return the sheet *As deployed* for one part, or for all parts if there is no part."""
     if part is None:
         sheet = InputSheet("As deployed", _COMPARED, filled(form_fields, draft.value(())))
         return sheet, "the deployment", written
@@ -146,7 +143,7 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
 def equipment_changes(
     values: Mapping[str, Any], texts: Mapping[str, str]
 ) -> dict[str, Value | None]:
-    """Return the entered texts that differ from the file; None deletes a key."""
+    """Return new values for the equipment keys whose text has changed; None deletes a key."""
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
         if new != texts_of_equipment(values, key):
@@ -156,13 +153,13 @@ def equipment_changes(
 
 
 def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
-    """Convert equipment values to typed form; several values are separated by commas."""
+    """Convert the value of an equipment key to typed text, with commas between several values."""
     value = values.get(key)
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Accept a serial number, or one number for each item of a count or a pair."""
+    """Check the serial numbers of a row, separated by commas."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
@@ -170,7 +167,7 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return the plain text under a key of an entry, or "".
+    """Return the text of a key in an entry of a list in the file, or "".
 
     Parameters
     ----------
@@ -184,9 +181,9 @@ def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) 
 def entered(
     draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
 ) -> Draft:
-    """Return the file with texts written to an entry; a missing entry is added.
+    """Return the file with texts written to an entry of a list (see `entry_text`).
 
-    An entry that has only its identifying key left is deleted.
+    A missing entry is added; an entry left with only its identifying key is deleted.
     """
     changed = {
         key: text for key, text in texts.items() if text != entry_text(draft, rows, called, key)
@@ -245,8 +242,9 @@ class Missing:
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
     targets : locations in the file by key: the definition, if the file has it, else every row that
-        lacks the value (the row of the assembly for its parts); empty if the row cannot take it
-    estimates : class estimates by key, without source
+        lacks the value (for parts of an assembly, the row of the assembly); empty if the row cannot
+        take the value
+    estimates : estimates for the class of component by key, without source
     """
 
     use: str
@@ -257,7 +255,7 @@ class Missing:
 
     @property
     def called(self) -> str:
-        """Name of the component, with the labels of the first rows that lack a value."""
+        """Name of the component, followed by labels of rows that lack a value."""
         from calm.report.check_tables import named
 
         labels = named(self.labels)
@@ -270,7 +268,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the missing component values behind the unknown findings, in line order."""
+    """Return the missing component values that make findings unknown, in the order of the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
@@ -307,11 +305,12 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 def with_figures(
     draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
 ) -> Draft:
-    """Return the draft with the entered values.
+    """Return the file with the entered component values.
 
     Parameters
     ----------
-    texts : texts by ``component.key``; values with an empty text stay unknown
+    missing : missing values, with their locations in the file
+    texts : entered texts by ``component.key``; an empty text leaves a value unknown
     source : source of all values; may be empty
 
     Raises

@@ -1,4 +1,4 @@
-"""References to labels in a file, updated when labels change; choice of the environment."""
+"""References to labels, which are updated with the labels, and the choice of the environment."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,7 +16,7 @@ _MOST_OF_A_COUNT = 1000
 
 @dataclass(frozen=True)
 class Named:
-    """A reference in the file to a label or a pattern of labels."""
+    """Reference in the file to a label, or to a pattern of labels."""
 
     location: yaml_document.Location
     text: str
@@ -28,8 +28,9 @@ class Named:
 
 
 def named_in(draft: Draft) -> Iterator[Named]:
-    """Yield all references to labels in a file: accepted findings, deployed items, profiler
-    stops.
+    """Yield all references to labels in a file.
+
+    They occur in accepted findings, deployed items and profiler stops.
     """
 
     def within(*location: str | int) -> Iterator[tuple[yaml_document.Location, Any]]:
@@ -52,7 +53,10 @@ def named_in(draft: Draft) -> Iterator[Named]:
 
 
 def labels_of(draft: Draft) -> dict[Place, list[str]]:
-    """Return the labels of each row, numbered for a count, without labels inside assemblies."""
+    """Return the labels of the pieces in each row, without labels inside assemblies.
+
+    The pieces of a row with a count have numbered labels.
+    """
     rows: list[tuple[Place, str]] = []
     for number, item in enumerate(draft.items):
         count = item.values.get("count", "1")
@@ -69,7 +73,9 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 
 
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
-    """Update the references to labels after an edit; also return messages about the updates.
+    """Update the references to labels after an edit.
+
+    Return the draft, and messages on the updates.
 
     Parameters
     ----------
@@ -106,7 +112,7 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
 def _new_reference(
     text: str, wanted: set[str], renamed: Mapping[str, str], labels: Iterable[str]
 ) -> str | None:
-    """Return the text that matches the new labels, or None."""
+    """Return the text of a reference that matches the new labels, or None."""
     labels = list(labels)
     if text in renamed:
         return renamed[text]
@@ -119,14 +125,15 @@ def _new_reference(
 
 
 def references_to(draft: Draft, place: Place) -> list[Named]:
-    """Return the references that match only this row; after copying, they could also match the
-    copy.
+    """Return the references that match only this row.
+
+    If the row is copied, they may be extended to the copy.
     """
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 
 def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
-    """Extend each acceptance of a piece to all pieces with the same base name."""
+    """Extend acceptances of single pieces to all pieces of the same base name."""
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):
             draft = draft.put_at(each.location, f"{each.text} *")
@@ -134,7 +141,7 @@ def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
 
 
 class EnvironmentChoice:
-    """Choice of environment for a line: the default, a named environment, or an environment file.
+    """Environment chosen for a line: the default, a named environment, or an environment file.
 
     Parameters
     ----------
@@ -148,13 +155,13 @@ class EnvironmentChoice:
 
     @property
     def environments(self) -> list[str | None]:
-        """Environments of the file; the first is None, which means the default environment."""
+        """Environments of the file, beginning with None for the default environment."""
         named = self._history.draft.value(("environments",))
         return [None, *(named if isinstance(named, dict) else ())]
 
     @property
     def environment(self) -> str | None:
-        """Current environment; the default if the chosen one is no longer in the file."""
+        """Current environment, which is the default if the chosen one is no longer in the file."""
         return None if self.lost_environment else self._environment
 
     @environment.setter
@@ -163,13 +170,13 @@ class EnvironmentChoice:
 
     @property
     def lost_environment(self) -> str | None:
-        """Chosen environment if it is missing in a readable file, else None."""
+        """The chosen environment if a readable file lacks it, else None."""
         here = self._environment
         is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here
 
     @property
     def next_environment(self) -> str | None:
-        """Environment that follows the current one; the default follows the last."""
+        """Environment after the current one; the default follows the last."""
         names, here = self.environments, self.environment
         return names[(names.index(here) + 1) % len(names)] if here in names else None

@@ -1,7 +1,7 @@
-"""Driver of the terminal that sends only changed cells, at the pace of the terminal.
+"""Terminal driver that sends only changed cells, at the pace of the terminal.
 
 Textual sends a whole region again if one of its cells may have changed, and the whole screen after
-a change of size: 38 kB for a screen of 140 columns and 45 rows.
+a change of size, which is 38 kB for 140 columns and 45 rows.
 """
 
 from __future__ import annotations
@@ -30,9 +30,11 @@ _TOKEN = re.compile(
     r"|(?P<other>\x1b\[[\x20-\x3f]*[\x40-\x7e]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[^\[\]]|.)",
     re.DOTALL,
 )
-"""Position, style, mark of a frame, text, and any other sequence or control character."""
+"""Pattern of a position, style, frame mark, text, or any other sequence or control character."""
 _INCOMPLETE = re.compile(r"\x1b(\[[\x20-\x3f]*|\][^\x07\x1b]*\x1b?)?$")
-"""Beginning of a sequence at the end of a text; on Windows, Textual writes 8192 characters a time.
+"""Beginning of a sequence at the end of a text.
+
+On Windows, Textual writes 8192 characters at a time.
 """
 _NEW_SCREENS = re.compile(r"\x1b\[(\?1049[hl]|[23]J)")
 
@@ -40,13 +42,13 @@ _UNKNOWN: Cell = ("\0", "")
 _BLANK: Cell = (" ", "")
 _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
-_PATIENCE = 3.0  # seconds after which an answer is given up
+_PATIENCE = 3.0  # seconds to wait for an answer
 _GAP = 8
-"""Minimum length of a run of unchanged cells that is skipped; sending a shorter run costs less."""
+"""Minimum length of a run of unchanged cells that is skipped, as a shorter run costs little."""
 
 
 class Painted:
-    """Cells that the terminal displays, and those that it shall display."""
+    """Cells that the terminal displays now, and cells that it should display."""
 
     def __init__(self) -> None:
         self._shown: list[list[Cell]] = []
@@ -63,12 +65,15 @@ class Painted:
         self._touched.clear()
 
     def forget(self) -> None:
-        """Forget the displayed cells after another program has written to the terminal."""
+        """Treat all displayed cells as unknown.
+
+        This is necessary after another program has written to the terminal.
+        """
         self._shown = [[_UNKNOWN] * len(row) for row in self._shown]
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Take over the cells of a text for the terminal; return what must be sent at once."""
+        """Store the cells in a text for the terminal; return the parts to be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -108,7 +113,7 @@ class Painted:
         self._at = y, x + len(cells)
 
     def changes(self) -> str:
-        """Return the output that displays the wanted cells, which then count as displayed."""
+        """Return the output that updates the terminal, and treat it as displayed."""
         pen, sent, shown = _Pen(), [], self._shown
         shown += ([] for _ in range(len(self._wanted) - len(shown)))
         for y in sorted(self._touched):
@@ -129,11 +134,11 @@ class Painted:
 
 
 class Pace:
-    """Flow control: each frame waits until the terminal has displayed the previous frame.
+    """Flow control, by which each frame waits until the terminal has displayed the previous frame.
 
-    After each frame, the cursor position is requested; the answer shows that the frame has been
-    displayed. Over a slow connection, frames merge in this way. A terminal that has never answered
-    is not waited for.
+    After each frame, the cursor position is requested; the answer shows that the frame is
+    displayed. Over a slow connection, several frames thus merge into one. If the terminal has never
+    answered, frames do not wait.
     """
 
     def __init__(self) -> None:
@@ -141,30 +146,31 @@ class Pace:
         self._since: float | None = None
 
     def holds(self, now: float) -> bool:
-        """Return whether a frame must wait; the next frame sent then contains all changes."""
+        """Return whether a frame must wait, so that the next frame contains all changes."""
         return self._answers and self._since is not None and now - self._since < _PATIENCE
 
     def question(self, now: float) -> str:
-        """Return the status request to send after a frame, or ""."""
+        """Return the request to send after a frame; "" if the terminal does not answer."""
         if self._has_asked and not self._answers:
             return ""
         self._has_asked, self._since = True, now
         return _WHERE
 
     def answered(self) -> None:
-        """Register the answer to a status request."""
+        """Note that the terminal has answered the request."""
         self._answers, self._since = True, None
 
     @property
     def is_out(self) -> bool:
-        """Whether the answer to a status request is pending. The shell would read this answer as
-        keys.
+        """Whether the answer to a request is pending.
+
+        If the builder ended now, the shell would read the answer as keys.
         """
         return self._answers and self._since is not None
 
 
 class TerminalOutput:
-    """What an application writes to its terminal: frames of changed cells."""
+    """Output of an application to its terminal, as frames of changed cells."""
 
     def __init__(self) -> None:
         self._painted, self._pace = Painted(), Pace()
@@ -173,18 +179,18 @@ class TerminalOutput:
         self._lock = RLock()  # the thread that reads the keyboard also switches modes
 
     def driver_class(self, terminal: type[Driver]) -> type[Driver]:
-        """Return the driver of a terminal that writes through this output."""
+        """Return a driver class for a terminal that writes through this output."""
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
-        """Take over the cells of a text; send everything else."""
+        """Store the cells that a text contains, and send everything else at once."""
         with self._lock:
             self._send = send
             if at_once := self._painted.take(text):
                 send(at_once)
 
     def send_frame(self) -> None:
-        """Send the changed cells, once the terminal has displayed the previous frame."""
+        """Send the changed cells, or wait if the terminal has not displayed the previous frame."""
         with self._lock:
             if self._send is None:
                 return
@@ -196,7 +202,7 @@ class TerminalOutput:
                 self._send(changes + self._pace.question(time.monotonic()))
 
     def answered(self) -> None:
-        """Send the next changes, since the terminal has displayed the previous frame."""
+        """Send the next frame, since the terminal has displayed the previous one."""
         with self._lock:
             if self._late is not None:
                 self._late.cancel()
@@ -205,7 +211,7 @@ class TerminalOutput:
             self.send_frame()
 
     def clear(self) -> None:
-        """Forget all cells at the end, or after the size of the terminal has changed."""
+        """Discard all cells, at the end or after the terminal has changed its size."""
         with self._lock:
             self._painted.clear()
             if self._late is not None:
@@ -213,18 +219,17 @@ class TerminalOutput:
                 self._late = None
 
     def forget(self) -> None:
-        """Forget the displayed cells, so that the next frame has all of them."""
+        """Treat the displayed cells as unknown, so that the next frame contains all cells."""
         with self._lock:
             self._painted.forget()
 
     @property
     def is_out(self) -> bool:
-        """Whether an answer of the terminal is pending."""
         return self._pace.is_out
 
 
 class _PaintingDriver(Driver):
-    """The part of a driver that writes through its output; the rest is a driver of Textual."""
+    """Driver that writes through a `TerminalOutput`; its second base is a driver of Textual."""
 
     output: ClassVar[TerminalOutput]
 
@@ -260,7 +265,10 @@ _SEEN_ON_BLANKS = {"4", "7", "9", "21", "53"}
 
 @lru_cache(4096)
 def _ground(style: str) -> str:
-    """Return the visible part of a style on blank cells: the background, unless it is decorated."""
+    """Return the part of a style that is visible on blank cells.
+
+    This is the background or, for underlined and similar styles, the whole style.
+    """
     kept, codes = [], iter(style.split(";"))
     for code in codes:
         if code in ("38", "48"):
@@ -275,7 +283,7 @@ def _ground(style: str) -> str:
 
 
 def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
-    """Yield start and end of each run of changed cells; runs with small gaps are merged.
+    """Yield start and end of each run of changed cells; runs with a small gap are merged.
 
     A run never begins or ends within a wide character, because half of it cannot be written.
     """
@@ -302,7 +310,7 @@ def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tupl
 
 
 class _Pen:
-    """Writer of cells that sends a style only if the visible style changes."""
+    """Writer of cells, which sends a style only if the visible style changes."""
 
     def __init__(self) -> None:
         self._held = ""
@@ -323,6 +331,6 @@ class _Pen:
         return "".join(parts)
 
     def put_down(self) -> str:
-        """Return the output that resets the style."""
+        """Return the output that resets the style at the end."""
         held, self._held = self._held, ""
         return _PLAIN if held else ""

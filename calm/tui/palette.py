@@ -1,4 +1,4 @@
-"""Command palette: actions of the main screen, found by name."""
+"""Command palette, in which actions of the main screen are found by name."""
 
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -11,16 +11,16 @@ from calm.tui.line_pane import LinePane
 
 
 class Commands(CommandPalette):
-    """Command palette of Textual, adapted to terminals of any height."""
+    """Command palette of Textual, for terminals of any height."""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable page keys if the list has no visible line."""
+        """Disable the page keys if the list has no visible line."""
         is_page = action == "command_list" and str(parameters[0]).startswith("page")
         return not is_page or self.query_one(CommandList).size.height > 0
 
 
 class Actions(Provider):
-    """Provider of the main-screen actions for the palette."""
+    """Provider of the actions of the main screen for the palette."""
 
     @property
     def _offered(self) -> list[Action]:
@@ -29,7 +29,7 @@ class Actions(Provider):
         return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
 
     async def discover(self) -> Hits:
-        """Yield all actions, before a search word is typed."""
+        """Yield all actions until a text is typed."""
         for action in self._offered:
             yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
 

@@ -30,7 +30,7 @@ _CURRENT_SHARE, _MAX_CURRENT_WIDTH = 3, 26
 
 
 class Picture(scrolled.DrawnRows, can_focus=True):
-    """A picture of the line, drawn to fit the available cells."""
+    """A picture of the line, drawn to fit the widget."""
 
     DEFAULT_CSS = """
     Picture { height: 1fr; width: 1fr; background: $background; scrollbar-size: 1 1;
@@ -47,14 +47,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         self._overlays: Sequence[Shape] = ()
 
     def show(self, view: View | None, tab: Tab, overlays: Sequence[Shape] = ()) -> None:
-        """Draw the line of a view, with `overlays` for comparison."""
+        """Draw the line of a view, and other lines (`overlays`) for comparison."""
         if tab != self.tab:
             self.scroll_to(0, 0, animate=False)
         self._view, self.tab, self._overlays = view, tab, overlays
         self.draw_again()
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the picture; a schematic may be larger than the widget and then scrolls."""
+        """Draw the picture for a size; a schematic that is larger scrolls."""
         rows = self._picture(size)
         widest = max((row.cell_len for row in rows), default=0)
         self.virtual_size = Size(widest, len(rows)) if self.tab == "schematic" else Size(0, 0)
@@ -104,7 +104,7 @@ def _is_small(size: Size) -> bool:
 
 
 class Pictures(Vertical):
-    """Tabs with pictures, which are dimmed if they show an earlier state of the line."""
+    """Tabs with pictures, dimmed if they show an earlier state of the line."""
 
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
@@ -128,13 +128,11 @@ class Pictures(Vertical):
         self._caption = Static("dashed: the saved line", id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
-        """Yield the tabs, the caption and the picture."""
         yield self._tabs
         yield self._caption
         yield self._picture
 
     def on_mount(self) -> None:
-        """Show the tabs before the first solution."""
         self._show()
 
     def show(self, view: View | None, note: str = "") -> None:
@@ -143,12 +141,11 @@ class Pictures(Vertical):
         self._show()
 
     def overlay(self, saved: Shape | None) -> None:
-        """Draw the saved line for comparison; None removes it."""
+        """Draw the saved line for comparison, or remove it if None."""
         self._saved = saved
         self._show()
 
     def watch_tab(self) -> None:
-        """Draw the picture of the selected tab."""
         self._show()
 
     def _show(self) -> None:
@@ -160,8 +157,9 @@ class Pictures(Vertical):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
-        """Show the tabs: the current tab in reverse video, with a cursor if the picture has the
-        focus.
+        """Show the tabs, with the current tab in reverse video.
+
+        A cursor precedes it if the picture has the focus.
         """
         parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):
@@ -171,12 +169,11 @@ class Pictures(Vertical):
         self._tabs.update("".join(parts), layout=False)
 
     def on_click(self, event: events.Click) -> None:
-        """Give the picture the focus."""
         self._picture.focus()
 
 
 class ProfilePicture(scrolled.DrawnRows):
-    """Current speed and direction against depth in the current environment."""
+    """Picture of current speed and direction against depth, in the current environment."""
 
     DEFAULT_CSS = """
     ProfilePicture { height: 1fr; overflow: hidden; }
@@ -186,8 +183,9 @@ class ProfilePicture(scrolled.DrawnRows):
     _view: View | None = None
 
     def show(self, view: View | None, *, old: bool = False) -> None:
-        """Draw the current profile of a view, dimmed if `old`. If the file is not readable, dim the
-        last profile.
+        """Draw the current profile of a view, dimmed if `old`.
+
+        If the file cannot be read, the last profile stays, dimmed.
         """
         if view is not None and view.file is not None:
             self._view = view
@@ -197,9 +195,7 @@ class ProfilePicture(scrolled.DrawnRows):
         self.set_class(old, "-old")
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the current profile; return [] if the widget is too small or there is no
-        environment.
-        """
+        """Draw the current profile; [] if the widget is too small or if there is no environment."""
         file = None if self._view is None else self._view.file
         if _is_small(size) or file is None:
             return []

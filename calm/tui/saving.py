@@ -1,4 +1,4 @@
-"""Save the file, with questions about missing names, existing files and external changes."""
+"""Saving of the file, with questions on missing names, existing files and external changes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ class Saving:
     Parameters
     ----------
     app : application on whose screen questions appear
-    taken_over : shows a text that has replaced the draft, with a message
+    workspace : workspace whose file is saved
+    show_replaced_draft : shows a text that has replaced the draft, with a message
     leave : ends the application
     """
 
@@ -49,7 +50,7 @@ class Saving:
         self._reported: tuple[object] | None = None  # state on the disk that was reported last
 
     def save(self, then: Then | None = None) -> None:
-        """Save, asking for a file name if needed, and call `then` afterwards."""
+        """Save, after asking for a missing file name, and call `then` afterwards."""
         file = self._session.file
         if file.path is None:
             self.save_as(then)
@@ -76,8 +77,9 @@ class Saving:
             then()
 
     def _mistake(self) -> str:
-        """Return the first mistake in the saved file, or "". Missing parts do not count as
-        mistakes.
+        """Return a sentence on the first mistake in the saved file, or "".
+
+        Missing parts of the line do not count as mistakes.
         """
         session = self._session
         path = session.file.path or Path(session.name)
@@ -92,7 +94,7 @@ class Saving:
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
-        """Ask for a new file name (default `begin`) and save."""
+        """Save under a new file name, for which `begin` is suggested."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
@@ -112,7 +114,10 @@ class Saving:
         enter(self._app, "Save as", text, fields, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
-        """Ask before overwriting another file, a protected file, or a file changed on the disk."""
+        """Request a confirmation before another file is overwritten.
+
+        A confirmation is also needed if the file is write-protected or has changed on the disk.
+        """
         session, file = self._session, self._session.file
         is_own, stamp = path == file.path, file.stamp
         is_changed = is_own and stamp is not None and file.changed_on_disk()
@@ -138,8 +143,9 @@ class Saving:
     # the file on the disk
 
     def check_external_change(self) -> None:
-        """Reload the file if another program changed it; warn if that would discard unsaved
-        work.
+        """Reload the file if another program has changed it.
+
+        If that would discard unsaved work, warn instead.
         """
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
@@ -173,7 +179,7 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work, stating its time and whether the file is newer.
+        """Offer to recover unsaved work; state its time, and whether the file is newer.
 
         Discarding needs a confirmation, because it cannot be undone.
         """
@@ -216,7 +222,7 @@ class Saving:
         ]
         choose(app, Question("Unsaved work", text, answers, must=True))
 
-    # the way out
+    # quitting
 
     def quit(self) -> None:
         """Quit the builder, after a question if there is unsaved work."""
@@ -242,7 +248,7 @@ class Saving:
 
 
 def chosen_path(text: str) -> Path:
-    """Convert a typed name to a path, with the default suffix `.yaml`."""
+    """Convert a typed file name to a path, with `.yaml` as its default suffix."""
     path = Path(os.path.expanduser(text.strip()))
     is_named = path.name not in ("", "..") and not text.rstrip().endswith(("/", os.sep))
     bare = is_named and not path.suffix and not path.is_dir()
@@ -250,7 +256,7 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """Return an unused file name similar to a given name."""
+    """Return a similar file name that is not in use."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1
@@ -258,7 +264,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _is_writable(text: str) -> Reading:
-    """Check that a file name can be written to."""
+    """Check that a typed name is a possible name of a file in an existing folder."""
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")

@@ -16,10 +16,10 @@ from calm.tui.workspace import Workspace
 
 
 class DraftScreen(Screen[None]):
-    """Screen that shows and edits the draft of a workspace.
+    """Screen that displays and edits the draft of a workspace.
 
-    The application calls `settle` on the top screen before it saves or quits, and `replaced` on all
-    screens after the draft was replaced from outside.
+    The application calls `settle` on the top screen before it saves or quits. It calls `replaced`
+    on all screens after another text has replaced the draft.
     """
 
     def __init__(self, workspace: Workspace) -> None:
@@ -27,10 +27,9 @@ class DraftScreen(Screen[None]):
         self.workspace, self.session = workspace, workspace.session
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the parts and the keys."""
         for at_least, of_width in sorted(self.HORIZONTAL_BREAKPOINTS or (), reverse=True):
             if self.app.size.width >= at_least:
-                # after the mount it would style every widget again
+                # setting the class after the mount would style every widget again
                 self.set_class(True, of_width, update=False)
                 break
         yield TitleBar()
@@ -38,50 +37,49 @@ class DraftScreen(Screen[None]):
         yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the title."""
         self.show_title()
 
     # implemented by subclasses
 
     def parts(self) -> ComposeResult:
-        """Return the widgets between title and keys."""
+        """Yield the widgets between title bar and key bar."""
         raise NotImplementedError
 
     @property
     def is_typing(self) -> bool:
-        """Whether typed text has not been written to the draft yet."""
+        """Whether text was typed that is not in the draft yet."""
         raise NotImplementedError
 
     def settle(self) -> bool:
-        """Accept typed text; if this returns True, the draft contains the text.
+        """Write typed text to the draft; return whether the text is valid.
 
-        Returns False for an invalid value, which stays in its field, with a message.
+        An invalid text stays in its field, with a message.
         """
         raise NotImplementedError
 
     def show_draft(self) -> None:
-        """Show the draft after undo or redo."""
+        """Show the draft again, as after undo or redo."""
         raise NotImplementedError
 
     def replaced(self) -> None:
-        """Show a replacement of the draft; typed text and marks are obsolete.
+        """Show the text that has replaced the draft; typed text and marks are discarded.
 
-        If the draft cannot be parsed, the application opens the text view.
+        If the new draft cannot be parsed, the application opens the text editor.
         """
         self.show_draft()
 
     def show_view(self) -> None:
-        """Show the results that a worker computed from the draft."""
+        """Show the results that a worker has computed from the draft."""
         raise NotImplementedError
 
     def titles(self) -> tuple[str, str]:
-        """Return the texts at the left and right end of the title bar."""
+        """Return the texts at the left and the right end of the title bar."""
         raise NotImplementedError
 
     # shared by all screens
 
     def show_title(self) -> None:
-        """Update the title bar; the verdict is dimmed if it belongs to an earlier draft."""
+        """Update the title bar; a verdict on an earlier draft is dimmed."""
         self.query_one(TitleBar).show(*self.titles(), old=not self.workspace.is_fresh)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
@@ -89,11 +87,9 @@ class DraftScreen(Screen[None]):
         self.query_one(KeyBar).tell(text, wrong=wrong)
 
     def action_undo(self) -> None:
-        """Accept typed text, then undo the last change."""
         self._go("undone", self.session.history.undo)
 
     def action_redo(self) -> None:
-        """Redo the last undone change."""
         self._go("redone", self.session.history.redo)
 
     def _go(self, what: str, step: Callable[[], str | None]) -> None:
@@ -112,7 +108,7 @@ _GAP = "  "
 
 
 class TitleBar(Widget):
-    """Name and file at the left, environment and verdict at the right."""
+    """Bar with name and file at the left, environment and verdict at the right."""
 
     DEFAULT_CSS = """
     TitleBar { height: 1; background: $panel; color: $foreground; padding: 0 1; text-style: bold; }
@@ -123,13 +119,12 @@ class TitleBar(Widget):
         self._texts = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
-        """Replace the texts; the right text is dimmed if `old`."""
+        """Replace the texts; `old` dims the right one."""
         if (left, right, old) != self._texts:
             self._texts = left, right, old
             self.refresh()
 
     def render(self) -> Text:
-        """Render both texts; the left text is truncated if necessary."""
         width = self.content_size.width
         text, verdict, old = self._texts
         right = Text(verdict, style="dim" if old else "", no_wrap=True)
@@ -140,7 +135,7 @@ class TitleBar(Widget):
 
 
 class KeyBar(Static):
-    """The keys of the focused widget, or a message until the next key."""
+    """Bar with the keys of the focused widget, or with a message until the next key."""
 
     DEFAULT_CSS = """
     KeyBar {
@@ -159,9 +154,9 @@ class KeyBar(Static):
         self._beside_message = False
 
     def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
-        """Show the keys of a widget.
+        """Show the keys of actions.
 
-        With `beside_message` the keys stay next to a message, unless it reports a mistake.
+        With `beside_message` they stay next to a message, unless it reports a mistake.
         """
         if ((chosen := list(actions)), beside_message) != (self._actions, self._beside_message):
             self._actions, self._beside_message = chosen, beside_message
@@ -177,7 +172,6 @@ class KeyBar(Static):
         self._show()
 
     def on_resize(self) -> None:
-        """Show as many keys as fit."""
         self._show()
 
     def _show(self) -> None:

@@ -1,6 +1,6 @@
 """Scrollable widgets of fixed size: rows, texts, and tables with a cursor.
 
-Textual computes the layout of the whole screen again if the size of a widget changes, which takes
+If the size of a widget changes, Textual computes the layout of the whole screen again, which takes
 10 to 20 ms at each key of a search. The size of these widgets is independent of their content.
 """
 
@@ -25,14 +25,15 @@ Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
-    """Scrollable lines drawn by `render_line`; `virtual_size` holds line length and number of
-    lines.
+    """Scrollable lines, which `render_line` draws.
+
+    `virtual_size` holds the width and the number of the lines.
     """
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def watch_virtual_size(self, size: Size) -> None:
-        """Update the scroll bars, and scroll back if the content has become shorter."""
+        """Update the scroll bars; scroll back if the content has become shorter."""
         window = self.container_size
         down = self.styles.overflow_y != "hidden" and size.height > window.height > 0
         if down or self.show_vertical_scrollbar:
@@ -48,39 +49,35 @@ class Scrolled(ScrollView, inherit_bindings=False):
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
     def on_focus(self) -> None:
-        """Draw the cursor."""
         self.refresh()
 
     def on_blur(self) -> None:
-        """Remove the cursor."""
         self.refresh()
 
 
 class DrawnRows(Scrolled, can_focus=False):
-    """Rows drawn to fit the widget, and redrawn after a change of size."""
+    """Rows drawn for the size of the widget, and drawn again when the size changes."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._drawn: tuple[Size | None, list[Row]] = (None, [])  # rows and their size
 
     def rows_for(self, size: Size) -> list[Row]:
-        """Draw the rows for a given widget size."""
+        """Draw the rows for a widget of this size."""
         raise NotImplementedError
 
     def draw_again(self) -> None:
-        """Redraw the rows."""
         self._drawn = (None, self._drawn[1])
         self.refresh()
 
     def drawn(self) -> list[Row]:
-        """Return the rows drawn for the current size."""
+        """Return the rows for the current size."""
         size = self.scrollable_content_region.size
         if size.width > 0 and size != self._drawn[0]:
             self._drawn = (size, self.rows_for(size))
         return self._drawn[1]
 
     def render_line(self, y: int) -> Strip:
-        """Return a line of the screen."""
         rows, number, left = self.drawn(), y + self.scroll_offset.y, self.scroll_offset.x
         width, style = self.scrollable_content_region.width, self.rich_style
         strip = Strip(rows[number] if number < len(rows) else []).apply_style(style)
@@ -88,7 +85,7 @@ class DrawnRows(Scrolled, can_focus=False):
 
 
 class ScrolledText(DrawnRows):
-    """Texts below each other, wrapped to the width; new texts are shown from the top."""
+    """Texts below each other, wrapped to the width of the widget."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
@@ -98,18 +95,16 @@ class ScrolledText(DrawnRows):
         self._numbers: list[int] = []  # number of the text of each row
 
     def show(self, *texts: RenderableType) -> None:
-        """Replace the texts."""
+        """Replace the texts, and scroll to the top."""
         self._texts = texts
         self.scroll_to(y=0, animate=False)
         self.draw_again()
         self.drawn()
 
     def on_resize(self) -> None:
-        """Wrap the texts to the new width."""
         self.drawn()
 
     def rows_for(self, size: Size) -> list[Row]:
-        """Wrap the texts."""
         wrapped = self._wrapped(size.width)
         self._numbers = [number for number, _ in wrapped]
         self.virtual_size = Size(size.width, len(wrapped))
@@ -128,9 +123,9 @@ class ScrolledText(DrawnRows):
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A table column: name, heading, first cell on the screen, and width.
+    """A table column, with its name, heading, position on the screen and width [cells].
 
-    A text that is too long keeps its last `tail` characters.
+    If a text is too long, its last `tail` characters are kept.
     """
 
     name: str
@@ -141,7 +136,7 @@ class TableColumn:
     tail: int = 0
 
     def fitted(self, text: str) -> str:
-        """Fit a text to the column width; a text that is too long ends with an ellipsis."""
+        """Fit a text to the width of the column, with an ellipsis if it is too long."""
         excess = cell_len(text) > self.width
         if excess and self.tail:
             begin = set_cell_size(text, self.width - 1 - self.tail)
@@ -154,10 +149,10 @@ class TableColumn:
 
 
 class TableCells(Scrolled, inherit_bindings=False):
-    """Table with a fixed heading and a cell cursor.
+    """Table with a fixed heading, in which a cursor moves from cell to cell.
 
-    Subclasses define the `columns`, which of them are `editable`, and the text of cells, in front
-    of rows and below the table.
+    Subclasses define the `columns`, which of them the cursor can enter (`editable`), and the text
+    of cells, before rows and below the table.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"table--heading", "table--cursor"}
@@ -180,10 +175,10 @@ class TableCells(Scrolled, inherit_bindings=False):
     rows: Sequence[Any] = ()
 
     class Moved(Message):
-        """The cursor has moved to another cell."""
+        """Message that the cursor has moved to another cell."""
 
     class Pressed(Message):
-        """The cell under the cursor was pressed with the mouse."""
+        """Message that the cell under the cursor was pressed with the mouse."""
 
     # defined by subclasses
 
@@ -202,31 +197,31 @@ class TableCells(Scrolled, inherit_bindings=False):
         raise NotImplementedError
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the text segments before the first column of a row."""
+        """Return the text segments in front of a row."""
         raise NotImplementedError
 
     def look(self, name: str) -> Style:
-        """Partial style of a component class."""
+        """Return the style of a component class, without the style of the widget."""
         return self.get_component_rich_style(name, partial=True)
 
     def row_style(self, number: int) -> Style:
-        """Style of a row."""
+        """Return the style of a row."""
         return self.rich_style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Style of a cell that is not under the cursor."""
+        """Return the style of a cell that is not under the cursor."""
         return style
 
     def below(self, y: int) -> list[Segment]:
-        """Return the text segments of a screen line below the last row."""
+        """Return the text segments of a line below the last row."""
         return []
 
     # rows and cursor
 
     def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
-        """Replace the rows; the cursor stays in its row if possible.
+        """Replace the rows; the number of the row under the cursor stays the same if possible.
 
-        If the numbers of `changed` rows are given, only these rows are redrawn.
+        If the numbers of `changed` rows are given, only these rows are drawn again.
         """
         self.rows = rows
         self.virtual_size = Size(0, len(rows) + self.HEADING)
@@ -237,21 +232,17 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
-        """Limit the cursor to the rows."""
         return max(0, min(cursor, len(self.rows) - 1))
 
     def validate_column(self, column: int) -> int:
-        """Limit the cursor to the editable columns."""
         return max(0, min(column, len(self.editable) - 1))
 
     def watch_cursor(self, before: int, now: int) -> None:
-        """Keep the cursor visible."""
         if not self.follow():
             self.refresh_rows(before, now)
         self.post_message(self.Moved())
 
     def watch_column(self) -> None:
-        """Draw the cursor in its new column."""
         self.refresh_rows(self.cursor)
         self.post_message(self.Moved())
 
@@ -261,7 +252,7 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_line(number + self.HEADING)
 
     def follow(self) -> bool:
-        """Scroll until the cursor is visible; return whether this was necessary."""
+        """Scroll to make the cursor visible; return whether this was necessary."""
         page = max(self.scrollable_content_region.height - self.HEADING, 1)
         beyond = min(self.BEYOND, (page - 1) // 2)
         top = self.scroll_offset.y
@@ -271,7 +262,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         return wanted != top
 
     def row_at(self, y: int) -> int | None:
-        """Return the row number on a line of the widget; None outside the rows."""
+        """Return the number of the row on a line of the widget; None outside the rows."""
         row = y - self.HEADING + self.scroll_offset.y
         return row if y >= self.HEADING and row < len(self.rows) else None
 
@@ -283,10 +274,10 @@ class TableCells(Scrolled, inherit_bindings=False):
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the mouse; if the cursor is already there, post `Pressed`.
+        """Move the cursor to the cell under the mouse; if it is already there, post `Pressed`.
 
-        This happens at once, because text typed elsewhere is accepted now, which may change the
-        layout of the screen.
+        The press is used rather than the release, because the layout may change in between when
+        text typed elsewhere is accepted.
         """
         place = event.get_content_offset(self)
         number = None if place is None else self.row_at(place.y)
@@ -303,7 +294,6 @@ class TableCells(Scrolled, inherit_bindings=False):
     # drawing
 
     def render_line(self, y: int) -> Strip:
-        """Return a line of the screen."""
         width, number = self.scrollable_content_region.width, self.row_at(y)
         ground = self.rich_style
         if y == 0:

@@ -27,9 +27,9 @@ class Session:
 
     Attributes
     ----------
-    catalogs : catalogue files given with the command
+    catalogs : catalogue files given on the command line
     copied : text of the copied items or clamps
-    standing : the current environment of the line
+    standing : the chosen environment
     after_save : called with the path and text of a saved file
     added : rows added by the last change
     followed : messages on references to labels that the last change updated
@@ -63,12 +63,10 @@ class Session:
 
     @property
     def draft(self) -> Draft:
-        """The current draft of the file."""
         return self.history.draft
 
     @property
     def changed(self) -> bool:
-        """Whether there are unsaved changes."""
         return self.history.changed
 
     @property
@@ -79,14 +77,14 @@ class Session:
 
     @property
     def components(self) -> dict[str, Any]:
-        """Components defined in the file, in typed form."""
+        """Components defined in the file, with values as typed."""
         defined = self.draft.value(("components",))
         return defined if isinstance(defined, dict) else {}
 
     # the line
 
     def spots(self) -> list[Place]:
-        """Return the positions of all rows of the line; clamps follow their piece."""
+        """Return the positions of all rows of the line, clamps after their piece."""
         return _rows_of(self.draft, 0, len(self.draft.items))
 
     def item(self, spot: Place) -> LineItem:
@@ -95,12 +93,12 @@ class Session:
         return item.clamps[spot.clamp] if spot.is_clamp else item
 
     def written(self, spot: Place) -> dict[str, Any]:
-        """Return all keys of a row with their values."""
+        """Return the keys of a row and their values in the file."""
         values = self.draft.value(location(spot))
         return values if isinstance(values, dict) else {}
 
     def do(self, draft: Draft, label: str) -> None:
-        """Make a draft current, as a step of the history; an unchanged text adds no step."""
+        """Make a draft the current one, as a step of the history unless its text is unchanged."""
         if draft.text != self.draft.text:
             self.history.do(draft, label)
             self.added = frozenset()
@@ -108,7 +106,10 @@ class Session:
     def _edit(
         self, draft: Draft, label: str, *, removed: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
-        """Make a draft current, and update references from `gone` rows to `new` rows."""
+        """Make a draft the current one, and update references to labels.
+
+        References to `removed` rows are updated to `new` rows.
+        """
         removed, new, then = list(removed), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
             [spot for spot in self.spots() if spot not in removed],
@@ -123,7 +124,10 @@ class Session:
         self.added = frozenset(new.difference(moved.values()))
 
     def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
-        """Replace the text; with `further`, the change is merged with the last step."""
+        """Replace the text.
+
+        With `further`, merge the change with the last step of the history.
+        """
         if further:
             self.history.undo()
         self.do(Draft(text), label)
@@ -144,7 +148,7 @@ class Session:
         return at
 
     def put(self, given: Mapping[Place, Mapping[str, Value | None]], label: str) -> None:
-        """Set keys of rows in one step; None deletes a key."""
+        """Set keys of rows, in one step of the history; None deletes a key."""
         draft = self.draft
         for spot, values in given.items():
             rows, index = _listed(spot)
@@ -153,8 +157,9 @@ class Session:
         self._edit(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, Value]) -> list[str]:
-        """Replace the component of a row; return the remaining overrides of the previous
-        component.
+        """Replace the component of a row.
+
+        Return the values in the row that were set for the previous component and still apply.
         """
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
@@ -165,8 +170,9 @@ class Session:
         return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
-        """Delete rows, including clamps of deleted pieces; return the new row of the cursor, if
-        any.
+        """Delete rows, and with pieces also their clamps.
+
+        Return the new row of the cursor, or None.
         """
         chosen = _whole(spots)
         if not chosen:
@@ -186,7 +192,7 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Copy rows once or several times, below the last of these rows; return the first copy.
+        """Insert copies of rows below the last of these rows, and return the first copy.
 
         The references in `also` are extended to the copies.
         """
@@ -204,15 +210,16 @@ class Session:
         return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
 
     def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
-        """Insert clamps on the piece of a row at index `first`; return their rows."""
+        """Insert clamps on a piece at index `first` of its clamps, and return their rows."""
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
         return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
-        """Move pieces or a single clamp up (-1) or down (1); return their new rows.
+        """Move pieces or a single clamp up (-1) or down (1), and return their new rows.
 
-        Rows at the end of the line or of the list of clamps do not move.
+        Pieces at the end of the line do not move. Nor does a clamp that is the first or last on its
+        piece.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -238,7 +245,7 @@ class Session:
         return tuple(map(there, moved))
 
     def copy(self, spots: Iterable[Place]) -> int:
-        """Copy rows for pasting; return the number of copied rows."""
+        """Copy rows for pasting, and return the number of copied rows."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
         if chosen:
@@ -249,7 +256,8 @@ class Session:
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
         """Paste the copied rows next to a row.
 
-        Returns the last pasted row if pasted below, else the first; None without copied rows.
+        Return the last pasted row if pasted below, and the first if pasted above. Return None if
+        the clipboard is empty.
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
@@ -273,11 +281,12 @@ class Session:
     # saving
 
     def save(self) -> str:
-        """Save the file and delete its backup copy; return a note about lost file attributes.
+        """Save the file, delete its backup copy, and return a note on lost file attributes.
 
         Raises
         ------
         NotWritten
+            The file cannot be written.
         """
         lost = self.file.save(self.draft.text)
         self.history.saved()
@@ -287,7 +296,7 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Save to another path and continue with the new file; return the note of `save`."""
+        """Save to another path, continue with this file, and return the note of `save`."""
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -300,7 +309,7 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Register the unsaved text for the next backup copy; return the file."""
+        """Store the unsaved text for the next backup copy, and return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 
@@ -319,20 +328,20 @@ def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
 
 
 def _whole(spots: Iterable[Place]) -> list[Place]:
-    """Return the rows in order, without clamps of pieces among them."""
+    """Sort rows, and drop clamps whose piece is among the rows."""
     chosen = sorted(set(spots))
     pieces = {spot.item for spot in chosen if not spot.is_clamp}
     return [spot for spot in chosen if not spot.is_clamp or spot.item not in pieces]
 
 
 def location(spot: Place) -> Location:
-    """Return the location of a row in the file."""
+    """Return the location of a row in the file, as a path of keys and indices."""
     rows, index = _listed(spot)
     return (*rows, index)
 
 
 def _listed(spot: Place) -> tuple[Location, int]:
-    """Return the list of the file that contains a row, and the index in this list."""
+    """Return the location of the list that contains a row, and the index in this list."""
     return (clamps_of(spot.item), spot.clamp) if spot.is_clamp else (LINE, spot.item)
 
 

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 _TURN = 0.001  # seconds
 _GRACE = 3
-"""Maximum time for an orderly exit [s]; a blocked terminal accepts no output."""
+"""Maximum time for an orderly exit [s], since a blocked terminal accepts no output."""
 
 
 def open_session(
     path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()
 ) -> tuple[Session, KeptWork | None]:
-    """Open a session for a file; also return any unsaved work of an earlier session.
+    """Open a session for a file, and return it with any unsaved work of an earlier session.
 
     Parameters
     ----------
@@ -54,9 +54,7 @@ def open_session(
 
 
 def _refuse_other_files(session: Session) -> None:
-    """Reject mistakes in files other than the edited file, since the builder cannot correct
-    them.
-    """
+    """Raise an exception for mistakes in other files, which the builder cannot correct."""
     Catalogue.load(session.catalogs)
     here, names = session.standing.environment, session.standing.environments
     if (lost := session.standing.lost_environment) is not None:
@@ -80,14 +78,14 @@ def _refuse_other_files(session: Session) -> None:
 
 
 def build(path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()) -> int:
-    """Run the line builder on a file; return the exit code of the command.
+    """Run the line builder on a file, and return the exit code of the command.
 
     Raises
     ------
     InputError, UsageError
         The file cannot be opened.
     NotWritten
-        The session was ended, and its unsaved work could not be kept.
+        Unsaved work could not be kept at the end of the session.
     """
     from calm.tui.app import BuildApp
 
@@ -104,9 +102,9 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 
 
 def end(app: BuildApp, number: int, _frame: object) -> None:
-    """Keep unsaved work and quit after a signal that terminates the terminal or the process.
+    """Keep unsaved work and quit, after a signal that ends the terminal or the process.
 
-    The event loop is not waited for, because it may wait for a closed terminal for ever. A closed
+    This does not wait for the event loop, which may wait forever for a closed terminal. A closed
     terminal needs no restoring, so the process ends at once.
     """
     try:

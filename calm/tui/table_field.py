@@ -1,4 +1,4 @@
-"""Tables edited cell by cell, in forms and on the water screen."""
+"""Tables that are edited cell by cell, in forms and on the water screen."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _DIGITS = frozenset("0123456789.-+")
 
 
 class GridCells(TableCells, can_focus=True):
-    """Table of text cells with a cell cursor."""
+    """Table of texts, in which a cursor moves from cell to cell."""
 
     GAP = 2
 
@@ -33,7 +33,7 @@ class GridCells(TableCells, can_focus=True):
         self.rows: Rows = ()
 
     def show(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Replace headings and rows; the cursor stays in its cell if possible."""
+        """Replace headings and rows; the cursor keeps its position if possible."""
         self.headings = tuple(headings)
         self.set_reactive(TableCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns, named by number, because headings may be equal."""
+        """Columns, with numbers as names because headings may be equal."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -59,26 +59,27 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """Names of the editable columns: all columns."""
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell."""
         return self.rows[number][int(column.name)]
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the cursor if the table has the focus."""
+        """Return the cursor sign in front of a row, if the table has the focus."""
         here = number == self.cursor and self.has_focus
         return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
     def below(self, y: int) -> list[Segment]:
-        """Return the hint shown in an empty table."""
+        """Return the hint below an empty table."""
         is_empty = y == self.HEADING and self.headings and not self.rows
         cursor = theme.CURSOR if self.has_focus else " "
         return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
 
     def go_on(self, by: int) -> bool:
-        """Move to the next or previous value, also in other rows; return whether there is one."""
+        """Move to the next or previous value, across rows.
+
+        Return whether there is such a value.
+        """
         count = len(self.headings)
         row, column = divmod(self.cursor * count + self.column + by, count)
         if is_there := 0 <= row < len(self.rows):
@@ -89,8 +90,7 @@ class GridCells(TableCells, can_focus=True):
 class Grid(cell_editor.EditableTable):
     """Table with editable cells and rows.
 
-    Values are texts of the file. Without columns, the table is empty and cannot be edited.
-
+    Values are texts as in the file. Without columns, the table is empty and cannot be edited.
 
     Parameters
     ----------
@@ -122,17 +122,16 @@ class Grid(cell_editor.EditableTable):
         self._before: Rows | None = None  # rows without the row that Enter added
 
     def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
-        """Replace the rows."""
         self._columns = tuple(columns)
         self.cells.show([column.heading for column in columns], rows)
 
     def change(self, rows: Rows, label: str) -> None:
-        """Show changed rows, and post a message about the change."""
+        """Show changed rows, and report the change."""
         self.cells.show(self.cells.headings, rows)
         self._changed(self, label)
 
     def write(self, text: str) -> None:
-        """Write a valid text into the edited cell, if it still exists."""
+        """Write a valid text to the edited cell, if it still exists."""
         rows, (row, column) = self.cells.rows, self._place
         if row < len(rows) and column < len(self.cells.headings):
             values = (*rows[row][:column], text, *rows[row][column + 1 :])
@@ -143,17 +142,16 @@ class Grid(cell_editor.EditableTable):
         return ("",) * len(self._columns)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether the table ends above index `at`, so that no new row is proposed."""
+        """Return whether no row should be proposed at index `at`."""
         return False
 
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable row actions while a value is typed."""
         return not self.editor.is_open
 
     def action_move_row(self, by: int) -> None:
-        """Go up or down, leaving the table at its ends."""
+        """Move up or down, and leave the table at its ends."""
         if 0 <= self.cells.cursor + by < len(self.cells.rows):
             self.cells.cursor += by
         elif by > 0:
@@ -162,7 +160,7 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_previous()
 
     def action_move_cell(self, by: int) -> None:
-        """Move to the next value; after the last value the table keeps the focus."""
+        """Move to the next or previous value; after the last value the table keeps the focus."""
         has_rows = bool(self.cells.headings) and bool(self.cells.rows)
         if has_rows and self.cells.go_on(by):
             return
@@ -174,28 +172,25 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_next()
 
     def on_key(self, event: events.Key) -> None:
-        """Start editing at a digit."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
             event.stop()
             self._edit(event.character)
 
     @on(GridCells.Pressed)
     def action_edit(self) -> None:
-        """Edit the cell."""
         if self.cells.rows:
             self._edit()
 
     def _edit(self, begun: str | None = None) -> None:
-        """Edit the cell under the cursor, starting with its text or with the typed text `begun`."""
+        """Edit the cell under the cursor, beginning with its text or the typed text `begun`."""
         cells = self.cells
-        if not super().settle():  # only the cell: the row may be incomplete
+        if not super().settle():  # settles the cell only, as the row may be incomplete
             return
         self._place = row, column = cells.cursor, cells.column
         text, check = begun or cells.rows[row][column], self._columns[column].check
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
-        """Add a row above or below."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
@@ -207,7 +202,6 @@ class Grid(cell_editor.EditableTable):
         self._edit()
 
     def action_drop_row(self) -> None:
-        """Delete the row."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "delete a row")
@@ -215,7 +209,10 @@ class Grid(cell_editor.EditableTable):
     # typed text
 
     def go_on(self, then: cell_editor.Then, text: str | None) -> None:
-        """Move up, down, or to the next value; after completing an added row, add another row."""
+        """Move up, down, or to the next value.
+
+        After the last value of an added row, another row is added.
+        """
         cells = self.cells
         if text is not None:
             self._before = None  # the row is not empty any more
@@ -236,7 +233,7 @@ class Grid(cell_editor.EditableTable):
             self._before = before
 
     def abandoned(self) -> None:
-        """Delete an added row that was left empty."""
+        """Delete an added row that is still empty."""
         if self._before is not None:
             self.change(self._before, "delete a row")
             self.cells.cursor -= 1
@@ -245,12 +242,11 @@ class Grid(cell_editor.EditableTable):
     # pasted text
 
     def on_paste(self, event: events.Paste) -> None:
-        """Replace all rows by pasted rows."""
         event.stop()
         self.take_text(event.text)
 
     def take_text(self, text: str) -> None:
-        """Replace all rows by the rows of a text, which must have the same number of columns."""
+        """Replace all rows by the rows of a pasted text with the same number of columns."""
         try:
             copied = copied_table(text).rows
         except NoTableError as error:
@@ -271,7 +267,7 @@ class Grid(cell_editor.EditableTable):
 
 
 class TableField(Grid):
-    """Table in a form."""
+    """Table as a part of a form."""
 
     def __init__(self, form_field: FormField, tell: Callable[..., object]) -> None:
         super().__init__(tell, lambda *_: None)
@@ -282,13 +278,13 @@ class TableField(Grid):
 
     @property
     def text(self) -> str:
-        """Text of the rows, or the initial text if unchanged."""
+        """Rows as text, or the initial text if unchanged."""
         rows = self.cells.rows
         return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
 
     @property
     def reading(self) -> Reading:
-        """Interpretation of the rows as text; required cells must not be blank."""
+        """Interpretation of the rows, with the first invalid cell as error."""
         for number, row in enumerate(self.cells.rows, 1):
             for column, text in zip(self._columns, row, strict=True):
                 reading = column.check(text)
@@ -298,11 +294,11 @@ class TableField(Grid):
 
     @property
     def input(self) -> GridCells:
-        """Widget that receives the keys."""
+        """Widget that receives key presses."""
         return self.cells
 
     def settle(self) -> bool:
-        """Accept typed text; return False if a row is incomplete."""
+        """Accept typed text; return whether all rows are valid."""
         if not super().settle():
             return False
         if complaint := self.reading.complaint:

@@ -18,26 +18,22 @@ _LINE_BREAK = re.compile(r"\r\n?|\n")
 
 
 class YamlArea(TextArea):
-    """Text editor that inserts blanks for tabs, as YAML requires."""
+    """Text editor that inserts blanks instead of tabs, as YAML requires."""
 
     BINDINGS = key_table.bindings("area")
 
     def action_indent(self) -> None:
-        """Insert blanks up to the next even column."""
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
     def action_end(self, direction: int) -> None:
-        """Go to the beginning or the end of the text."""
         self.move_cursor(self.document.end if direction > 0 else (0, 0))
 
     def undo(self) -> None:
-        """Undo the last typing."""
         super().undo()
         self._wrap()
 
     def redo(self) -> None:
-        """Redo the last undone typing."""
         super().redo()
         self._wrap()
 
@@ -75,13 +71,12 @@ class TextScreen(screen.DraftScreen):
         self._edited = False
 
     def parts(self) -> ComposeResult:
-        """Yield the text and the mistakes."""
         yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """Put the cursor on the first mistake, else on the piece selected on the main screen."""
+        """Put the cursor on the first mistake, else on the row selected on the main screen."""
         self.query_one(screen.KeyBar).show_keys(key_table.hints("text"))
         self.show_view()
         self.text_area.focus()
@@ -92,7 +87,7 @@ class TextScreen(screen.DraftScreen):
             self.text_area.move_cursor((row, 0), center=True)
 
     def show_view(self) -> None:
-        """List the mistakes found by a worker."""
+        """List the mistakes that a worker has found."""
         view, draft = self.workspace.view, self.session.draft
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
@@ -110,7 +105,7 @@ class TextScreen(screen.DraftScreen):
 
     @property
     def _here(self) -> list[Problem]:
-        """Mistakes in the edited file, without those in other files."""
+        """Mistakes in the edited file."""
         return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
@@ -123,13 +118,12 @@ class TextScreen(screen.DraftScreen):
             self.workspace.edited()
 
     def settle(self) -> bool:
-        """Accept the current text."""
         self._take()
         return True
 
     @property
     def is_typing(self) -> bool:
-        """Whether the displayed text is not in the draft yet."""
+        """Whether the displayed text differs from the draft."""
         return self._typed != self.session.draft.text
 
     @property
@@ -137,7 +131,7 @@ class TextScreen(screen.DraftScreen):
         return retyped(self._begun, self.text_area.document.lines)
 
     def show_draft(self) -> None:
-        """Load the draft again; the cursor stays on its line."""
+        """Load the draft again, with the cursor on the same line."""
         area, text = self.text_area, self.session.draft.text
         self._begun, self._edited, self._next = text, False, 0
         row, column = area.cursor_location
@@ -147,9 +141,9 @@ class TextScreen(screen.DraftScreen):
         self.show_view()
 
     def find(self, words: str = "") -> None:
-        """Select the next match after the cursor, continuing from the top; case is ignored.
+        """Select the next match after the cursor, continuing at the top; case is ignored.
 
-        Without words, repeat the last search.
+        Without words, the last search is repeated.
         """
         self._search_text = words or self._search_text
         if not self._search_text:
@@ -167,7 +161,6 @@ class TextScreen(screen.DraftScreen):
         self.workspace.tell(f"{self._search_text}: not found", wrong=True)
 
     def action_next_problem(self) -> None:
-        """Put the cursor on the next mistake."""
         if self._problems and not self._here:
             self.workspace.tell(f"{self.session.name} itself has no mistakes")
         placed = [each for each in self._here if each.line]
@@ -179,17 +172,14 @@ class TextScreen(screen.DraftScreen):
             self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
     def action_find(self) -> None:
-        """Ask for search words, and go to the first match."""
         fields = [forms.FormField("words", "Find", placeholder="a label, a key, a number")]
         text, app = "F3 goes to the next match.", self.app
         dialogs.enter(app, "Find in the text", text, fields, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
-        """Go to the next match."""
         self.find()
 
     def action_back(self) -> None:
-        """Return to the line if the text is valid."""
         if self.session.draft.problems:
             self.tell("Correct the text first: it is not valid", wrong=True)
         else:
@@ -197,8 +187,6 @@ class TextScreen(screen.DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Convert a line number of the file to an editor row; the editor splits at additional line
-    breaks.
-    """
+    """Convert a line number of the file to a row of the editor, which knows more line breaks."""
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

@@ -58,7 +58,7 @@ _LIGHT_GROUNDS = frozenset({"7", *map(str, range(9, 16))})
 
 
 def _palette(ground: str, text: str, colours: str) -> TerminalTheme:
-    """Build a palette from a background, a text colour and eight colours (hex RGB)."""
+    """Build a palette from a background, a text colour and eight colours in hexadecimal RGB."""
     own, ink, *eight = (tuple(bytes.fromhex(each)) for each in (ground, text, *colours.split()))
     return TerminalTheme(own, ink, eight)  # type: ignore[arg-type]
 
@@ -73,10 +73,10 @@ PICTURE_LIGHT = _palette(
 
 
 def choose_theme(environ: Mapping[str, str]) -> str:
-    """Choose the theme for a terminal; return its name.
+    """Choose the theme for a terminal, and return its name.
 
-    A terminal with 256 colours or more gets the colours of the application; any other keeps its own
-    sixteen colours, which its owner has chosen to be legible. The background is light if the last
+    A terminal with 256 colours or more gets the colours of the builder. Any other keeps its own
+    sixteen colours, which the user has chosen to be legible. The background is light if the last
     field of `COLORFGBG`, which many terminals set, is a light colour.
     """
     announced = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
@@ -94,17 +94,17 @@ _ON_LIGHT = {0: 0, 1: 1, 4: 4}
 """Replacement for each of the sixteen terminal colours; any other colour becomes the terminal's
 text colour.
 
-A terminal of eight colours does not know the bright ones, and also keeps its own colours.
+A terminal with eight colours lacks the bright ones, and also keeps its own colours.
 """
 
 
 class Legible(LineFilter):
-    """Line filter that makes text legible on any background colour of a theme or a picture.
+    """Line filter that makes text legible on any background of a theme or a picture.
 
     Parameters
     ----------
     dark : whether the background of the terminal is dark
-    sixteen : whether its own colours are used, in which case the exact background is unknown
+    sixteen : whether the terminal's own colours are used, so that the exact background is unknown
     """
 
     def __init__(self, *, dark: bool, sixteen: bool) -> None:
@@ -128,15 +128,19 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a background. Filters are cached, because Textual caches their output
-    by filter.
+    """Return the filter for a background.
+
+    Filters are cached, because Textual caches their output by filter.
     """
     return Legible(dark=dark, sixteen=sixteen)
 
 
 @lru_cache(1024)
 def _of_sixteen(style: Style, dark: bool) -> Style:
-    """Convert a style to the terminal's own colours, without dimming and backgrounds."""
+    """Convert a style to the terminal's own colours, without dimming.
+
+    Backgrounds become reverse video.
+    """
     ink = style.color or _OWN
     if style.bgcolor is not None and not style.bgcolor.is_default:
         return style + Style(color=_OWN, bgcolor=_OWN, reverse=True, dim=False)
@@ -146,7 +150,7 @@ def _of_sixteen(style: Style, dark: bool) -> Style:
 
 @lru_cache(4096)
 def _apart(style: Style, ground: Ink) -> Style:
-    """Return a style with enough contrast between colour and background."""
+    """Return a style whose text colour has enough contrast with the background."""
     on, ink = (style.bgcolor or ground).triplet, style.color and style.color.triplet
     if on is None or ink is None or _is_legible(ink, on):
         return style
@@ -164,13 +168,13 @@ def _is_legible(ink: ColorTriplet, on: ColorTriplet) -> bool:
 
 
 def contrast(one: ColorTriplet, other: ColorTriplet) -> float:
-    """Contrast ratio of two colours, from 1 to 21 (WCAG 2.2)."""
+    """Return the contrast ratio of two colours, from 1 to 21 (WCAG 2.2)."""
     less, more = sorted(map(_luminance, (one, other)))
     return (more + 0.05) / (less + 0.05)
 
 
 def _luminance(colour: ColorTriplet) -> float:
-    """Return the relative luminance (WCAG 2.2)."""
+    """Return the relative luminance of a colour (WCAG 2.2)."""
     red, green, blue = (
         part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
         for part in colour.normalized

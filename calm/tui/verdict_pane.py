@@ -1,4 +1,4 @@
-"""Verdict next to the picture, with lines that link to the affected rows."""
+"""Pane with the verdict, whose lines link to the rows concerned."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """Pane with the verdict: values at the anchor and the top, and the findings with their reasons.
+    """Pane with the verdict: values at the anchor and the top, and findings with their reasons.
 
     Parameters
     ----------
-    go_to : called with the rows of a chosen line, or () to go back, and with the text of the line
+    go_to : called with the rows and the text of a chosen line, or with () to go back
     """
 
     BINDINGS = key_table.bindings("verdict")
@@ -50,7 +50,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         self._chosen = 0
 
     def say(self, view: View | None, note: str = "") -> None:
-        """Show the verdict of a view, and a note below."""
+        """Show the verdict of a view, followed by a note."""
         parts = [*_parts(view, note)]
         self._lines, self._texts = [each for each, _ in parts], [text for _, text in parts]
         self._chosen = min(self._chosen, len(self._lines) - 1)
@@ -61,24 +61,20 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.refresh(layout=True)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """Return the number of lines."""
         size, rows = self._drawn
         return len(rows if size and size.width == width else self._wrapped(width))
 
     def render_line(self, y: int) -> Strip:
-        """Return a line of the screen."""
         strip, at = super().render_line(y), y + self.scroll_offset.y
         if self.has_focus and self._numbers[at : at + 1] == [self._chosen]:
             return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
         return strip
 
     def on_focus(self) -> None:
-        """Select the first line that links to a row."""
         if not self._is_choosable(self._chosen):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Move to the next line that links to a row, or scroll."""
         number = self._chosen + by
         while 0 <= number < len(self._lines) and not self._is_choosable(number):
             number += by
@@ -90,18 +86,15 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.scroll_relative(y=by, animate=False)
 
     def action_go(self) -> None:
-        """Go to the row that the selected line links to."""
         if self._is_choosable(self._chosen):
             line = self._lines[self._chosen]
             text = f"{line.sign} {line.heading}: ".replace(" : ", " ") + line.text
             self._go_to(line.places, text)
 
     def action_leave(self) -> None:
-        """Return to the line table."""
         self._go_to(())
 
     def on_click(self, event: events.Click) -> None:
-        """Go to the row that the clicked line links to."""
         place = event.get_content_offset(self)
         at = len(self._numbers) if place is None else place.y + self.scroll_offset.y
         if at < len(self._numbers) and self._is_choosable(self._numbers[at]):
@@ -119,7 +112,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
 
 def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, RenderableType]]:
-    """Yield the lines of the verdict with their rendering."""
+    """Yield the lines of the verdict, each with its rendering."""
     head = headline(view)
     style = "dim" if head.state is None else theme.LOOKS[head.state]
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
@@ -138,6 +131,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, Renderab
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """Return the headline with its sign; an `old` verdict has an ellipsis as its sign."""
+    """Return the headline of the verdict, after its sign or, if it is `old`, after an ellipsis."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

@@ -23,9 +23,15 @@ _MOST_PROBLEMS = 6
 
 @dataclass(frozen=True)
 class VerdictLine:
-    """A line of the verdict: sign, heading, text and state.
+    """A line of the verdict.
 
-    `pending` marks a state that may still change; `places` are the rows concerned.
+    Attributes
+    ----------
+    text, heading : text, and heading in front of it
+    state : state, which gives the sign and the colour
+    faint : whether the text is dimmed
+    pending : whether the state may still change
+    places : rows concerned
     """
 
     text: str
@@ -37,14 +43,13 @@ class VerdictLine:
 
     @property
     def sign(self) -> str:
-        """Sign before the line."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else self.state.sign
 
 
 def headline(view: View | None) -> VerdictLine:
-    """Return the verdict in a few words."""
+    """Return the verdict in a few words, as a line."""
     if view is None:
         return VerdictLine(ELLIPSIS, faint=True)
     if view.problems:
@@ -74,7 +79,7 @@ def _judged(findings: Sequence[Finding], view: View) -> VerdictLine:
 
 
 def verdict_lines(view: View | None) -> Iterator[VerdictLine]:
-    """Yield all lines of the verdict, the most severe first."""
+    """Yield all lines of the verdict below its headline, the most severe first."""
     if view is None:
         return
     if view.problems:
@@ -103,9 +108,7 @@ def verdict_lines(view: View | None) -> Iterator[VerdictLine]:
 
 
 def _placed(finding: Finding, view: View) -> Finding:
-    """Append the environment to the situation of a finding, unless it is the current
-    environment.
-    """
+    """Add the environment to the situation of a finding, unless it is the current environment."""
     if finding.environment == view.here:
         return finding
     there = _environment(finding.environment)
@@ -131,7 +134,7 @@ def _environment_line(case: MooringInEnvironment, view: View) -> VerdictLine:
 
 
 def _figures(view: View, findings: Sequence[Finding], *, pending: bool) -> Iterator[VerdictLine]:
-    """Yield values at the ends of the line; the solver is imported already if there is a result."""
+    """Yield values at the ends of the line, if it has a solution."""
     result = view.result
     if result is None:
         return
@@ -150,8 +153,9 @@ def _figures(view: View, findings: Sequence[Finding], *, pending: bool) -> Itera
 def _mooring(
     result: LegResult, findings: Sequence[Finding], pending: bool, held: Sequence[HeldLine]
 ) -> Iterator[VerdictLine]:
-    """Yield anchor and top values of the mooring as specified; values with a limit show their
-    most severe finding.
+    """Yield values at the anchor and the top of the mooring as given.
+
+    A value with a limit is followed by its most severe finding.
     """
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
@@ -183,8 +187,10 @@ def _mooring(
 def _holds(
     result: LegResult, worst: Finding | None, pending: bool, held: Sequence[HeldLine]
 ) -> VerdictLine:
-    """Return required and actual anchor weight; without an anchor, only the required weight, which
-    is the largest once the line is solved in every situation.
+    """Return the verdict line on the required and the actual anchor weight.
+
+    Without an anchor, it gives the required weight only, which is the largest of all situations
+    once these are solved.
     """
     if worst is None:
         needed, when = result.anchor_load.required_weight, ""
@@ -201,16 +207,15 @@ def _holds(
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
-    """Return the most severe finding of a rule; among equal findings, the one with the highest
-    utilisation.
-    """
+    """Return the most severe finding of a rule, by state and then by utilisation, or None."""
     own = [each for each in findings if each.rule == rule.name]
     return min(own, key=lambda each: each.rank, default=None)
 
 
 def _at_worst(worst: Finding, figure: str) -> str:
-    """Return the value in the governing situation, unless that situation is the mooring as
-    specified.
+    """Return the text for a value in the situation of the most severe finding.
+
+    The text is "" if that is the mooring as given.
     """
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 
@@ -220,7 +225,7 @@ def _situation(finding: Finding) -> str:
 
 
 def _figure(text: str, heading: str, worst: Finding | None) -> VerdictLine:
-    """Return a value, with the state of its finding if the state is failure or warning."""
+    """Return a line with a value, in the state of its finding if it fails or warns."""
     state = worst.state if worst is not None and _graver(worst) else None
     return VerdictLine(text, heading, state, places=_places([worst]))
 
@@ -238,7 +243,7 @@ def _net(result: Result) -> Iterator[VerdictLine]:
 def _found(
     findings: Sequence[Finding], tighter: Sequence[Finding], *, pending: bool
 ) -> Iterator[VerdictLine]:
-    """Yield failures and warnings with reason and remedy, and summaries of unknowns and passes.
+    """Yield failures and warnings with reason and remedy, then summaries of unknowns and passes.
 
     A rule passes if every component passes; with a missing value its state is unknown.
     """
@@ -288,7 +293,7 @@ def _used(finding: Finding) -> str:
 
 
 def why(view: View, row: Place) -> list[VerdictLine]:
-    """Return all findings for a row with their remedies, the most severe first."""
+    """Return all findings on a row with their remedies, the most severe first."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if row in _places([each])]
     return [_finding_line(each) for each in sorted(own, key=lambda each: each.rank)]

@@ -1,4 +1,4 @@
-"""Read and write the environment keys of a file in the water form."""
+"""Reading and writing of the environment keys of a file, for the water form."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class WaterForm:
     Parameters
     ----------
     draft : the file
-    variant : a named environment, merged with the default environment; None for the default
+    variant : name of an environment, merged with the default environment; None for the default
 
     Raises
     ------
@@ -73,7 +73,7 @@ class WaterForm:
         return (*self.place, *keys)
 
     def own(self, *keys: str) -> Any:
-        """Return the value of a key set in this environment itself, or None."""
+        """Return the value of a key that this environment itself sets, or None."""
         return self.draft.value(self.at(*keys))
 
     def value(self, *keys: str) -> Any:
@@ -83,7 +83,7 @@ class WaterForm:
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """Return a value in typed form."""
+        """Return the value of a key as typed text."""
         return text_of(self.value(*keys))
 
     def is_own(self, key: str) -> bool:
@@ -92,11 +92,14 @@ class WaterForm:
 
     @property
     def depth(self) -> float | None:
-        """Water depth [m], positive; None if it is unset or invalid."""
+        """Water depth [m]; None if it is unset or not a positive depth."""
         return _read(POSITIVE_LENGTH, self.text("depth"))
 
     def form(self, *keys: str) -> str:
-        """Return the form in which the current, density, temperature or salinity is given."""
+        """Return the form in which a property is given, such as ``constant`` or ``table``.
+
+        The property is the current, the density, the temperature or the salinity.
+        """
         value = self.value(*keys)
         if isinstance(value, dict) and {"columns", "rows"} & set(value):
             return "table"
@@ -109,10 +112,10 @@ class WaterForm:
         return "file" if CurrentFile.model_fields.keys() & set(value) else "uniform"
 
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        """Return the columns and rows of a table as text; missing cells are empty.
+        """Return the columns and the rows of a table as texts; missing cells are empty.
 
-        Both are empty if there is no table, or if only the text view can show it: rows that are
-        longer than the columns, or that contain anything but texts.
+        Both are empty if there is no table, or if only the text editor can show it, because its
+        rows are longer than the columns or contain anything but texts.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
@@ -126,8 +129,9 @@ class WaterForm:
     # changes, which return the new draft
 
     def put(self, keys: Sequence[str], text: str, *, is_needed: bool = False) -> Draft:
-        """Set a value. An empty text deletes the key; if the key is required, it deletes the
-        parent, too.
+        """Set the value of a key, or delete the key if the text is empty.
+
+        If the key is required, its parent is deleted, too.
         """
         if is_needed and len(keys) > 1 and not text:
             return self.draft.put_at(self.at(*keys[:-1]), None)
@@ -136,7 +140,7 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """Write a table; unchanged rows keep their text."""
+        """Write a table to the file, in which unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
@@ -145,11 +149,11 @@ class WaterForm:
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
-        """Replace the current or the density; None deletes it."""
+        """Replace the value of the current, density, temperature or salinity; None deletes it."""
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return initial values for another form, from known or typical values.
+        """Return the initial value for another form, from known or typical values.
 
         None means that the key can be omitted.
         """
@@ -166,7 +170,10 @@ class WaterForm:
         return {name[-1]: self.begun(name, "constant") for name in _CONSTANTS if len(name) > 1}
 
     def _begun_current(self, form: str) -> Value | None:
-        """Start from the uniform current, or from the first row of the table."""
+        """Return the initial current for another form.
+
+        It is based on the uniform current, or on the first row of the table.
+        """
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
@@ -191,9 +198,10 @@ class WaterForm:
         return f"{self.depth or water_tables.USUAL_DEPTH:g}"
 
     def _with_own(self, keys: Sequence[str]) -> Draft:
-        """Return the draft with the first key copied from the default environment, if needed.
+        """Return the draft with a value copied from the default environment, if it is needed.
 
-        A key of a named environment replaces the whole value of the default environment.
+        The copy is needed because a key of a named environment replaces the whole value of the
+        default environment.
         """
         inherited = self.value(keys[0])
         if len(keys) == 1 or self.is_own(keys[0]) or not isinstance(inherited, dict):
@@ -213,16 +221,17 @@ _ACCEPT_HINT = "Enter accepts"
 
 
 class FormChoice(Cycle):
-    """Selector of a form: arrows show other forms, Enter accepts the form shown.
+    """Selector of the form of a property.
 
-    When the focus leaves without Enter, the current form is shown again.
+    The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
+    Enter, the current form is shown again.
     """
 
     BINDINGS = key_table.bindings("given")
 
     @dataclass
     class Taken(Message):
-        """Another form was accepted."""
+        """Message that another form was accepted."""
 
         choice: FormChoice
         form: str
@@ -232,16 +241,13 @@ class FormChoice(Cycle):
         self._given = forms[0]
 
     def show(self, word: str) -> None:
-        """Show the current form."""
         self._given = word
         super().show(word)
 
     def action_turn(self, by: int) -> None:
-        """Show the next form."""
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
-        """Accept the form shown, or move to the next field."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:
@@ -249,7 +255,7 @@ class FormChoice(Cycle):
 
     @on(events.Click)
     def _press(self, event: events.Click) -> None:
-        """Show the next form by mouse, or accept by a press on the hint."""
+        """Show the next form on a mouse press, or accept the form on a press on the hint."""
         event.prevent_default()
         if self.word != self._given and event.x >= self.render().cell_len - len(_ACCEPT_HINT):
             self.action_take()
@@ -262,7 +268,7 @@ class FormChoice(Cycle):
 
     @property
     def hint(self) -> str:
-        """Hint on how to accept the form shown, if it differs from the current form."""
+        """Hint on how to accept the form shown, if it is not the current form."""
         return _ACCEPT_HINT if self.word != self._given else super().hint
 
 
@@ -287,7 +293,7 @@ class ProfileGrid(Grid):
     def show_profile(
         self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None
     ) -> None:
-        """Replace the rows; new rows are not proposed below the `seabed` [m]."""
+        """Replace the rows; no rows are proposed below the `seabed` [m]."""
         self._seabed = seabed
         self.show(
             [FormColumn("", heading, water_tables.check_of(heading)) for heading in columns], rows
@@ -296,7 +302,8 @@ class ProfileGrid(Grid):
     def new_row(self, at: int) -> tuple[str, ...]:
         """Return the mean of the rows above and below, if both are numbers.
 
-        Below the last row, return its values, a step deeper but not below the seabed.
+        Below the last row, the values of the last row are proposed one step deeper, but not below
+        the seabed.
         """
         columns, rows = self.cells.headings, self.cells.rows
         if not rows:
@@ -326,7 +333,7 @@ class ProfileGrid(Grid):
             return False
 
     def take_text(self, text: str) -> None:
-        """Read rows from a text with headings, and show a preview."""
+        """Read rows from a pasted text, with or without headings, and show a preview."""
         columns = self.cells.headings
         try:
             copied = copied_table(text)
@@ -346,7 +353,7 @@ _FIRST = ("depth", "density", "current", "wind")
 
 
 def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """Yield the widgets of an environment form; widget ids are the paths of the keys."""
+    """Yield the widgets for the keys of an environment; their ids are the paths of the keys."""
     fields = form_of(TowEnvironmentKeys if towed else EnvironmentKeys, needed=False)
     fields = [each for each in fields if each.key != "fluid" or towed]
     groups = {each.key.partition(".")[0]: [] for each in fields}  # type: dict[str, list[FormField]]

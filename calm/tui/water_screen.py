@@ -1,4 +1,4 @@
-"""Water screen: a form for each environment, with its current profile."""
+"""Water screen, with a form for each environment and its current profile."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -52,8 +52,9 @@ _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGri
 
 
 class WaterScreen(screen.DraftScreen):
-    """Depth, density, current and wind of each environment; the line is solved in the environment
-    shown.
+    """Screen for depth, density, current and wind of each environment.
+
+    The line is solved in the environment shown.
     """
 
     BINDINGS = key_table.bindings("water")
@@ -79,7 +80,6 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def parts(self) -> ComposeResult:
-        """Yield the form on the left and the current profile on the right."""
         with Horizontal():
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
@@ -92,26 +92,25 @@ class WaterScreen(screen.DraftScreen):
                 yield pictures.ProfilePicture()
 
     def on_mount(self) -> None:
-        """Show the environment."""
         self.show_draft()
         self.query_one("#depth", Field).input.focus()
 
     @property
     def water(self) -> WaterForm:
-        """The displayed environment in the current draft."""
+        """The environment shown, in the current draft."""
         standing = self.session.standing
         here = standing.environment
         return WaterForm(self.session.draft, here if here in standing.environments else None)
 
     @property
     def environment_file(self) -> str | None:
-        """Environment file given on the command line, if it is the current environment."""
+        """Environment file given on the command line, if it is the environment shown."""
         standing, draft = self.session.standing, self.session.draft
         here = standing.environment
         return None if here in standing.environments or draft.problems else here
 
     def titles(self) -> tuple[str, str]:
-        """Return the title and the verdict."""
+        """Return the title, and the verdict in the environment shown."""
         state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
@@ -159,7 +158,7 @@ class WaterScreen(screen.DraftScreen):
             grid.show_profile(*water.table(*_place(grid)), water.depth)
 
     def _is_gone(self, part: Widget) -> bool:
-        """Return whether a part of the form does not apply to the current input forms."""
+        """Return whether a widget is hidden because its property is given in another form."""
         form = _FORMS.get(type(part))
         if form is None:
             return False
@@ -173,7 +172,7 @@ class WaterScreen(screen.DraftScreen):
         return bool(form) and key in ("density", "current") and water.form(*place) != form
 
     def replaced(self) -> None:
-        """Show another draft; discard typed text and values of replaced forms."""
+        """Show another draft; discard typed text, and the values remembered from other forms."""
         self._left.clear()
         self.discard_typing()
         self.show_draft()
@@ -181,7 +180,7 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file; return whether this succeeded, and report any failure."""
+        """Change the file, return whether this succeeded, and show the reason for a failure."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -190,18 +189,21 @@ class WaterScreen(screen.DraftScreen):
         return is_made
 
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
-        """Replace the current by a table with the given rows."""
+        """Replace the current by a table."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
     # typed text
 
     @property
     def is_typing(self) -> bool:
-        """Whether typed text has not been written to the draft yet."""
+        """Whether text was typed that is not in the draft yet."""
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
-        """Accept typed text; the first invalid value stays in its field and is reported."""
+        """Write typed text to the draft, and return whether all values are valid.
+
+        The first invalid value stays in its field, with a message.
+        """
         if not all(grid.settle() for grid in self.query(ProfileGrid)):
             return False
         for field in self.query(Field):
@@ -218,7 +220,7 @@ class WaterScreen(screen.DraftScreen):
         return True
 
     def discard_typing(self) -> None:
-        """Discard typed text that has not been written to the draft."""
+        """Discard typed text that is not in the draft yet."""
         for field in self.query(Field):
             field.reset(field.begun)
         for grid in self.query(ProfileGrid):
@@ -242,7 +244,7 @@ class WaterScreen(screen.DraftScreen):
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     def _preview(self, grid: ProfileGrid, copied: CopiedTable, headings: list[str]) -> None:
-        """Show a preview of pasted rows, with columns that can be corrected."""
+        """Show a preview of pasted rows, in which the column headings can be corrected."""
         columns = grid.cells.headings
 
         def taken(text: str) -> Rows:
@@ -268,9 +270,7 @@ class WaterScreen(screen.DraftScreen):
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Use a pasted table as the current, in any form, unless it is pasted into a table of the
-        form.
-        """
+        """Use a pasted table as the current, unless another table of the form receives it."""
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
@@ -279,7 +279,7 @@ class WaterScreen(screen.DraftScreen):
 
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
-        """Change the form of the current or the density, restoring earlier values if any."""
+        """Change the form of a property, restoring the values that it had in this form before."""
         place, form, message = _place(event.choice), event.form, ""
         if form == "file":
             self.action_load_current()
@@ -300,7 +300,7 @@ class WaterScreen(screen.DraftScreen):
         self.call_after_refresh(self._first_of(place, form).focus)
 
     def _first_of(self, place: Place, form: str) -> Widget:
-        """Return the first widget of a form's value, or the next widget below."""
+        """Return the first widget for a property in a given form, or the next widget below."""
         key = "-".join(place)
         if form == "table":
             return self.query_one(f"#{key}-table GridCells")
@@ -324,13 +324,10 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def action_next_environment(self) -> None:
-        """Show the next environment, and solve the line in this environment."""
         if self.settle():
             self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
-        """Add a named environment with the current of the displayed environment."""
-
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
             if name in self.session.standing.environments:
@@ -352,7 +349,6 @@ class WaterScreen(screen.DraftScreen):
             dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
-        """Delete the displayed named environment from the file."""
         name = self.water.variant
         if name is None:
             self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
@@ -369,8 +365,6 @@ class WaterScreen(screen.DraftScreen):
         self.workspace.edited()
 
     def action_preset(self) -> None:
-        """Choose a typical current profile."""
-
         def take(speed: Callable[[float], float]) -> None:
             deep = self.water.depth or USUAL_DEPTH
             rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in SHARES]
@@ -386,8 +380,9 @@ class WaterScreen(screen.DraftScreen):
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
-        """Read a current from CSV or NetCDF; the file then refers to it, or holds a copy of its
-        profile.
+        """Read a current from CSV or NetCDF.
+
+        The mooring file then refers to this file, or contains a copy of its profile.
         """
 
         def take(texts: dict[str, str] | None) -> None:
@@ -433,7 +428,7 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Discard invalid typed text, or undo the last change."""
+        """Discard typed text if it is invalid, else undo the last change."""
         if self.settle():
             super().action_undo()
         else:
@@ -441,7 +436,7 @@ class WaterScreen(screen.DraftScreen):
             self.show_draft()
 
     def action_back(self) -> None:
-        """Return to the line; valid typed text is accepted, invalid text discarded."""
+        """Return to the line; typed text is accepted if valid, else discarded."""
         self.settle()
         self.dismiss()  # not awaited, because this ends the loop that would wait
 

@@ -1,7 +1,7 @@
 """Initial tables of the water form: typical currents, currents from files, and pasted rows.
 
-Rows copied from a spreadsheet, a CSV file or a web page are read like files, by headings, units and
-sense of directions.
+Rows copied from a spreadsheet, a CSV file or a web page are interpreted like files, by headings,
+units and sense of directions.
 """
 
 from __future__ import annotations
@@ -53,7 +53,11 @@ _NOISE = 1e-12  # rounding of speed and direction in doubles, with a margin
 
 
 def import_sheet(folder: Path) -> InputSheet:
-    """Create the sheet for importing a current file: name, time, and reference or copy."""
+    """Create the sheet for importing a current file.
+
+    It asks for the name of the file, a time, and whether to refer to the file or to copy its
+    profile.
+    """
     return InputSheet(
         "A current from a file",
         f"CSV or CF NetCDF, relative to {folder}. `refer` keeps the file's "
@@ -67,7 +71,7 @@ def import_sheet(folder: Path) -> InputSheet:
 
 
 def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
-    """Read the current profile in a file as columns and rows of a table.
+    """Read a current profile from a file, as columns and rows of a table.
 
     Parameters
     ----------
@@ -77,9 +81,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
     Returns
     -------
-    columns : depth [m]; speed [m/s] and direction [degrees], or eastward and northward speed
-        [m/s], whichever needs fewer digits, usually the form of the file; with an upward speed
-        [m/s] if it is not zero
+    columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
+        velocity [m/s], whichever needs fewer digits (usually as in the file). If the current has
+        an upward velocity, all three components of the velocity follow the depth.
     rows : one row per level, from the top, with all digits of the file
 
     Raises
@@ -104,8 +108,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
 
 def _written(value: float) -> str:
-    """Format a value with all significant digits; a 32-bit number is not extended by rounding
-    noise.
+    """Format a value with all its significant digits.
+
+    A number of 32-bit precision gets no further digits, which would be rounding noise.
     """
     short = float32(value)
     if isclose(short, value, rel_tol=_NOISE):
@@ -132,16 +137,17 @@ _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
 
 
 class NoRows(ValueError):
-    """A text is not a table; the message gives the affected row and the mistake."""
+    """Raised for a text that is not a table; the message gives the row and the mistake."""
 
 
 class UnknownColumns(NoRows):
-    """The headings do not identify the columns; the message gives the mistake."""
+    """Raised for headings that do not identify the columns; the message gives the mistake."""
 
 
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
-    """Return headings for copied rows: those of the copied text, with missing units added, else
-    those of the table.
+    """Return headings for copied rows.
+
+    They are the headings of the copied text, with missing units added, or those of the table.
     """
     if headings is None:
         return list(columns)
@@ -155,9 +161,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Convert copied rows to the columns of a table.
-
-    If the columns are the same, the texts are unchanged.
+    """Convert copied rows to the columns of a table; if the columns are the same, keep the texts.
 
     Raises
     ------
@@ -176,7 +180,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
 
 
 def previewed(columns: Sequence[str], rows: Rows) -> str:
-    """Format rows for a preview; a long table is reduced to its first rows and the last row."""
+    """Format rows for a preview; a long table is reduced to its first rows and its last row."""
     lines: list[Sequence[str]] = [columns, *rows]
     if len(rows) > _MOST_SHOWN:
         between = f"{theme.ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
@@ -202,7 +206,7 @@ def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tupl
 def _by_name(
     columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]
 ) -> dict[str, Sequence[float]]:
-    """Return the copied values in SI units by the names of possible columns."""
+    """Return the copied values in SI units by column name, for all columns that can be derived."""
     problems: list[tuple[bool, str]] = []
 
     def report(location: Sequence[str | int], message: str) -> Problem:
@@ -242,7 +246,10 @@ def _by_name(
 
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
-    """Return column values in the unit of the heading, or with units if the heading has none."""
+    """Format the values of a column in the unit of its heading.
+
+    If the heading has no unit, each value gets the SI unit.
+    """
     name, unit = heading(column)
     dimension = _KINDS[name].dimension
     usual = DIMENSIONS[dimension].unit
@@ -268,8 +275,9 @@ _KINDS: dict[str, QuantityRange] = {
 
 
 def check_of(column: str) -> Check:
-    """Return the check for a column: numbers if the heading has a unit, else quantities with
-    units.
+    """Return the check for the texts of a column.
+
+    They must be numbers if the heading has a unit, else quantities with units.
     """
     name, unit = heading(column)
     kind = _KINDS.get(name)
@@ -288,9 +296,7 @@ def check_of(column: str) -> Check:
 
 
 def half_way(column: str, one: float, other: float) -> float:
-    """Return the mean of two values; for directions, the direction halfway along the shorter
-    arc.
-    """
+    """Return the mean of two values or, for directions, the middle of the shorter arc."""
     name, unit = heading(column)
     half = (one + other) / 2
     if name != "toward":

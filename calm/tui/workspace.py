@@ -1,6 +1,4 @@
-"""State shared by all screens: edited file, mistakes, results, and the workers that judge the
-draft.
-"""
+"""State shared by all screens: edited file, mistakes, results, and workers that judge the draft."""
 
 from __future__ import annotations
 
@@ -22,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def is_elsewhere(problem: Problem, path: Path) -> bool:
-    """Return whether a mistake is in a file other than the edited file."""
+    """Return whether a mistake is in another file than the edited one."""
     return problem.path not in ("", str(path))
 
 
 def place_of(problem: Problem, path: Path) -> str:
-    """Format the position of a mistake, ``line 4:2``, with the file name if it is another file."""
+    """Format the position of a mistake, such as ``line 4:2``, with the name of another file."""
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
         return place
@@ -43,7 +41,7 @@ def problem_text(problem: Problem, path: Path) -> Content:
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:
-    """Format the number of mistakes and the files that contain them; "" if there are none."""
+    """Format the number of mistakes, and the files that contain them; "" if there are none."""
     count = len(problems)
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:
@@ -56,17 +54,17 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
 
 
 class Workspace:
-    """State shared by all screens.
+    """State that all screens share.
 
     Parameters
     ----------
-    session : the editing session of the file
+    session : editing session of the file
     tell : shows a message in the last line of the screen until the next key; `wrong` marks an error
-    edited : has the changed draft judged and kept
+    edited : called after a change, to judge the draft and to keep a backup copy
 
     Attributes
     ----------
-    index : the catalogue with the components of the file; None until it is loaded
+    index : search index of the catalogue and the components of the file; None until it is loaded
     view : last view of the file; None before the first
     good : last view with an equilibrium
     is_late : whether the view has been out of date for some time
@@ -107,7 +105,10 @@ class Workspace:
         )
 
     def judged(self, otherwise: str) -> View | None:
-        """Return up-to-date results, or None after showing the message `otherwise`."""
+        """Return the view if it is up to date.
+
+        Otherwise show the message `otherwise`, and return None.
+        """
         if not self.is_fresh:
             self.tell(otherwise)
             return None
@@ -115,22 +116,22 @@ class Workspace:
 
     @property
     def is_old(self) -> bool:
-        """Whether values should be dimmed because they belong to an earlier draft."""
+        """Whether values are dimmed because they belong to an earlier draft."""
         return self.is_late and not self.is_fresh
 
     @property
     def path(self) -> Path:
-        """Path of the file, as given in its mistakes."""
         return Path() if self.view is None else self.view.path
 
     @property
     def called(self) -> str:
-        """Name of the file, with a note on unsaved changes."""
+        """Name of the file, followed by a note on unsaved changes."""
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change, or report why it failed; return whether it was made, and the resulting
-        row.
+        """Make a change, and return whether it succeeded and the resulting row.
+
+        A failure is shown as a message.
         """
         try:
             spot = change()
@@ -145,13 +146,13 @@ _FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and 
 
 
 class Judging:
-    """Workers of the application that judge the draft of a workspace.
+    """Workers that judge the draft of a workspace.
 
     Parameters
     ----------
     app : application that runs the workers
     workspace : receives the views
-    show : updates the screens; `is_first` for the first view
+    show : updates the screens; `is_first` marks the first view
     """
 
     def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:
@@ -170,21 +171,21 @@ class Judging:
         return not busy and self._workspace.view is not None
 
     def after_an_edit(self) -> None:
-        """Judge the new draft, after the screen has shown the typed text."""
+        """Judge the new draft, once the screen has shown the typed text."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
             self._dimming = self._app.set_timer(_DIM_DELAY, self.dim)
 
     def dim(self) -> None:
-        """Dim values that still belong to an earlier draft."""
+        """Dim the displayed values if they belong to an earlier draft."""
         self._dimming = None
         if not self._workspace.is_fresh:
             self._workspace.is_late = True
             self._show()
 
     def ask(self) -> None:
-        """Judge the draft now, or when the worker is free; intermediate drafts are skipped."""
+        """Judge the draft, at once or when the worker is free; drafts in between are skipped."""
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:
@@ -199,7 +200,7 @@ class Judging:
             )
 
     def ask_fully(self) -> None:
-        """Judge the draft including launch, recovery and breaks."""
+        """Judge the draft with all checks, including launch, recovery and breaks."""
         self._stop_waiting()
         view = self._workspace.view
         is_free = not self._is_judging and self._checked is None
@@ -209,7 +210,7 @@ class Judging:
             self._work(lambda live: live.judge_fully(view, catalogs), fully=True)
 
     def _take(self, view: View, fully: bool) -> None:
-        """Accept a view from a worker, `fully` with launch, recovery and breaks."""
+        """Store and show a view from a worker; `fully` if it has all checks."""
         workspace = self._workspace
         is_first, is_late = workspace.view is None, fully and self._checked is not workspace.view
         if fully:

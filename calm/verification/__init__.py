@@ -1,6 +1,6 @@
 """Published and independently computed values that CALM must reproduce, for `calm verify`.
 
-Each `Source` holds the cases of one publication or derivation. The figures are part of the code, so
+Each `Source` holds the cases of one publication or derivation. The values are part of the code, so
 that no file is read.
 """
 
@@ -21,4 +21,4 @@ SOURCES: tuple[Source, ...] = (
     drag_and_sea_water.DRAG_CURVES, drag_and_sea_water.STRUMMING_FACTORS,
     drag_and_sea_water.SEA_WATER, ANCHOR_DROP, drag_and_sea_water.CALM_PAPER,
 )  # fmt: skip
-"""All sources; those about the solver itself come first."""
+"""All sources, beginning with those about the solver itself."""

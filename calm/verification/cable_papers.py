@@ -1,7 +1,8 @@
-"""Verification against three papers on cables: Braconnot, Bourget & Marichal, Villain-Guillot.
+"""Verification against publications on cables by Braconnot, Bourget & Marichal and Villain-Guillot.
 
-Braconnot's charts (EDF) give a buoy, towed cables and a point of the curve. Bourget & Marichal give
-a towed cable that strums. Villain-Guillot gives the closed form of a cable with linear drag.
+From Braconnot's charts (EDF), a buoy, towed cables and a point of the curve are compared; from
+Bourget & Marichal, a towed cable that strums; from Villain-Guillot, the closed form of a cable with
+linear drag.
 """
 
 from dataclasses import replace
@@ -51,8 +52,9 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 
 @cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
-    """Return the cable that has three given quantities; if there are several, the first, which
-    stays above A.
+    """Return the cable with three given quantities.
+
+    If there are several, the first is returned, which lies above A everywhere.
     """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
@@ -72,8 +74,14 @@ _below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
-    """Return a buoy of given buoyancy [N] in water of a given depth [m]; its drag at 1 m/s is K w =
-    12 N/m.
+    """Return the line and the water for a buoy.
+
+    The drag of its cable at 1 m/s is K w = 12 N/m.
+
+    Parameters
+    ----------
+    buoyancy : buoyancy of the buoy [N]
+    depth : water depth [m]
     """
     cable = LinePiece(28.467, True, -_BUOY_WEIGHT, normal_drag=_K * _BUOY_WEIGHT)
     return line_of(point(buoyancy, _BUOY_TENSION * cos(_BUOY_ANGLE)), cable), stream(depth, 1.0)
@@ -86,8 +94,9 @@ def _afloat() -> Solution:
 
 @cache
 def _towed() -> Wake:
-    """Return the tow as solved by the march; the body pulls the cable with the printed tension T_A
-    at the angle φ_A.
+    """Return the shape of the tow, as solved by the march.
+
+    The body pulls the cable with the printed tension T_A at the angle φ_A.
     """
     pull, angle = 63.401, radians(116.373)
     body = point(-pull * sin(angle), -pull * cos(angle))
@@ -209,7 +218,7 @@ _LAW = BourgetMarichal()
 
 
 def _line(length: float, *others: LinePiece, strums: bool = True) -> Line:
-    """Return a given length of the cable, and the pieces towed at its end."""
+    """Return a line of a given length of the cable, with other pieces towed at its end."""
     cable = LinePiece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
     diameter = np.array([_DIAMETER] + [0.0] * len(others))
     return replace(
@@ -229,7 +238,7 @@ def _bare(speed: float) -> Wake:
 
 
 def _coefficient(angle: float) -> float:
-    """Return C* of the example's cable at an angle of the cable [rad]."""
+    """Return the drag coefficient C* of the example's cable at an angle [rad]."""
     return _LAW.coefficient(angle, radians(_example(True).angle))
 
 
@@ -239,7 +248,7 @@ def _at_the_sphere() -> float:
 
 
 def _amplitude(speed: float) -> float:
-    """Return a/D of the bare cable at its towing angle."""
+    """Return the amplitude ratio a/D of the bare cable at its towing angle."""
     return _LAW.amplitude(radians(_bare(speed).angle))
 
 
@@ -300,7 +309,12 @@ _LENGTH, _UNIT = 1.25, 0.5
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """Return the cable with angles α₀ and α_d in degrees, under unit load."""
+    """Return the end of the cable under unit load.
+
+    Parameters
+    ----------
+    start, mean : angles α₀ and α_d [degrees]
+    """
     angle = radians(mean)
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 

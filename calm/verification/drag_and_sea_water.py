@@ -1,8 +1,8 @@
 """Verification of the formulas for drag, strumming, sea water and gravity (C23).
 
-Drag coefficients of smooth cylinders and spheres are compared over the Reynolds number. Three
-published fits give the increase of drag by strumming. The last figures are those of the paper on
-the original CALM.
+Drag coefficients of smooth cylinders and spheres are compared over the Reynolds number, and the
+increase of drag by strumming with three published fits. The last values are from the publication
+on the original CALM.
 """
 
 from functools import partial
@@ -54,7 +54,7 @@ _SHARE = 1e-9
 
 
 def cheng(reynolds: float) -> float:
-    """Return Cn of a smooth cylinder from Cheng's fit, for Reynolds numbers below 2e5."""
+    """Return Cn of a smooth cylinder from Cheng's fit, valid for Reynolds numbers below 2e5."""
     creeping = 11.0 * pow(reynolds, -0.75)
     middle = 0.9 * (1.0 - exp(-1000.0 / reynolds))
     return creeping + middle + 1.2 * (1.0 - exp(-pow(reynolds / 4500.0, 0.7)))
@@ -163,7 +163,6 @@ _LATITUDE = 30.0
 
 
 def _viscosity(temperature: float, salinity: float) -> float:
-    """Return the dynamic viscosity [mPa s]."""
     return 1e3 * float(seawater.dynamic_viscosity(temperature, salinity))
 
 

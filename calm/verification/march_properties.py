@@ -1,6 +1,4 @@
-"""Verification of properties that hold for every line (C20), and of the order of convergence with
-the angle step.
-"""
+"""Verification of properties that hold for every line (C20), and of the order of convergence."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -36,8 +34,8 @@ from calm.verification.published_case import (
 _TIGHT = Settings(tolerance=1e-9)
 _DRAG = sphere_drag(1.25, 0.6)
 
-# A line with something of everything: floats, wire, rope that stretches, instruments that follow
-# the line or not, clamps, chain; it hangs below the surface in a current that veers.
+# A line with all kinds of components: floats, wire, elastic rope, instruments that align with the
+# line and others that do not, clamps, and chain. It is below the surface in a veering current.
 _PIECES = (
     LinePiece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
     replace(
@@ -68,7 +66,7 @@ def _solved() -> Solution:
 
 
 def _apart(one: Solution, other: Solution) -> float:
-    """Return the largest difference between two solutions, at the ends of their pieces.
+    """Return the largest difference between two solutions at the ends of their pieces.
 
     Differences in position are divided by the depth, those in tension by the largest tension.
     """
@@ -94,8 +92,9 @@ def _mirrored(east: float, north: float) -> float:
 
 
 def _deeper() -> float:
-    """Compare a mooring with a copy in water that is 100 m deeper, whose current is moved down by
-    100 m.
+    """Compare a mooring with a copy in water that is 100 m deeper.
+
+    The current is moved down by 100 m with the mooring.
     """
     down = 100.0
     water = replace(_SEA, depth=_SEA.depth + down, level=_SEA.level + down)
@@ -104,8 +103,9 @@ def _deeper() -> float:
 
 
 def _similar(length: float, force: float, speed: float) -> float:
-    """Compare a mooring with a copy in other units of length, force and speed, with drags scaled
-    accordingly.
+    """Compare a mooring with a copy in other units of length, force and speed.
+
+    The drag factors are scaled accordingly.
     """
     amount = force / np.where(_LINE.flexible, length, 1.0)
     line = replace(
@@ -140,7 +140,7 @@ def _split() -> float:
 
 
 def _loads(solution: Solution) -> Floats:
-    """Sum the weights and drags on all elements at their positions, shape (3,) [N]."""
+    """Return the sum (3,) of the weights and drags on all elements at their positions [N]."""
     line, water = solution.line, solution.water
     piece, clamp = solution.element_piece, solution.element_clamp
     chord = np.diff(solution.position, axis=0)
@@ -179,8 +179,9 @@ def _reaction() -> float:
 
 
 def _tension_by_height() -> float:
-    """Return the largest |T_top − T_bottom − w Δz| of a cable without tangential drag, divided by
-    its tension.
+    """Return the largest |T_top − T_bottom − w Δz| of a cable, divided by the maximum tension.
+
+    The cable has no tangential drag.
     """
     line = line_of(
         *(
@@ -197,7 +198,7 @@ def _tension_by_height() -> float:
 
 
 def _tension_by_height_and_friction() -> float:
-    """Return |T_ship − T_body − w Δz − F s| of a tow with constant friction, divided by T_ship."""
+    """Return |T_ship − T_body − w Δz − F s| / T_ship of a tow with constant friction F."""
     weight, friction, length, pull = 2.5, 0.3, 300.0, 2000.0
     line = line_of(LinePiece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
     wake = towed(replace(line, friction=Friction.CONSTANT), deep_water(), 1.0)
@@ -205,8 +206,9 @@ def _tension_by_height_and_friction() -> float:
 
 
 def _plumb() -> float:
-    """Return the largest error of offset and tension in still water; the exact tension is the sum
-    of the loads above.
+    """Return the largest relative error of offset and tension in still water.
+
+    The exact tension is the sum of the loads above.
     """
     water = replace(_SEA.still(), density=np.full(len(_SEA.level), REFERENCE_DENSITY))
     solution = solve_mooring(_LINE, water, _TIGHT)
@@ -218,13 +220,13 @@ def _plumb() -> float:
 
 @cache
 def _undercurrent() -> Solution:
-    """Return a float of 500 N on 100 m of thread, in a current that increases below the float."""
+    """Solve a float of 500 N on 100 m of thread, in a current that increases below the float."""
     line = line_of(point(500.0, 100.0), LinePiece(100.0, True, 0.0))
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 
 
 def _other_depth() -> float:
-    """Return the depth of the float in the second equilibrium; 0 if none was found."""
+    """Return the depth of the float in its second equilibrium [m]; 0 if none was found."""
     other = _undercurrent().other
     return 0.0 if other is None else other.depth
 
@@ -289,8 +291,11 @@ _BUOYANCY, _WEIGHT = 4905.0, 2.0
 
 @cache
 def heavy_line_error(degrees: float) -> float:
-    """Return the distance [m] between the free end of a heavy line as marched with an angle step
-    [degrees] and in closed form.
+    """Return the position error of the free end of a heavy line [m], against the closed form.
+
+    Parameters
+    ----------
+    degrees : angle step of the march [degrees]
     """
     drag, rope = sphere_drag(1.0, 0.65), cable(LENGTH, 0.0127, _WEIGHT, 1.3, 0.01)
     line = line_of(point(_BUOYANCY, drag), rope)

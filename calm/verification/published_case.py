@@ -1,6 +1,6 @@
 """Cases of `calm verify`: expected values, their computation by CALM, and the comparison.
 
-Lines and waters of published cases are built here without a mooring file.
+The lines and waters of published cases are built here, without a mooring file.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
 
 
 class Kind(StrEnum):
-    """Source of an expected value, which determines the weight of an agreement as evidence."""
+    """Origin of an expected value, which determines the strength of an agreement as evidence."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"
@@ -35,7 +35,7 @@ class Kind(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """Explanation of the kind in a sentence."""
+        """Sentence that explains the kind."""
         return _MEANINGS[self]
 
     @property
@@ -58,17 +58,17 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Case:
-    """One value to reproduce.
+    """A value to reproduce.
 
     Attributes
     ----------
     name : name of the value, unique within its source
     expected : the value, with all known digits
-    unit : that of `expected`, as text for a reader; empty for a pure number
+    unit : unit of `expected`, as text for a reader; empty for a pure number
     tolerance : largest allowed difference [unit], > 0
     why : reason for the tolerance, in a sentence
-    got : computes CALM's value [unit]; an exception counts as a missing value
-    kind : where `expected` comes from
+    got : function that computes CALM's value [unit]; an exception counts as a missing value
+    kind : origin of `expected`
     """
 
     name: str
@@ -80,8 +80,9 @@ class Case:
     kind: Kind
 
     def check(self) -> CaseOutcome:
-        """Compute the value with CALM; an exception is returned as the reason for a missing
-        value.
+        """Compute the value with CALM, and return the outcome.
+
+        If the computation raises an exception, the outcome has this exception as its reason.
         """
         try:
             return CaseOutcome(self, float(self.got()))
@@ -115,8 +116,8 @@ class Source:
     Attributes
     ----------
     title : title of the source, a few words
-    text : who printed or derived the figures, which part of CALM is compared, and why a
-        published figure differs if it does; Markdown, with blank lines between paragraphs
+    text : who published or derived the values, which part of CALM is compared, and why a published
+        value differs if it does; Markdown, with blank lines between paragraphs
     cases : the cases
     picture : stem of the file name of a picture; empty if there is none
     """
@@ -127,8 +128,9 @@ class Source:
     picture: str = ""
 
     def having(self, words: Iterable[str]) -> Source:
-        """Return the source with the cases whose name, together with the title, contains all given
-        words or parts of words.
+        """Return the source with only the cases that match a search.
+
+        All given words, or parts of words, must occur in the title or in the name of the case.
         """
         wanted = [word.casefold() for word in words]
         chosen = tuple(
@@ -141,13 +143,13 @@ class Source:
 
 @dataclass(frozen=True)
 class CaseColumn(Generic[Solved]):
-    """Description of a column in a published table.
+    """Column of a published table.
 
     Attributes
     ----------
-    name, unit : name and unit of the figure
-    tolerance : greatest difference allowed [unit], or as a share of the figure if `relative`
-    of : returns the figure from CALM's solution
+    name, unit : name and unit of the value
+    tolerance : largest allowed difference [unit], or as a share of the value if `relative`
+    of : function that returns the value from CALM's solution
     """
 
     name: str
@@ -167,10 +169,10 @@ def table(
 
     Parameters
     ----------
-    figures : its columns
-    rows : for each row its name, the function that solves it, and its printed figures
-    why : the reason for the tolerances
-    kind : where the figures come from
+    figures : columns of the table
+    rows : for each row its name, the function that solves it, and its published values
+    why : reason for the tolerances
+    kind : origin of the values
     """
 
     def case(
@@ -197,7 +199,8 @@ HALF_DENSITY = REFERENCE_DENSITY / 2.0
 class LinePiece:
     """A piece of a line; attributes and units are those of `calm.physics.line.Line`.
 
-    `clamps` are tuples of the distance from the piece's top, the buoyancy, the volume and the drag.
+    `clamps` lists distance from the upper end of the piece, buoyancy, volume and drag of each
+    clamp.
     """
 
     length: float
@@ -213,7 +216,13 @@ class LinePiece:
 
 
 def point(buoyancy: float, drag: float) -> LinePiece:
-    """Return a piece without length, with a buoyancy [N] and a drag at 1 m/s [N/(m/s)²]."""
+    """Return a piece without length.
+
+    Parameters
+    ----------
+    buoyancy : net buoyancy [N]
+    drag : drag at 1 m/s [N/(m/s)²]
+    """
     return LinePiece(0.0, False, buoyancy, drag, drag, directional=False)
 
 
@@ -229,9 +238,9 @@ def cable(
 
     Parameters
     ----------
-    length, diameter : unstretched [m]
-    weight : in water [N/m]
-    cn, ct : drag coefficients on its diameter and on its surface π D
+    length, diameter : unstretched length and diameter [m]
+    weight : weight in water [N/m]
+    cn, ct : drag coefficients, which refer to the diameter D and to the surface π D
     compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
@@ -241,7 +250,7 @@ def cable(
 
 
 def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
-    """Return the line that consists of given pieces, the free end first."""
+    """Return the line that consists of the given pieces, with the free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
 
@@ -270,8 +279,13 @@ def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
 def profile(
     depth: float, rows: Sequence[tuple[float, float]], density: float = REFERENCE_DENSITY
 ) -> Water:
-    """Return water of a given depth [m] and density [kg/m³], with an eastward current given by rows
-    of depth and speed.
+    """Return water with an eastward current that varies with depth.
+
+    Parameters
+    ----------
+    depth : water depth [m]
+    rows : depths [m] and speeds [m/s] of the current
+    density : density [kg/m³]
     """
     level, u = np.array(rows).T
     still = np.zeros_like(u)
@@ -286,9 +300,7 @@ def stream(depth: float, speed: float, density: float = REFERENCE_DENSITY) -> Wa
 
 
 def deep_water(density: float = REFERENCE_DENSITY) -> Water:
-    """Return still water without a seabed, for tows; their flow results from the speed of
-    the ship.
-    """
+    """Return still water without a seabed, for tows."""
     return stream(inf, 0.0, density)
 
 
@@ -298,11 +310,11 @@ FINE = Settings(radians(0.1), tolerance=1e-9)
 
 @dataclass(frozen=True)
 class Ends:
-    """Positions and forces at a line's ends in an eastward current.
+    """Positions and forces at the ends of a line in an eastward current.
 
     Attributes
     ----------
-    x, z : distances of the free end downstream of the lower end, and above it [m]
+    x, z : distance of the free end downstream of the lower end, and its height above it [m]
     horizontal, vertical : components of the force at the lower end, downstream and up [N]
     """
 
@@ -331,8 +343,11 @@ def ends_of(solution: Solution) -> Ends:
 
 @cache
 def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
-    """Return the ends of a line, solved at `FINE`; the line is built by a function from given
-    values.
+    """Return the ends of a line, solved with the settings `FINE`.
+
+    Parameters
+    ----------
+    made : function that builds the line and the water from the given values
     """
     return ends_of(solve_mooring(*made(*given), FINE))
 
@@ -343,10 +358,10 @@ class Wake:
 
     Attributes
     ----------
-    aft, depth : distances of the free end behind and below the tow point [m]
+    aft, depth : distance of the free end behind the tow point, and below it [m]
     tension : tension at the tow point [N]
     angle : angle of the line at the tow point from the horizontal [degrees]
-    frequency : frequency of the strumming [Hz]
+    frequency : strumming frequency [Hz]
     """
 
     aft: float
@@ -357,7 +372,7 @@ class Wake:
 
 
 def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> Wake:
-    """Return the shape of a towed line.
+    """Solve a towed line, and return its shape and tension.
 
     Parameters
     ----------

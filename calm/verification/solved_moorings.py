@@ -1,7 +1,7 @@
 """Verification against two moorings solved by others: S1000, and CDMS-1 of Berteaux's manual (C16).
 
-S1000 is a float on 1000 m of elastic cable in a sheared current. CDMS-1 was solved by two other
-programs.
+S1000 is a float on 1000 m of elastic cable in a sheared current. Two other programs have solved
+CDMS-1.
 """
 
 from dataclasses import replace
@@ -26,7 +26,7 @@ _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """Return the line of the mooring S1000, with its cable divided into equal parts."""
+    """Return the line of the mooring S1000, whose cable may be divided into equal parts."""
     part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return published_case.line_of(
         published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
@@ -35,7 +35,7 @@ def s1000_mooring(parts: int = 1) -> Line:
 
 @cache
 def solved_s1000(degrees: float) -> Solution:
-    """Return the solution for the mooring S1000 at an angle step [degrees]."""
+    """Solve the mooring S1000 at an angle step [degrees]."""
     return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
 
 
@@ -59,7 +59,10 @@ def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
 
 
 def _order(coarse: float, fine: float) -> float:
-    """Return the order of convergence of the float's depth as marched, from two angle steps."""
+    """Return the order of convergence of the float's depth, from two angle steps [degrees].
+
+    The depths are those of the march, before extrapolation.
+    """
     errors = [
         abs(float_depth(solved_s1000(degrees).as_marched) - DEPTH) for degrees in (coarse, fine)
     ]
@@ -115,9 +118,7 @@ def _rope(length: float, diameter: float, weight: float, modulus: float, ct: flo
 
 
 def cdms_1_mooring(ct: float = 0.0) -> Line:
-    """Return the line of the mooring CDMS-1, with a given tangential drag coefficient of its
-    cables.
-    """
+    """Return the line of the mooring CDMS-1 for a given tangential drag coefficient."""
     meter = LinePiece(2.0, False, -20.0 * GRAVITY, published_case.HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
     return published_case.line_of(
@@ -125,7 +126,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
         _rope(10.0, 0.007, 0.12, 1.38e11, ct),
         meter, kevlar[0], meter, kevlar[1], meter, kevlar[2],
         *[_sphere(0.51, 23.0, 0.95)] * 10,
-        meter,  # the release has the meters' figures
+        meter,  # the release has the same values as a meter
         _rope(4.8, 0.022, 2.33, 0.0, ct),
         anchor_height=0.55,
     )  # fmt: skip
@@ -133,7 +134,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
 
 @cache
 def solved_cdms_1() -> Solution:
-    """Return CALM's solution for CDMS-1 at default settings, with the anchor at the origin."""
+    """Solve the mooring CDMS-1 at default settings, with the anchor at the origin."""
     return solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
 
 
@@ -147,8 +148,9 @@ def height_at(solution: Solution, node: int) -> float:
 
 
 def nodes_of_tensions(solution: Solution) -> list[int]:
-    """Return the nodes with a printed tension: below the sphere, below the third meter, and at the
-    anchor.
+    """Return the nodes for which a tension is published.
+
+    They are below the sphere, below the third current meter, and at the anchor.
     """
     last: list[int] = solution.piece_nodes[[0, _THIRD_METER, -1], 1].tolist()
     return last

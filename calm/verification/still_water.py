@@ -1,7 +1,7 @@
-"""Verification for lines in still water: catenaries (C12 to C14), an elastic rope, a slack line, an
-anchor drop.
+"""Verification in still water: catenaries, an elastic rope, a slack line, and an anchor drop.
 
-The rope (C15) hangs under its own weight and a load. The slack mooring (C22) has a watch circle.
+The catenaries are C12 to C14. The rope (C15) hangs under its own weight and a load. The slack
+mooring (C22) has a watch circle.
 """
 
 import re
@@ -58,8 +58,12 @@ def _number(field: ArrayLike) -> float:
 
 
 def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: float) -> Line:
-    """Return a line without drag below a float on which the flow exerts a horizontal and an upward
-    force at 1 m/s.
+    """Return a line without drag below a float.
+
+    Parameters
+    ----------
+    pull : horizontal and upward force on the float in a flow of 1 m/s [N]
+    length, weight, stiffness : of the line [m], [N/m], [N]
     """
     horizontal, vertical = pull
     return line_of(
@@ -205,7 +209,7 @@ _SLACK_DEPTH, _SCOPE = 540.0, 2.0
 
 
 def _radius() -> float:
-    """Return the watch-circle radius in the error for a line without a unique shape [m]."""
+    """Return the watch-circle radius [m] that the error for a slack line states."""
     rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
@@ -272,7 +276,7 @@ _PLUMB_WIRE, _PLUMB_ANCHOR = 150.0, FallingAnchor(weight=8896.0, drag=400.0)
 
 @cache
 def _plumb() -> float:
-    """Return the terminal speed of a vertical line, at a depth of 3000 m [m/s]."""
+    """Return the terminal speed of a vertical line, computed at a depth of 3000 m [m/s]."""
     water = replace(_SEA, depth=3000.0)
     line = replace(_wire_below_a_sphere().with_length(1, _PLUMB_WIRE), floating=None)
     start = towed(line, water, _PLUMB_ANCHOR, Ship(0.0, 1.0), _FINE)
@@ -281,7 +285,10 @@ def _plumb() -> float:
 
 @cache
 def _alone() -> float:
-    """Return the terminal speed of a heavy sphere below a light thread and a cork [m/s]."""
+    """Return the terminal speed of a heavy sphere on a light thread with a cork [m/s].
+
+    The thread and the cork hardly affect it.
+    """
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
     )

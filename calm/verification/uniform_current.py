@@ -1,8 +1,8 @@
-"""Verification for lines and towed cables in a uniform current, against closed forms and
-quadratures.
+"""Verification of lines in a uniform current, against closed forms and quadratures.
 
-C1 to C5 are a float on a thread, a neutral line and a heavy line. C7 and C8 are a bare cable at its
-critical angle and a cable that tows a body. C6 is Pode's cable functions and their identities.
+C1 to C5 are a float on a thread, a neutral line and a heavy line. C7 and C8 are a bare cable towed
+at its critical angle and a cable that tows a body. C6 covers Pode's cable functions and their
+identities.
 """
 
 from collections.abc import Callable, Iterable
@@ -48,12 +48,17 @@ _SEVEN_DIGITS = (
 
 
 def float_on_a_thread(speed: float) -> tuple[Line, Water]:
-    """Return case C1, a float on a thread, at a speed [m/s]."""
+    """Return the line and the water of case C1, a float on a thread.
+
+    Parameters
+    ----------
+    speed : speed of the current [m/s]
+    """
     return line_of(_FLOAT, LinePiece(100.0, True, 0.0)), stream(110.0, speed)
 
 
 def ball_on_a_thread() -> tuple[Line, Water]:
-    """Return case C2, a ball on a thread."""
+    """Return the line and the water of case C2, a ball on a thread."""
     ball = point(0.337612, sphere_drag(0.04, 1.0))
     return line_of(ball, LinePiece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
 
@@ -78,7 +83,7 @@ def _drop(length: float, ends: Ends) -> float:
 
 
 def _fall(speed: float) -> float:
-    """Return T_top − T_bottom of the heavy line [N]."""
+    """Return T_top − T_bottom of the heavy line [N], with the exact tension at the float."""
     at_the_float = hypot(_FLOAT.buoyancy, _FLOAT.normal_drag * speed**2)
     return at_the_float - _rope_ends(_HEAVY, 0.0, speed).tension
 
@@ -92,7 +97,13 @@ def _identity(speed: float) -> Case:
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """Return the columns for a float on a thread, with their tolerances."""
+    """Return the table columns for a float on a thread.
+
+    Parameters
+    ----------
+    length : length of the thread [m]
+    force, place, angle : tolerances of forces [N], positions [m] and angles [degrees]
+    """
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
         CaseColumn("tension", "N", force, lambda ends: ends.tension),
@@ -105,7 +116,7 @@ def _thread(length: float, force: float, place: float, angle: float) -> list[Cas
 def _by_speed(
     name: str, solve: Callable[[float], Solved], rows: Iterable[tuple[float, ...]]
 ) -> list[tuple[str, Callable[[], Solved], list[float]]]:
-    """Return the rows of a table with the speed [m/s] as its first column."""
+    """Return the rows of a table whose first column is the speed [m/s]."""
     return [(f"{name}, {v} m/s", partial(solve, v), figures) for v, *figures in rows]
 
 
@@ -265,8 +276,9 @@ def _functions(critical: float, friction: float, angle: float) -> uniform.CableF
 
 @cache
 def _march(critical: float, friction: float, arc: float) -> Wake:
-    """Return the march of a body of 100 N without drag on a cable with a normal drag of 1 N/m at 1
-    m/s.
+    """Solve the tow of a body of 100 N without drag.
+
+    The normal drag of the cable is 1 N/m at 1 m/s.
     """
     weight = float(uniform.critical_weight_ratio(radians(critical)))
     rope = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
@@ -279,7 +291,7 @@ def _name(critical: float, friction: float, angle: float) -> str:
 
 
 def _identity_missed() -> float:
-    """Return the largest |τ − 1 − p η − f σ| in the table."""
+    """Return the largest |τ − 1 − p η − f σ| over the rows of the table."""
     misses = []
     for critical, friction, angle, *_ in _TABLE:
         tau, sigma, _, eta = _functions(critical, friction, angle)
@@ -300,7 +312,6 @@ def _tension(critical: float, angle: float, tau: float) -> Case:
 
 
 def _critical_angle(ratio: float) -> float:
-    """Return the critical angle [degrees]."""
     return degrees(float(uniform.critical_angle(ratio)))
 
 

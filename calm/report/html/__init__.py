@@ -1,4 +1,4 @@
-"""Rendering of a report as a self-contained HTML page, without other files or network access."""
+"""Rendering of a report as a self-contained HTML page, which needs no other file and no network."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
-"""Pattern for the positions where a long word may break: after a separator, else every ten
+"""Pattern for the positions at which a long word may break: after a separator, else every ten
 characters.
 """
 
 
 def leaf(section: Section, number: int) -> str:
-    """Render section number `number` (from 1) as HTML."""
+    """Render a section as HTML; `number` counts sections from 1."""
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts(section.parts, f"m{number}")  # type: ignore[attr-defined]
     return shown
 
 
 def page(report: Report, leaves: Sequence[str] | None = None) -> str:
-    """Render a report as a page; the sections of the moorings follow in order.
+    """Render a report as a page, with its sections in order.
 
     All texts are escaped, and invalid Unicode becomes question marks. Style, script and drawings
     are embedded. The page is complete without its script, which sorts and filters the checks.
@@ -47,7 +47,7 @@ def page(report: Report, leaves: Sequence[str] | None = None) -> str:
 
 
 def fragment(part: ReportPart) -> str:
-    """Render a part for a notebook, without page style and limited to the width of its text."""
+    """Render a part for a notebook, without the style of a page, and as wide as its text."""
     blocks = tuple(one.narrow() if isinstance(one, Table) else one for one in part.blocks)
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts([replace(part, blocks=blocks)], "n")  # type: ignore[attr-defined]
@@ -72,18 +72,16 @@ def _environment() -> Environment:
 
 
 def _css_text(text: str) -> str:
-    """Convert text to a style-sheet string; all characters except letters and digits are
-    escaped.
-    """
+    """Convert text to a style-sheet string, with all characters but letters and digits escaped."""
     signs = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
     return f'"{"".join(signs)}"'
 
 
 def _breakable(text: str) -> str:
-    """Convert text so that long words may break at the edge of a column but are copied unbroken."""
+    """Escape text so that long words may break at the edge of a column, but are copied unbroken."""
     from markupsafe import Markup
 
-    if not _LONG_WORD.search(text):  # as nearly always
+    if not _LONG_WORD.search(text):  # the usual case
         return text
     words = _LONG_WORD.split(text)
     words[1::2] = [Markup("<wbr>").join(_STEPS.findall(word)) for word in words[1::2]]
@@ -91,7 +89,7 @@ def _breakable(text: str) -> str:
 
 
 def _kinds(columns: Sequence[Column]) -> list[str]:
-    """Return the class attributes of the cells in each column: numbers, or text by width."""
+    """Return the HTML class of the cells in each column, which sets their alignment or width."""
     from markupsafe import Markup
 
     def kind(column: Column) -> str:
