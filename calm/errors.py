@@ -128,8 +128,10 @@ def how_to_install(missing: ModuleNotFoundError) -> str | None:
         return None
     for extra, libraries in EXTRAS.items():
         if library in libraries:
-            return f"this needs {library}: in CALM's checkout, pip install '.[{extra}]'"
-    return f"this needs {library}, which is not installed: pip install {library}"
+            return (
+                f"{library} is not installed; in the checkout of CALM, run pip install '.[{extra}]'"
+            )
+    return f"{library} is not installed; run pip install {library}"
 
 
 def unexpected(error: Exception) -> str:

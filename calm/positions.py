@@ -48,14 +48,14 @@ def degrees_of(text: str, what: str) -> float | None:
     if found["before"] and found["after"]:
         raise ValueError("names two hemispheres")
     if letter and letter not in HEMISPHERES[what]:
-        raise ValueError(f"is no {what}; {' or '.join(HEMISPHERES[what])} is needed")
+        raise ValueError(f"is not a {what}; {' or '.join(HEMISPHERES[what])} is needed")
     if letter and found["sign"]:
-        raise ValueError("has a sign and a hemisphere; leave one of them out")
+        raise ValueError("has a sign and a hemisphere; remove one of them")
     parts = [found[name] for name in ("degrees", "minutes", "seconds") if found[name]]
     if any("." in part for part in parts[:-1]):
         raise ValueError("has a fraction before its last part; write 57 28.84 N or 57 28 50.4 N")
     if any(float(part) >= 60.0 for part in parts[1:]):
-        raise ValueError("has 60 minutes or seconds, or more")
+        raise ValueError("has minutes or seconds of 60 or more")
     size = sum(float(part) / 60.0**power for power, part in enumerate(parts))
     return -size if found["sign"] == "-" or letter in ("S", "W") else size
 

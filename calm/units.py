@@ -100,8 +100,8 @@ _MASS_AND_FORCE |= {"kg/km": "kgf/km", "lb/ft": "lbf/ft"}
 _TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items()}
 
 _FATHOM = ("is ambiguous; write `fathom` for a fathom", "fathom")
-_TON = ("may be of 907, 1000 or 1016 kg; a tonne is `t`, its force `tf`", None)
-_MILE = ("may be of 1609 or 1852 m; write `mi` or `nmi`", None)
+_TON = ("may mean 907, 1000 or 1016 kg; write `t` for a tonne, or `tf` for its weight", None)
+_MILE = ("may mean 1609 or 1852 m; write `mi` or `nmi`", None)
 _MISTAKEN: Mapping[str, tuple[str, str | None]] = {
     "nm": ("is in nanometres; a nautical mile is `nmi`", "nmi"),
     **dict.fromkeys(("fm", "fth"), _FATHOM),
@@ -337,7 +337,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
     marked = _THOUSANDS.match(text)
     if marked:
         plain = re.sub("[^+0-9-]", "", marked[1]) + (f".{marked[3]}" if marked[3] else "")
-        raise QuantityError("has marks between thousands", plain + text[marked.end() :])
+        raise QuantityError("has separators between thousands", plain + text[marked.end() :])
     comma = _COMMA.match(text)
     if comma:
         unit = text[comma.end() :]

@@ -148,7 +148,7 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     with _regular(path):
         if path.stat().st_size > largest:
             megabytes = path.stat().st_size / 1e6
-            message = f"is {megabytes:.1f} MB; more than {largest / 1e6:g} MB is not read"
+            message = f"has a size of {megabytes:.1f} MB; the limit is {largest / 1e6:g} MB"
             raise refused(path, message)
         return path.read_bytes()
 

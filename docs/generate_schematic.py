@@ -19,17 +19,16 @@ TEXT = """# The schematic of a line
 
 Printed by `python docs/generate_schematic.py`; do not edit.
 
-The line in order from the top, not to scale: each piece and each clamped instrument with its
-label, its component, the length to cut, the depth and the height above the seabed of its upper end.
+A schematic shows the line in order from the top, not to scale. Each piece and each clamped
+instrument has its label, its component and its cut length, and the depth and the height above the
+seabed of its upper end.
 
 ![{first}](../images/schematic-{drawn[0]}.svg)
 
 ## In the terminal
 
-`calm run FILE --schematic` draws it above the table, even if there is no equilibrium. It is as wide
-as the terminal (80 columns without one) and needs no colour. If the output cannot show the
-characters for cables, ASCII characters replace them.
-`calm run lines/{drawn[0]}.yaml --schematic` begins:
+`calm run FILE --schematic` draws the schematic above the table, even if there is no equilibrium.
+The output of `calm run lines/{drawn[0]}.yaml --schematic` begins:
 
 ```text
 {text}
@@ -57,10 +56,8 @@ picture = schematic_svg(result.file, result)
 assert picture.startswith("<svg")
 ```
 
-The SVG has the size of A4. A long line is drawn smaller to fit, and a line with more than about 60
-rows needs a longer sheet; a report divides it into several sheets. Texts never overlap and are
-never cut: long texts wrap. A wire of ten times the length is drawn slightly longer. The same input
-gives the same bytes.
+The SVG has the size of A4. A long line is drawn smaller, and a line with more than about 60 rows
+has a longer sheet, which a report divides into several sheets.
 
 Surface moorings are drawn with the surface, and tows with their ship or helicopter:
 
@@ -70,14 +67,13 @@ Surface moorings are drawn with the surface, and tows with their ship or helicop
 
 ## What it shows
 
-- **Depths** are those of the result: in the current, under load. Without a result,
-  `schematic_svg(file)`, they are those of the upright, unstretched line, and unknown in a tow and
-  if a float is at the surface.
+- **Depths** are those in the current, under load. Without a result (`schematic_svg(file)`), they
+  are those of the upright, unstretched line, and unknown for a tow or with a float at the surface.
 - **Lengths** are cut lengths, before any load.
 - **Symbols** follow the kind and the role of a component, then its id, name, note and label:
   *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is recognised by its `material`.
 - **Runs** of equal balls or connectors are drawn together (`back-up glass 1–10`, `10 × 0.51` m),
-  two releases in a row as a pair. Each has its own label in the picture's titles.
+  two releases in a row as a pair.
 """
 
 

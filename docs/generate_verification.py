@@ -40,22 +40,24 @@ code is 1 if a value is out of tolerance. `calm verify cdms tension` selects the
 source or name contains both words; `--json -` gives all digits. The cases are in
 `calm/verification/`, and the tests run them.
 
-Agreement proves more or less depending on the origin of the value, so every value has a kind:
+The significance of an agreement depends on the origin of the value, so every value has a kind:
 
 | kind | figures | meaning |
 | --- | ---: | --- |
 {kinds}
 
 {copied} more values agree **by construction**: points on a curve of CALM, values to which a law is
-fitted, values of a library that CALM calls. Their agreement only excludes
-copying errors. They are checked, but not counted.
+fitted, values of a library that CALM calls. Their agreement only excludes copying errors, so they
+are checked, but not counted.
 
 In addition, the tests compare every mooring of `lines/` and hundreds of random moorings
 with an independent integration of the differential equations.
 
+On this page, *march* means CALM's integration along the line.
+
 {contents}
 
-[Every figure with its tolerance and the reason for it](../reference/verification-figures.md).
+[All values, with their tolerances and the reasons for them](../reference/verification-figures.md).
 """
 FIGURES_HEAD = """# Verification: every figure
 
@@ -64,7 +66,8 @@ Printed by `python docs/generate_verification.py`; do not edit.
 The values that `calm verify` compares. [Verification](../explanation/verification.md) explains what
 agreement proves, and gives the sources of the values. Above each table are its kind and the
 reason for its tolerance. The values of CALM and the differences are rounded a digit or two beyond
-the tolerance. C1 to C23 are names of cases in the code and the tests.
+the tolerance. C1 to C23 are names of cases in the code and the tests. *March* means CALM's
+integration along the line.
 """
 ORDER_TWO = {"color": "grey", "linestyle": "--", "linewidth": 1, "label": "second order"}
 STYLES = {"SSMOOR": ("s", "#cc3311"), "MD&D": ("D", "#e69f00"), "independent": ("^", "#009e73")}

@@ -314,9 +314,12 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
     if start is not None and end is not None:
         lean = start + 2 * math.pi if start < critical - math.pi else start
         if (lean - critical) * (end - critical) <= 0.0:
-            return _none(f"No cable passes {angle}.", "Set two angles on the same side of it.")
+            return _none(
+                f"No cable can pass through {angle}.",
+                "Set two angles on the same side of this angle.",
+            )
         return _none(
-            "Between these two angles no cable rises from A to B in that sense.",
+            "No cable with these two angles rises from A to B.",
             "Check which end is which, and the sign of the distance if it is given.",
         )
     return _none(
@@ -363,7 +366,9 @@ def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibr
             return None
         below = max(below, 0.0)
     if below is None or length is None:
-        return family("A straight cable at the critical angle has these at any other size.")
+        return family(
+            "A straight cable at the critical angle can have these quantities at any length."
+        )
     rise = length * sine
     distance = length * math.cos(angle)
     return ChartSolution(angle, angle, below, below + rise, rise, distance, length, 0.0)

@@ -196,7 +196,10 @@ def linear_tension_ratio(
     here, there = (np.asarray(value, float) - mean for value in (angle, start))
     ratio = np.sin(there) / np.sin(here)
     if not np.all((ratio > 0.0) & (np.abs(here) < pi) & (np.abs(there) < pi)):
-        raise ValueError("the angles must lie on the same side of the straight cable's, within π")
+        raise ValueError(
+            "the angles must be on the same side of the angle of the straight cable, less than π "
+            "away"
+        )
     return np.exp(power * np.log(ratio) + rate * (here - there))
 
 
@@ -240,7 +243,9 @@ def unequal_cable(
         return straight_cable(arcs, tension, mean, weight, tangential_drag * np.cos(mean))
     side, away = (1.0 if angle > mean else -1.0), abs(angle - mean)
     if not away < pi:
-        raise ValueError("the angle at the body must lie within π of the straight cable's")
+        raise ValueError(
+            "the angle at the body must differ by less than π from that of the straight cable"
+        )
     start = -np.log(np.tan(0.5 * away))
     load = hypot(weight, normal_drag)
     widest = 10.0 / (1.0 + power + abs(rate))  # the tension grows by no more than e^10

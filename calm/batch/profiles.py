@@ -191,7 +191,7 @@ def solve_profiles(
     batch = Batch(mooring)
     if is_record(u):
         if any(each is not None for each in (v, depth, w)):
-            raise TypeError("a record contains the whole current; leave out v, depth and w")
+            raise TypeError("a record contains the whole current; omit v, depth and w")
         levels, east, north, up = _recorded(mooring, u)
         return batch.solve(east, north, levels, up, workers=workers)
     if v is None or depth is None:

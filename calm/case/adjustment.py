@@ -65,10 +65,12 @@ class Adjustment:
 
     @property
     def unit(self) -> str:
+        """SI unit of the parameter."""
         return DIMENSIONS[self.dimension].unit
 
     @property
     def labels(self) -> tuple[str, ...]:
+        """Labels of the parts that the parameter changes."""
         return tuple(part.label for part in self.parts)
 
 
@@ -260,7 +262,7 @@ def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[floa
             raise UsageError(f"--between: `{text}` {error}") from None
     low, high = ends
     if not low < high:
-        raise UsageError(f"--between: {texts[0]} is not below {texts[1]}")
+        raise UsageError(f"--between: {texts[0]} must be below {texts[1]}")
     least = change.range[0] if change.bounded else low
     if low < least:
         limit = with_unit(least, change.unit)

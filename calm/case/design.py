@@ -570,7 +570,7 @@ class Result:
         installed.
         """
         form = type(self).plot_form
-        assert form is not None, "a design is read by calm.load"
+        assert form is not None, "use calm.load to read a design"
         try:
             return form(self, ax)
         except ModuleNotFoundError as missing:
@@ -589,7 +589,7 @@ class Result:
         from xarray import load_dataset
 
         form = type(self).netcdf_form
-        assert form is not None, "a design is read by calm.load"
+        assert form is not None, "use calm.load to read a design"
         return load_dataset(BytesIO(form(self)))
 
     def _repr_html_(self) -> str | None:

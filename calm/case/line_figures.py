@@ -41,6 +41,7 @@ class LineFigures:
 
     @property
     def count(self) -> int:
+        """Number of pieces."""
         return len(self.upper)
 
     @property
@@ -74,6 +75,7 @@ class LineFigures:
 
     @property
     def greatest_tension(self) -> Floats:
+        """(n,) maximum tension in each piece [N]."""
         tension = self.solution.tension
         within = np.maximum.reduceat(tension[:-1], self._first)
         greatest: Floats = np.maximum(within, tension[self._last])[self._ahead]
@@ -195,6 +197,7 @@ class NodeFigures:
 
     @property
     def tension(self) -> Floats:
+        """(k,) tensions [N]."""
         return self.solution.tension
 
     @property

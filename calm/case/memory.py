@@ -67,6 +67,7 @@ class NoMemory(Memory):
         return NoMemory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
+        """Return the result of the solver for its arguments."""
         return solver(*given, **named)
 
 

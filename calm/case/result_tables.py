@@ -83,6 +83,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def names(cls) -> list[str]:
+        """Return the names of the columns, in table order."""
         return [each.name for each in fields(cls.record)]
 
     @classmethod
@@ -148,6 +149,7 @@ class ColumnTable(Columnar, Generic[Row]):
         return tuple(map(self.record, *plain))
 
     def head(self, count: int) -> Self:
+        """Return the first rows."""
         return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
 
     def with_row(self, row: Row) -> Self:
@@ -202,6 +204,7 @@ class LineEnd(NamedTuple):
 
     @property
     def height(self) -> float:
+        """Height of the anchor [m]."""
         return self.piece.length or 0.0
 
 
@@ -389,6 +392,7 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
+        """Place of the piece in the file."""
         return self.part.place
 
     @property
@@ -407,7 +411,7 @@ class ClampRow:
 
     part: Clamp = column("the clamp of the file", of_part=lambda clamp: clamp, in_repr=False)
     index: int = column(
-        "number of the piece that it sits on, from 0",
+        "number of the piece with the clamp, from 0",
         _OF_PIECES,
         title="no.",
         unit="",
@@ -416,7 +420,9 @@ class ClampRow:
         at_anchor=lambda on: on.anchor.index,
     )
     use: str = column("the component's id", _OF_PIECES, of_part=lambda clamp: clamp.use)
-    label: str = column("its name in this line", _OF_PIECES, of_part=lambda clamp: clamp.label)
+    label: str = column(
+        "name of the clamp in this line", _OF_PIECES, of_part=lambda clamp: clamp.label
+    )
     depth: float = column(
         "depth of the clamped instrument",
         _IN_BATCHES,
@@ -462,6 +468,7 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
+        """Place of the clamp in the file."""
         return self.part.place
 
     @property

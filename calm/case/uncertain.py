@@ -83,6 +83,7 @@ class Uncertain:
 
     @property
     def failed(self) -> int:
+        """Number of samples without equilibrium."""
         return sum(self.failures.values())
 
     @property

@@ -316,10 +316,12 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
         reason = (
             "has no hull, or no mass or volume to compute its draft"
             if len(afloat) == 1
-            else "are several floats at the surface"
+            else "are at the surface together"
         )
-        state = "just immersed" if riding is None else "at the surface with drag `k_surface`"
-        yield f"{', '.join(afloat)} {reason}; assumed {state}, so the draft is unknown."
+        state = (
+            "it is treated as just immersed" if riding is None else "the drag `k_surface` is used"
+        )
+        yield f"{', '.join(afloat)} {reason}; {state}, so the draft is unknown."
 
 
 def _wind_ignored(result: _Measured, solution: Solution) -> Iterator[str]:

@@ -142,9 +142,9 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
         beside = turning or ends[0][0]
         ending = f"{piece.label} is not torque-balanced and ends at {beside.label}"
         if turning is not None:
-            yield verdict_on(piece, State.PASS, f"{ending}, with a swivel between them.")
+            yield verdict_on(piece, State.PASS, f"{ending}, but there is a swivel between them.")
         else:
-            message = f"{ending}, which tilts in the current, without a swivel between them."
+            message = f"{ending}, which tilts in the current, and there is no swivel between them."
             remedy = "Insert a swivel there, or use wire that is `torque_balanced`."
             yield verdict_on(piece, State.WARN, message, remedy)
 
@@ -337,7 +337,7 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
     yield from _path_obstacles(part, wire)
     if component.drive_force is None:
-        message = f"The drive force of {part.label} is unknown; it may be too weak to climb."
+        message = f"The drive force of {part.label} is unknown, and may be too small to climb."
         yield unknown(part, message, "Set its `drive_force` and `speed`.", lacks="drive_force")
         return
     flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))

@@ -144,10 +144,10 @@ def _sources(component: Component | Outline) -> Iterator[str]:
     if not component.source:
         yield _NO_SOURCE
     if absent := [name for name in component.sources or () if name not in given]:
-        yield f"has a source of {_listed(absent)} but no value"
+        yield f"has a source for {_listed(absent)} but no value"
     searched = component.searched or ()
     if found := [name for name in searched if name in given]:
-        yield f"lists {_listed(found)} under `searched`, but has a value"
+        yield f"lists {_listed(found)} under `searched`, but also has a value"
     if strange := [name for name in searched if name not in known]:
         yield f"lists {_listed(strange)} under `searched`, which a {component.kind} does not have"
 
@@ -159,14 +159,14 @@ def impossible(component: Component) -> Iterator[str]:
     yield from heavy
     dense = mass is not None and volume is not None and mass > ROUNDING * LEAD_DENSITY * volume
     if dense and not heavy:
-        yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
+        yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, which is denser than lead"
     net = component.net_buoyancy
     if component.role == "float" and net < 0.0:
         yield f"has `role: float` but weighs {say('load', -net)} in water"
     if mass is not None and mass * STANDARD_GRAVITY < LIGHTEST_FLOAT * net:
         yield f"weighs {mass:.4g} kg with a buoyancy of {say('load', net)}; no float is so light"
     if rating is not None and rating > DEEPEST_WATER:
-        yield f"has a depth rating of {rating:.5g} m; the deepest sea has {DEEPEST_WATER:g} m"
+        yield f"has a depth rating of {rating:.5g} m; the deepest sea is {DEEPEST_WATER:g} m deep"
     if isinstance(component, Cable):
         yield from _of_a_rope(component)
     elif isinstance(component, Chain) and component.density is None:
@@ -181,7 +181,7 @@ def impossible(component: Component) -> Iterator[str]:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
             has = f"has a buoyancy of {say('load', net)}"
-            yield f"{has}; water of its size weighs {say('load', lift)}"
+            yield f"{has}; water of the same volume weighs only {say('load', lift)}"
         elif isinstance(component, Sphere) and 0.0 < net < LEAST_LIFT * lift:
             yield (
                 f"has a buoyancy of {say('load', net)}; a float with its diameter of "
@@ -190,23 +190,26 @@ def impossible(component: Component) -> Iterator[str]:
         elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
             yield (
                 f"has a mass of {mass:.4g} kg and a net buoyancy of {say('load', net)}: together "
-                f"they exceed the weight of water of its size, {say('load', lift)}"
+                f"they exceed the weight of the same volume of water, {say('load', lift)}"
             )
         elif volume is not None and volume > ROUNDING * envelope:
-            yield f"displaces {volume:.3g} m³, more than its size of {envelope:.3g} m³"
+            yield f"displaces {volume:.3g} m³, more than its outer volume of {envelope:.3g} m³"
     solid = materials.density_of(component.material)
     if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
         weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
         yield (
-            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; its material would "
-            f"weigh {say('load', weight)} there"
+            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; this mass of its "
+            f"material would weigh {say('load', weight)} in water"
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
         slowest, fastest = ANCHOR_SPEEDS
         if not slowest <= speed <= fastest:
             fault = "slow" if speed < slowest else "fast"
-            yield f"sinks at {speed:.2g} m/s by its weight and `kt`; no anchor is so {fault}"
+            yield (
+                f"would sink at {speed:.2g} m/s according to its weight and `kt`; no anchor is so "
+                f"{fault}"
+            )
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 
@@ -251,7 +254,8 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     ):
         yield (
             f"weighs {rope.mass:.4g} kg/m in air and {-net:.4g} N/m in water; the difference "
-            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of water of its diameter"
+            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of the water that it "
+            "displaces"
         )
     else:
         yield from density_out_of_bounds(rope)
@@ -288,8 +292,8 @@ def _drags_out_of_range(component: Component) -> Iterator[str]:
         area = drag_of(component)[0] / (0.5 * REFERENCE_DENSITY)
         if volume > SMALL_BODY and area < (least := LEAST_BODY_DRAG * volume ** (2 / 3)):
             yield (
-                f"has a normal drag area of {area:.2g} m² (coefficient times area); a streamlined "
-                f"body of its volume of {volume:.2g} m³ has {least:.2g} m²"
+                f"has a normal drag area of {area:.2g} m² (coefficient times area); even a "
+                f"streamlined body with the same volume, {volume:.2g} m³, has {least:.2g} m²"
             )
     yield from drag_out_of_bounds(component)
 

@@ -135,6 +135,7 @@ class LegGraph:
 
     @property
     def anchored(self) -> bool:
+        """Whether the design has an anchor."""
         return any(_SEABED in chain for chain in self.chains)
 
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:

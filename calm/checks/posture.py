@@ -343,7 +343,10 @@ def _too_long(leg: Leg) -> str:
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
         return ""
-    return " A line that should stay below the surface is too long for this water: shorten it."
+    return (
+        " If the line should stay below the surface, it is too long for this water depth: shorten "
+        "it."
+    )
 
 
 @rule("watch-circle")

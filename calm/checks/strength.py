@@ -358,7 +358,10 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         holding = held(result)
         holds = f"a friction coefficient of {friction:.4g}{down} holds {say('load', holding)}"
         if holding < 0.0:
-            holds = "the vertical load lifts the anchor, with its factor: no holding"
+            holds = (
+                "the vertical load times the factor exceeds the weight of the anchor, so nothing "
+                "holds it"
+            )
         return f"{load}; {holds}.", _heavier(leg, result.anchor_load.required_weight)
 
     yield Criterion(

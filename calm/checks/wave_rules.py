@@ -129,8 +129,9 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
             yield unknown(piece, message, "Set the `curve` of its `fatigue`, and its loads.")
         elif one.life is not None and one.life_low is not None and one.life_high is not None:
             message = (
-                f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "
-                f"to {_years(one.life_high)}) by {one.curve}; {_years(limit / YEAR)} is required."
+                f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} to "
+                f"{_years(one.life_high)}) according to {one.curve}; {_years(limit / YEAR)} is "
+                "required."
             )
             remedy = (
                 "Use a thicker component, add stretch to the line, or renew the component sooner."

@@ -172,7 +172,7 @@ def _missing_characters(deck: Deck) -> tuple[str, ...]:
         return ()
     where = dict.fromkeys(place for text, place in _texts(deck) if lacking([text]))
     named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs)
-    return (f"The font of the sheets has no {named}, printed as �: in {', '.join(where)}",)
+    return (f"The font of the sheets lacks {named}; � is printed instead in {', '.join(where)}",)
 
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:

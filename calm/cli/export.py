@@ -52,6 +52,6 @@ def export(
     for path, content in beside.items():
         save(path, content)
     for each in exported.lost:
-        narrate(f"{output}: lost: {each}")
+        narrate(f"{output}: not exported: {each}")
     save(output, exported.content)
     return ExitCode.DONE

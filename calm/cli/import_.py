@@ -33,10 +33,10 @@ def import_(
 ) -> ExitCode:
     """Convert designs of other programs to mooring files.
 
-    The program is recognised from the content of the file. All values come from
-    the file. Guesses are marked with comments on their lines, and reported
-    together with omissions. If CALM cannot represent a design, the reason is
-    reported and nothing is written.
+    The program is recognised from the content of the file. Values
+    that the file lacks are guessed. Each guess is marked with a comment on its
+    line, and reported; so are omissions. If CALM cannot represent a design, the
+    reason is reported and nothing is written.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def import_(
             continue
         if strict:
             problems += [
-                Problem(str(file), 0, 0, f"--strict: {each} would be guessed")
+                Problem(str(file), 0, 0, f"--strict: a value would be guessed: {each}")
                 for each in imported.guessed
             ]
         done.append((imported, target))
@@ -145,7 +145,7 @@ def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode
     for sentence in (*found.assigned, *found.doubts):
         narrate(sentence)
     count = len(found.assigned)
-    save(target, found.text.encode(), f": {count} instruments of {file} are assigned")
+    save(target, found.text.encode(), f": {count} instruments of {file} were assigned")
     if json is not None:
         document = {"file": str(file), "output": str(target), "assigned": list(found.assigned),
                     "doubts": list(found.doubts)}  # fmt: skip
@@ -200,9 +200,9 @@ def _tell(imported: Imported, record: Path | None) -> None:
     for remark in imported.guessed:
         narrate(f"{imported.file}: guessed: {remark}")
     for remark in imported.dropped:
-        narrate(f"{imported.file}: left out: {remark}")
+        narrate(f"{imported.file}: omitted: {remark}")
     for match in imported.matched:
-        narrate(f"{imported.file}: {match.name} is {match.entry} of the catalogue")
+        narrate(f"{imported.file}: {match.name} is replaced by {match.entry} of the catalogue")
     if record is not None:
         from calm.records.current_file import open_record
         from calm.records.current_terms import Terms

@@ -201,12 +201,12 @@ def write_copies(
         output.mkdir(parents=True, exist_ok=True)
     for one in instruments:
         if all(point is None for point in one.point):
-            narrate(f"{one.path}: it belongs to no part of the line and is not written")
+            narrate(f"{one.path} matches no part of the line and was not written")
             continue
         name = one.path.name if one.path.suffix == ".nc" else f"{one.path.name}.nc"
         target = output / name if folder else output
         for label in write_depths(one, result, gap, target, sources):
-            narrate(f"{one.path}: `{label}` is not a part of the line; its depth is NaN")
+            narrate(f"{one.path}: `{label}` matches no part of the line, so its depth is NaN")
 
 
 def _separated(text: str | None) -> list[str]:

@@ -72,6 +72,7 @@ class ProgressTeller:
         self._drawn = self._terminal
 
     def clear(self) -> None:
+        """Remove the progress line."""
         if self._drawn:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
             self._drawn = False

@@ -41,11 +41,13 @@ class TabulatedTow:
         return ExitCode.NO_EQUILIBRIUM if failed else ExitCode.DONE
 
     def document(self) -> dict[str, Any]:
+        """The JSON object."""
         from calm.report.tabulation import to_document
 
         return to_document(self.tabulation)
 
     def parts(self) -> list[TerminalPart]:
+        """The table, a row for each speed."""
         from calm.report.tabulation import tabulation_part
 
         return [tabulation_part(self.tabulation)]
@@ -130,6 +132,8 @@ def speed_range(text: str) -> list[float]:
         raise UsageError(f"--speeds: `{text}` has a step of {step:g} m/s; it must be above 0")
     whole = math.floor((last - first) / step + _ROUNDING)
     if whole >= MOST_SPEEDS:
-        raise UsageError(f"--speeds: `{text}` makes more than {MOST_SPEEDS} speeds; widen the step")
+        raise UsageError(
+            f"--speeds: `{text}` makes more than {MOST_SPEEDS} speeds; use a larger step"
+        )
     speeds = (first + number * step for number in range(whole + 1))
     return [*(each for each in speeds if last - each > _ROUNDING * step), last]

@@ -143,7 +143,7 @@ def _sea_states(
     chosen = [options.option(name) for name, each in waves.items() if each is not None]
     if scatter is not None and (chosen or not named):
         complaints.append(
-            f"--scatter contains heights and periods; leave out {', '.join(chosen) or 'the file'}"
+            f"--scatter contains heights and periods; omit {', '.join(chosen) or 'the file'}"
         )
     elif scatter is None and path.is_file() and not named and chosen:
         complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own height and period")

@@ -143,6 +143,7 @@ class Deck:
 
     @property
     def file(self) -> MooringFile:
+        """File as read, in the environment of the sheets."""
         return self.result.file
 
     @cached_property

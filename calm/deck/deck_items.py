@@ -60,6 +60,7 @@ class DeckItem:
 
     @property
     def label(self) -> str:
+        """Label of the part."""
         return self.part.label
 
     @property
@@ -69,6 +70,7 @@ class DeckItem:
 
     @property
     def serials(self) -> tuple[str, ...]:
+        """Serial numbers as designed."""
         return self.part.serials
 
     @property
@@ -94,6 +96,7 @@ class DeckItem:
 
     @property
     def role(self) -> str:
+        """Role of the component."""
         return self.part.component.role
 
     @property
@@ -163,6 +166,7 @@ class DeckRow:
 
     @property
     def joints(self) -> tuple[DeckItem, ...]:
+        """All connecting hardware of the row."""
         return (*self.between, *self.after)
 
     @property
@@ -177,6 +181,7 @@ class DeckRow:
 
     @property
     def first(self) -> DeckItem:
+        """First item of the row."""
         return self.items[0]
 
     @property

@@ -46,6 +46,7 @@ class DepthReached:
 
     @property
     def label(self) -> str:
+        """Label of the piece or clamp."""
         return self.part.label
 
 

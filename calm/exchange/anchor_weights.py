@@ -35,10 +35,10 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
             continue
         anchor.figures.pop("mass", None)
         anchor.guesses.pop("mass", None)
-        reason = "no weight in the file; 1.5 × (V + H/0.6) in this current"
+        reason = "the file has no weight; this is 1.5 × (V + H/0.6) in this current"
         anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
         if pull is None:
-            reason = "no weight in the file; this value holds any line"
+            reason = "the file has no weight; this weight is enough for any line"
             anchor.figures["weight"] = _HOLDS
         elif given is not None:
             reason = (

@@ -47,11 +47,11 @@ class _Page:
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
     """Write a design as a mooring file; return its text and the guesses in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
-    page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
+    page.remark(f"Imported from {of}, by CALM {__version__}, with the values of that file.")
     for note in design.notes:
         page.remark(one_line(note))
     if design.dropped:
-        page.add("# Left out:")
+        page.add("# Omitted:")
         for remark in design.dropped:
             page.remark(f"- {one_line(str(remark))}")
     page.add()

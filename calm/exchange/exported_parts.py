@@ -18,8 +18,7 @@ from calm.physics.line import Floats
 from calm.physics.seawater import REFERENCE_DENSITY
 
 AS_A_POINT = (
-    "the drag of the float at its midpoint and by its inclination: the float is a point with the "
-    "pull computed by CALM"
+    "the size and inclination of the float: it is a point with the force that CALM computed"
 )
 """Loss reported for a float that is exported by `ExportedLine.float_as_point`."""
 
@@ -126,6 +125,7 @@ class PartLoad:
     along: float = 0.0
 
     def merge(self, other: PartLoad) -> None:
+        """Add another sum."""
         self.names += other.names
         self.net += other.net
         self.mass += other.mass

@@ -50,8 +50,8 @@ def export_file(
         line = _exported_line(read.leg, lambda: read.solve().leg)
         return chosen.write(ExportedDesign(line.name, (line,)))
     if not chosen.writes_nets:
-        others = ", ".join(f"`--to {one.name}`" for one in file_formats() if one.writes_nets)
-        raise UsageError(f"{path} is a net of legs; {others} takes it, {to} single lines")
+        others = " or ".join(f"`--to {one.name}`" for one in file_formats() if one.writes_nets)
+        raise UsageError(f"{path} is a net of legs, which {to} does not support; use {others}")
     legs = tuple(
         replace(
             _exported_line(found.leg, partial(_known, found)),
@@ -70,7 +70,7 @@ def written_format(to: str) -> FileFormat:
         chosen = None
     if chosen is None or chosen.write is None:
         written = [one.name for one in file_formats() if one.write is not None]
-        what = f"--to: `{to}` is not a program that CALM writes for"
+        what = f"--to: `{to}` is not a format that CALM writes"
         raise UsageError(unknown(what, to, written))
     return chosen
 
@@ -86,7 +86,7 @@ def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
     """Convert a mooring or a tow for export; `solve` finds its equilibrium."""
     file, water, line = leg.file, leg.water, leg.line
     if file.environment.fluid == "air":
-        raise UsageError(f"{file.path} is towed in air; the other programs know only water")
+        raise UsageError(f"{file.path} is towed in air; the other programs support only water")
     secant = _secants(leg, solve)
     # depth of the middle of each piece, in a tow
     depths = np.cumsum(line.length) - line.length / 2.0
@@ -209,18 +209,18 @@ def _levels(water: Water, deepest: float) -> Levels:
 def _omitted(leg: Leg) -> tuple[str, ...]:
     """Return the features of a mooring file that no other program can represent."""
     file = leg.file
-    omitted = ["limits of the design check, strengths, ratings and tilts of components"]
+    omitted = ["limits of the design check; strengths, depth ratings and tilt limits of components"]
     if file.solver.strumming is not None:
-        omitted.append("strumming: cables have their drag without vibration")
+        omitted.append("strumming: cables have their drag at rest")
     anchor = leg.bottom.anchor
     if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
-        omitted.append("the slope of the seabed: it is level there, as deep as the deepest anchor")
+        omitted.append("the slope of the seabed: it is level, at the depth of the deepest anchor")
     if file.solver.drag == "reynolds":
         omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":
         omitted.append(f"`friction: {file.solver.friction}`")
     if any(leg.line.elongation):
-        omitted.append("elongation tables: the stiffness at the tension found here is written")
+        omitted.append("elongation tables: the stiffness at the computed tension is written")
     if any(leg.line.lift) or any(leg.line.clamp_lift):
         omitted.append("lift of towed bodies")
     return tuple(omitted)

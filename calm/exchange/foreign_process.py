@@ -42,11 +42,13 @@ def read_apart(
     there.close()
     try:
         if not here.poll(MOST_SECONDS):
-            raise ValueError(f"its reader takes longer than {MOST_SECONDS:g} s")
+            raise ValueError(f"reading takes longer than {MOST_SECONDS:g} s")
         answer: tuple[_Found, str] = here.recv()
     except EOFError:
         child.join()
-        raise ValueError(f"its reader ended with {child.exitcode}") from None
+        raise ValueError(
+            f"the process that reads it ended with exit code {child.exitcode}"
+        ) from None
     finally:
         child.kill()
         child.join()
@@ -66,7 +68,7 @@ def _read(
     try:
         pipe.send((reader(*given, **named), ""))
     except MemoryError:
-        pipe.send((None, f"it needs more than {MOST_MEMORY / 1e9:g} GB"))
+        pipe.send((None, f"reading needs more than {MOST_MEMORY / 1e9:g} GB of memory"))
     except BaseException as error:  # a Rust panic is not an `Exception`
         pipe.send((None, " ".join(str(error).split()) or type(error).__name__))
 

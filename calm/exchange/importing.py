@@ -83,9 +83,9 @@ def import_file(
     options = options or model.ImportOptions()
     chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and not chosen.takes_elements:
-        raise refused(path, f"is of {chosen.program}; --elements is for lists")
+        raise refused(path, f"is a file of {chosen.program}; --elements is only for lists")
     if options.sheet is not None and chosen.name != "table":
-        raise refused(path, f"is of {chosen.program}; --sheet is for workbooks")
+        raise refused(path, f"is a file of {chosen.program}; --sheet is only for workbooks")
     assert chosen.read is not None
     design = chosen.read(path, options)
     levels = 0 if design.water is None else len(design.water.current)
@@ -95,11 +95,11 @@ def import_file(
     if environment is not None:
         design.environment = environment_lines(environment, output)
         if design.water is not None:
-            what = f"the water of the file: {environment.name} replaces it"
+            what = f"the water of the file, which {environment.name} replaces"
             design.dropped.append(model.Remark("environment", what))
         design.record = None
     elif design.water is None and design.tow is None:
-        message = "has no environment; give one: --environment FILE (depth, current, density)"
+        message = "has no environment; use --environment FILE for depth, current and density"
         raise refused(path, message)
     sink_what_stays_under_water(design, output)
     matched = match_catalogue_entries(design) if match_catalogue else ()
@@ -121,14 +121,14 @@ def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFor
         return _format_named(name)
     content = read_head(path, _HEAD)
     if all(re.search(key, content, re.MULTILINE) for key in _OWN_KEYS):
-        raise refused(path, f"is a mooring file of CALM already; solve it with: calm run {path}")
+        raise refused(path, f"is already a mooring file of CALM; solve it with: calm run {path}")
     for each in (formats := _readable()):
         if each.detect is not None and each.detect(content):
             return each
     if listed:
         return file_format("table")
     programs = ", ".join(f"{each.name} ({each.program})" for each in formats)
-    raise refused(path, f"is not a file of a program that CALM reads: {programs}")
+    raise refused(path, f"is not in a format that CALM reads: {programs}")
 
 
 def _format_named(name: str) -> FileFormat:
@@ -180,4 +180,4 @@ def environment_lines(path: Path, output: Path) -> list[str]:
         target = os.path.join(path.parent, current["file"])
         found["current"] = {**current, "file": os.path.relpath(target, str(output.parent))}
     _, *below = WritingStyle().entry("environment", found, 1).splitlines()
-    return [f"environment:  # that of {one_line(path.name)}", *below]
+    return [f"environment:  # from {one_line(path.name)}", *below]

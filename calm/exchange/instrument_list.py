@@ -156,7 +156,7 @@ def _listed(
     if {"true", "own"} <= times.keys():
         late = float((times["true"] - times["own"]) / np.timedelta64(1, "us")) / 1e6
     if constant := figures.get("constant"):
-        late, remark = None, f"clock {in_words(constant)} from the deployment on"
+        late, remark = None, f"clock {in_words(constant)} since the deployment"
     checked = next((times[kind] for kind in ("checked", "true", "end") if kind in times), None)
     nominal = figures.get("nominal", seabed - figures.get("height", nan))
     name, serial = texts.get("name", ""), texts.get("serial", "")
@@ -197,7 +197,9 @@ def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
             names = pair[2].lower().split(":") if pair[1].lower() == "columns" else names
         elif names and cells:
             if len(cells) != len(names) or "z" not in names or no_number(cells[names.index("z")]):
-                raise refused(path, f"the row is not {':'.join(names)}", line=number)
+                raise refused(
+                    path, f"the row does not match the columns {':'.join(names)}", line=number
+                )
             texts = {_kind_of(name): text for name, text in zip(names, cells, strict=True)}
             texts["name"] = f"RODB {texts.get('name', '')}"
             texts["end"] = f"{header.get('end_date', '')} {header.get('end_time', '')}".strip()
@@ -235,7 +237,7 @@ def _of_table(
             except QuantityError as error:
                 problems.append(table.header.problem(str(error), j))
     if not {"serial", "nominal", "height"} & places.keys():
-        message = f"there is no column for serial numbers or nominal depths: write {_EXAMPLE}"
+        message = f"there is no column for serial numbers or nominal depths; an example: {_EXAMPLE}"
         problems.append(table.header.problem(message))
     found = []
     for row in table.whole_rows(problems):

@@ -195,7 +195,7 @@ def _spread(name: str, first: float, last: float, step: float) -> MatValue:
     """Return the numbers of a range, including its limit if a step ends there."""
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= _MOST:
-        raise ValueError(f"the range `{name}` has {count:g} numbers")
+        raise ValueError(f"the range `{name}` has {count:g} numbers, too many to read")
     return first + step * np.arange(int(count))
 
 
@@ -318,7 +318,7 @@ class MatVariables(dict[str, MatValue]):
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
     """Return True, but raise ValueError if a variable of this shape is too large."""
     if math.prod(shape) > _MOST:
-        raise ValueError(f"`{name}` has {math.prod(shape)} elements")
+        raise ValueError(f"`{name}` has {math.prod(shape)} elements, too many to read")
     return True
 
 

@@ -14,7 +14,7 @@ from calm.whole_file import read_text
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
 _FIGURES = ("length", "buoyancy", "material", "width", "diameter", "drag")
 _OFF = 1e-6  # m: distance by which a clamp may lie beyond its piece
-_NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
+_NOTE = "moords solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
 
 
 def is_moords(content: bytes) -> bool:
@@ -33,7 +33,7 @@ def read_moords(path: Path) -> model.ImportedDesign:
     """
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
-        raise refused(path, "is not a design of moords: its headings are others")
+        raise refused(path, "does not have the headings of a moords design")
     if len(rows) > model.MOST_PIECES:
         raise refused(
             path, f"has {len(rows)} rows; a file with more than {model.MOST_PIECES} cannot be read"
@@ -52,7 +52,11 @@ def read_moords(path: Path) -> model.ImportedDesign:
         if row.get("bool_clampon") == "True":
             host, length = items[-1], items[-1].extent
             at = length - float(row["height_along_inline"] or 0.0)
-            guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
+            guess = (
+                ""
+                if -_OFF <= at <= length + _OFF
+                else "its position in the file is beyond the end of the piece"
+            )
             host.clamp(rigid(element), min(max(at, 0.0), length), guess)
         else:
             items.append(piece_of(element))
@@ -66,7 +70,7 @@ def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement
     figures = {key: _number(row, key, place, problems) for key in keys}
     is_line, length, lift = row.get("bool_line") == "True", figures["length"], figures["buoyancy"]
     if is_line and length <= 0.0:
-        problems.append(f"row {place}, {row['name']}: a line needs its length")
+        problems.append(f"row {place}, {row['name']}: the length of the line is missing")
         length = 1.0
     material = figures["material"]
     known = is_line and 1.0 <= material <= len(MODULI)
@@ -95,7 +99,7 @@ def _number(row: dict[str, str], key: str, place: int, problems: list[str]) -> f
         value = math.nan
     if math.isfinite(value):
         return value
-    problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
+    problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`, which is not a number")
     return 0.0
 
 

@@ -65,9 +65,9 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
         reading.refuse((), "needs `waterdepth`")
     if not line:
         message = (
-            f"lists {len(beside)} instruments and no line: its floats, releases and anchor, with"
+            f"lists {len(beside)} instruments but no line; list floats, releases and anchor under"
         )
-        message += " `hab` or `length` and a name in `label`, belong under `inline`"
+        message += " `inline`, each with `hab` or `length` and a name in `label`"
         reading.refuse((), message)
     if len(line) + len(beside) > model.MOST_PIECES:
         reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
@@ -78,7 +78,9 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
         "oceanarray", str(document.data.get("name") or path.stem), [], None
     )
     _hang(beside, _strung(line, parts, design), parts)
-    design.water = model.ImportedWater(depth, guesses={"current": "the file has none: still water"})
+    design.water = model.ImportedWater(
+        depth, guesses={"current": "the file has no current; still water is assumed"}
+    )
     design.heading = _heading(reading)
     if problems:
         raise InputError(sorted(problems, key=lambda problem: problem.line))
@@ -154,6 +156,7 @@ class _Entry:
 
     @property
     def is_anchor(self) -> bool:
+        """Whether the entry is an anchor."""
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
@@ -197,7 +200,7 @@ class _Reading:
         """Return the items of a list from the top down."""
         items: Any = self.document.data.get(key) or []
         if not isinstance(items, list):
-            self.refuse((key,), f"{key}: a list is needed")
+            self.refuse((key,), f"`{key}` must be a list")
             return []
         read = (self._entry(item, (key, index)) for index, item in enumerate(items))
         found = [entry for entry in read if entry is not None]
@@ -218,7 +221,7 @@ class _Reading:
         if middle is None and down is not None and self.depth is not None:
             middle = self.depth - down
         if not 1.0 <= (repeat or 1.0) <= model.MOST_PIECES:
-            self.refuse((*place, "repeat"), f"repeat: 1 to {model.MOST_PIECES} are read")
+            self.refuse((*place, "repeat"), f"`repeat` must be from 1 to {model.MOST_PIECES}")
             return None
         instrument = str(item.get("instrument") or "").strip()
         label = str(item.get("label") or words[0]).strip()
@@ -257,7 +260,9 @@ class _Parts:
         if names not in self._known:
             self._known[names] = self._found(names, instrument)
             if self._known[names] is None:
-                message += f'; add it to --elements FILE, or give its id: --define "{names[0]}=ID"'
+                message += (
+                    f'; add it to --elements FILE, or name a component: --define "{names[0]}=ID"'
+                )
                 self.reading.refuse(place, message)
         return self._known[names]
 
@@ -279,7 +284,7 @@ class _Parts:
             if self.catalogue.entry(name) is not None:
                 return self._entry(name, name), ""
         if found := instrument and Index(self.catalogue).search(instrument):
-            guess = f"the first that `calm catalog list {instrument}` finds"
+            guess = f"the first result of `calm catalog list {instrument}`"
             return self._entry(instrument, found[0].id), guess
         return None
 
@@ -295,7 +300,7 @@ class _Parts:
         anchor = model.ImportedComponent(names[0], "anchor", {"length": 0.0})
         if mass:
             anchor.figures["mass"] = float(mass[1])
-            anchor.guesses["mass"] = "read from its label, taken as steel"
+            anchor.guesses["mass"] = "the mass is from the label; steel is assumed"
         return anchor
 
 
@@ -320,7 +325,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
             model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))
         )
         nominal, height = [0.0, 0.0], [0.0, 0.0]
-        design.guessed.append(model.Remark("line.anchor", "the file has none"))
+        design.guessed.append(model.Remark("line.anchor", "the file has no anchor; one is added"))
     below, roped = "the anchor", 0.0
 
     def add(item: model.ImportedPiece, at: float, extent: float) -> None:
@@ -348,16 +353,17 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
                 between = f"between {below} and `{entry.label}`, {gap:.6g} m above it"
                 if (rope := parts.rope(entry, between)) is not None:
                     piece = model.ImportedPiece(
-                        rope[0], gap, guess="as long as the heights leave room"
+                        rope[0], gap, guess="the length follows from the heights in the file"
                     )
                     add(piece, nominal[-1], gap)
             elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
                 message = (
-                    f"its lines below are {roped:.6g} m long, its height says {roped + gap:.6g} m"
+                    f"the lines below it are {roped:.6g} m long, but its height requires "
+                    f"{roped + gap:.6g} m"
                 )
                 design.guessed.append(model.Remark(entry.label, message))
             elif gap < -_CLOSE:
-                message = f"overlaps the piece below by {-gap:.3g} m; it is placed on top"
+                message = f"overlaps the piece below by {-gap:.3g} m and is moved to its top"
                 design.guessed.append(model.Remark(entry.label, message))
                 lower = nominal[-1]
             at, below, roped = lower, f"`{entry.label}`", 0.0
@@ -396,7 +402,7 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
         off = abs(float(height[own + 1]) - at - top)
         guess = found[1]
         if off > _CLOSE:
-            guess = f"{guess}; " * bool(guess) + f"moved by {off:.3g} m onto the nearest line"
+            guess = f"{guess}; " * bool(guess) + f"moved by {off:.3g} m to the nearest line"
         host = strung.items[own]
         host.clamp(found[0], round(at, 3), guess, f"{entry.label} {wanted:g}", entry.serial)
 

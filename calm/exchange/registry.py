@@ -107,7 +107,7 @@ def register_format(
     suffixes : file name suffixes that the program expects, such as ".mat"; by default any
     """
     if name in _registered:
-        raise ValueError(f"there is a format `{name}` already")
+        raise ValueError(f"the format `{name}` already exists")
     _registered[name] = FileFormat(
         name, program or name, detect, read, write, takes_elements, writes_nets, tuple(suffixes)
     )

@@ -368,6 +368,7 @@ class CatalogueColumn:
     decimals: int = 0
 
     def shown(self, value: float | None) -> str:
+        """Return the formatted value; empty if unknown."""
         return "" if value is None else f"{value * self.scale:.{self.decimals}f}"
 
 

@@ -103,7 +103,7 @@ class Checks(definition.Model):
         "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
     )
     backup_margin: Annotated[float, _SHARE, Limit(_URI)] = definition.described(
-        "buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
+        "remaining buoyancy after any break, as a share of the weight lifted", 0.1, default=0.1
     )
     minimum_rise_speed: Annotated[float, _SPEED, Limit()] = definition.described(
         "speed of the ascent after release", "0.3 m/s", default=0.3
@@ -129,7 +129,7 @@ class Checks(definition.Model):
         "share of a surface float's buoyancy that must remain", 0.3, default=0.3
     )
     rating_margin: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "margin to keep to a depth rating", "100 m", default=100.0
+        "margin below a depth rating", "100 m", default=100.0
     )
     maximum_knockdown: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
         definition.optional("maximum knockdown of the top", "50 m")
@@ -160,7 +160,7 @@ class Checks(definition.Model):
     )
     accept: tuple[AcceptKeys, ...] = definition.described(
         "findings that this design accepts, each with its reason",
-        [{"rule": "strength", "component": "glass *", "reason": "hung on chain"}],
+        [{"rule": "strength", "component": "glass *", "reason": "the chain carries the load"}],
         default=(),
     )
 
@@ -261,7 +261,7 @@ class AcceptKeys(definition.Model):
         definition.described("rule of the design check", "knockdown")
     )
     reason: Reason = definition.described(
-        "reason for accepting the finding", "no load is published; hung on chain"
+        "reason for accepting the finding", "no load is published; the chain carries the load"
     )
     component: definition.Text | None = definition.optional(
         "label of the line, or a pattern of labels; by default all", "glass *"

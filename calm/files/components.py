@@ -96,17 +96,19 @@ class Cable(Flexible):
     finish: Literal["smooth", "rough", "very-rough"] | None = optional(
         "surface finish of a cable", "rough"
     )
-    torque_balanced: bool | None = optional("whether a wire rope does not rotate under load", True)
+    torque_balanced: bool | None = optional(
+        "true for a wire rope that does not rotate under load", True
+    )
     elongation: Elongation | None = optional(
         "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
     dynamic_stiffness: definition.PositiveForce = optional(
-        "EA under the rapid loads of waves, larger than that under a slow load", "600 kN"
+        "EA under the rapid loads of waves, larger than EA under a slow load", "600 kN"
     )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
-    ] = optional("strain that remains in a rope after loading, at every tension", "4 %")
+    ] = optional("lasting strain of a rope after its first loading, added at every tension", "4 %")
 
     @property
     def net_buoyancy(self) -> float:
@@ -156,7 +158,10 @@ class Cable(Flexible):
         elif self.stiffness is not None:
             raise ValueError("has both `stiffness` and `elongation`; give only one")
         elif self.breaking_load is None:
-            raise ValueError("`elongation` needs `breaking_load`: its loads are shares of that")
+            raise ValueError(
+                "`elongation` needs `breaking_load`, because its loads are fractions of the "
+                "breaking load"
+            )
         return self
 
     def strain_under(self, load: float) -> float:
@@ -394,8 +399,8 @@ def odd_overrides(
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (
-            f"`mass` of {use} is overridden, but not its net force in water; override it, "
-            "too, if it changes"
+            f"`mass` of {use} is overridden, but not its net force in water; override that as well "
+            "if it changes"
         )
     if isinstance(defined, Anchor) and isinstance(component, Anchor) and "weight" in given:
         share = 1.0 - CATALOGUE_DENSITY / (defined.material_density or STEEL_DENSITY)
@@ -405,6 +410,6 @@ def odd_overrides(
     fibre = fibre_of(defined.material)
     if fibre is not None and fibre_of(component.material) is None:
         yield (
-            f"`material: {component.material}` of {use}, which is {fibre.name}: it is no "
+            f"`material: {component.material}` replaces the {fibre.name} of {use}, which is no "
             "longer checked as a fibre rope"
         )

@@ -267,12 +267,12 @@ class FatigueKeys(Model):
         "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
         "sots-shackle", "sots-peened-shackle", "sots-link", "sots-wire",
     ] | None = described(
-        "curve of DNV-OS-E301, API RP 2SK or SOTS, if not the default of its kind",
+        "curve of DNV-OS-E301, API RP 2SK or SOTS, if not the default for the kind",
         "dnv-stud-chain",
         default=None,
     )  # fmt: skip
     corrosion: Annotated[float, QuantityField("length", at_least=0)] = described(
-        "reduction of its diameter by the end of the deployment, applied from the first day",
+        "loss of diameter by the end of the deployment, applied from the first day",
         "1 mm",
         default=0.0,
     )
@@ -302,29 +302,29 @@ class Definition(Model):
     searched: tuple[str, ...] | None = optional(
         "keys for which no source was found", ["breaking_load"]
     )
-    prefer: Text | None = optional("id of the better documented entry of the same product", "sbe37")
+    prefer: Text | None = optional("id of a better documented entry for the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
     items: Annotated[int | None, Field(ge=1)] = optional(
-        "number of equal items it consists of, each with its own serial number, such as two "
+        "number of equal items in the component, each with its own serial number, such as two "
         "releases in parallel",
         2,
     )
     depth_rating: PositiveLength = optional("maximum depth of use", "2000 m")
-    working_load: PositiveForce = optional("load it may carry in use, e.g. 20 kN", "20 kN")
-    breaking_load: PositiveForce = optional("load at which it breaks, e.g. 40 kN", "40 kN")
+    working_load: PositiveForce = optional("maximum load in use, e.g. 20 kN", "20 kN")
+    breaking_load: PositiveForce = optional("load at which the part breaks, e.g. 40 kN", "40 kN")
     opening_load: PositiveForce = optional(
         "maximum load under which a release opens, e.g. 10 kN", "10 kN"
     )
     grip: PositiveForce = optional(
-        "force at which its clamp slips along the line, e.g. 1 kN", "1 kN"
+        "force at which the clamp of the part slips along the line, e.g. 1 kN", "1 kN"
     )
     insulated: bool | None = optional(
-        "whether plastic or rubber separates its metal from others: jaws of its clamp, bushes "
-        "in its eyes; by default true for clamps and false for pieces",
+        "true if plastic or rubber, such as clamp jaws or bushes in the eyes, insulates the metal "
+        "from adjacent metals; by default true for clamps and false for pieces",
         True,
     )
     max_tilt: Annotated[float | None, TILT] = optional(
-        "tilt above which its data are not reliable", "20 deg"
+        "tilt above which the data of the part are not reliable", "20 deg"
     )
     warn_tilt: Annotated[float | None, TILT] = optional("tilt that causes a warning", "15 deg")
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
@@ -341,7 +341,7 @@ class Definition(Model):
         ],
     )
     fatigue: FatigueKeys | None = optional(
-        "fatigue curve in waves, if not the default of its kind",
+        "fatigue curve in waves, if not the default for the kind",
         {"curve": "dnv-stud-chain"},
     )
     slack: Literal["allowed"] | None = optional(

@@ -134,7 +134,7 @@ class Fouling(Model):
     """
 
     depth: Annotated[float, definition.POSITIVE_LENGTH] = described(
-        "depth of its lower limit", "50 m"
+        "depth down to which the growth extends", "50 m"
     )
     thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0, at_most=1)] = (
         described("thickness of the growth on all sides, e.g. 20 mm", "20 mm")
@@ -191,7 +191,7 @@ _Levels = tuple[Annotated[float, _WATER_DEPTH], Annotated[float, _WATER_DEPTH]]
 
 def _two_depths(value: object) -> object:
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise QuantityError("is two depths, of low and of high water: [98 m, 104 m]")
+        raise QuantityError("must be two depths, at low and at high water: [98 m, 104 m]")
     return value
 
 
@@ -208,7 +208,7 @@ class TowEnvironmentKeys(Model):
         default=water.USUAL_DENSITY["water"],
     )
     gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
-        optional("acceleration", "9.81 m/s^2")
+        optional("acceleration of gravity", "9.81 m/s^2")
     )
     current: Annotated[
         Annotated[water.TableKeys, Tag("table")]
@@ -304,8 +304,8 @@ def read_environment(
     notices.extend(doubts)
     if isinstance(density, SeaWater) and position is None:
         notices.append(
-            "Density from temperature and salinity without a `position`: taken at 45 degrees of "
-            "latitude, in sea water of the reference composition."
+            "Without a `position`, the density is computed from temperature and salinity for 45 "
+            "degrees of latitude and the reference composition of sea water."
         )
     found = {"name": name, "density": density, "current": current, "position": position}
     more = {"seas": seas, "seabed": seabed, "doubts": tuple(doubts)}
@@ -391,8 +391,8 @@ def _check_depth_range(keys: EnvironmentKeys, section: SourceMapping) -> None:
     depth, (low, high) = keys.depth, keys.depth_range or (keys.depth, keys.depth)
     if not low <= depth <= high:
         message = (
-            f"`depth_range` is low and high water, with `depth`, {depth:g} m, between them: "
-            f"e.g. [{depth - 2:g} m, {depth + 2:g} m]"
+            f"`depth_range` must be the depths at low and at high water, with `depth`, {depth:g} "
+            f"m, between them, e.g. [{depth - 2:g} m, {depth + 2:g} m]"
         )
         section.refuse(("depth_range",), message, key=True)
 
@@ -402,7 +402,7 @@ def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
     if keys.wind is None:
         return
     if keys.fluid == "air":
-        message = "`wind` blows over water; in air the wind is the `current`"
+        message = "a tow in air has no `wind`; its wind is the `current`"
         section.refuse(("wind",), message, key=True)
     elif keys.wind.surface_drift and keys.wind.drift_depth is None and keys.depth is None:
         message = "`surface_drift` needs `drift_depth`, as `depth` is not given"

@@ -114,10 +114,10 @@ class ItemKeys(Equipment):
         {"load": "2 kN", "length": "480 m"},
     )
     top_depth: Annotated[float, definition.LENGTH] = described(
-        "depth wanted in still water for the top of the line", "105 m"
+        "required depth of the top of the line in still water", "105 m"
     )
     body_depth: Annotated[float, definition.LENGTH] = described(
-        "depth wanted in a tow for the lower end of this cable, at the tow's speed", "70 m"
+        "required depth of the lower end of this cable in a tow, at the speed of the tow", "70 m"
     )
     clamps: tuple[ClampKeys, ...] = described(
         "instruments fixed to this piece", [{"use": "sbe37", "at": "20 m"}]

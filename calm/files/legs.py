@@ -30,7 +30,7 @@ ONE_LEG_ONLY = (
 )
 NET_SURE = (
     "single lines; for the effect of drag, buoyancy or current on a net, use `calm run --explain`, "
-    "or solve it with other values in a copy of its file or by `with_` in Python"
+    "or solve the net with other values, in a copy of its file or by `with_` in Python"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -78,7 +78,7 @@ class AnchoredKeys(Model):
 
     at: _At = (0.0, 0.0)
     depth: Annotated[float, QuantityField("length", above=0)] | None = optional(
-        "depth of the seabed there, if not the water depth", "44 m"
+        "depth of the seabed at the anchor, if not the water depth", "44 m"
     )
 
 
@@ -181,7 +181,7 @@ def read_legs(
         top.refuse(("tow",), "a tow has no `legs`", key=True)
     found = top.data["legs"]
     if not isinstance(found, dict) or not found:
-        top.refuse(("legs",), "`legs` must name legs, each with its `line`")
+        top.refuse(("legs",), "`legs` must contain legs by name, each with its `line`")
         return (), ()
     if len(found) > MOST_LEGS:
         top.refuse(("legs",), f"more than {MOST_LEGS} legs", key=True)
@@ -227,7 +227,10 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         given = sorted(end.model_fields_set)
         if len(given) != 1 and name in own.data and own.data[name] != "free":
             each = " and ".join(f"`{one}`" for one in given) or "nothing"
-            refuse((name,), f"`{name}` gives {each}; give one of `join`, `anchor` and `held`")
+            refuse(
+                (name,),
+                f"`{name}` has {each}; it must have exactly one of `join`, `anchor` and `held`",
+            )
         ends.append(end)
     upper, lower = ends
     anchors = [piece for piece in pieces if isinstance(piece.component, Anchor)]

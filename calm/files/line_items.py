@@ -159,7 +159,7 @@ class LineReader:
         elif "length_at" in item.data:
             length, load = self._measured(item, component)
         else:
-            need = "a cable or chain needs it"
+            need = "every cable or chain needs a length"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
             message = (
@@ -196,7 +196,7 @@ class LineReader:
         """Return the unstretched length [m] of a cable measured under a load, and this load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
-            item.refuse(("length_at",), f"`length_at` must be as `{example}`")
+            item.refuse(("length_at",), f"`length_at` must have the form `{example}`")
             return math.nan, 0.0
         measured = validate(item_keys.LengthAt, item.child("length_at"))
         if measured is None:
@@ -216,12 +216,12 @@ class LineReader:
         if self._towed:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
         if foreign in item.data:
-            message = f"`{foreign}` belongs to {home}; here it is `{key}`"
+            message = f"`{foreign}` is only for {home}; use `{key}` here"
             item.refuse((foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
             # depths count from the surface; a tow in air may end above it
             kind = QuantityField("length") if self._in_air else LENGTH
-            return self._quantity(item, key, kind, "`length: fit` needs it")
+            return self._quantity(item, key, kind, "`length: fit` needs a depth")
         if key in item.data:
             item.refuse((key,), f"`{key}` is only for `length: fit`", key=True)
         return None
@@ -247,7 +247,10 @@ class LineReader:
                 message = "a profiler has no `at`: it travels `between` two stops"
                 clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
-                message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
+                message = (
+                    f"`at: {shown(clamp.data['at'])}` is beyond the end of the piece, which is "
+                    f"{length:g} m long"
+                )
                 clamp.refuse(("at",), message)
             if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
@@ -376,10 +379,12 @@ class LineReader:
             return None
         hidden = self._catalogue.hidden(use)
         if hidden:
-            notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
+            notice = f"{use}: the definition in {entry.place} overrides that in {hidden.place}"
             if entry.section.base is not None:
                 keys = ", ".join(f"`{key}`" for key in entry.replaces)
-                notice = f"{use}: {keys} of {entry.place} replaces that of {hidden.place}"
+                notice = (
+                    f"{use}: {entry.place} overrides {keys} of the definition in {hidden.place}"
+                )
             if entry.section.base is None or entry.replaces:
                 self._notices += [notice] * (notice not in self._notices)
         return entry

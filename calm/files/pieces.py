@@ -41,6 +41,7 @@ class Place:
 
     @property
     def is_clamp(self) -> bool:
+        """Whether this place is that of a clamp."""
         return self.clamp >= 0
 
     @property

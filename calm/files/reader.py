@@ -268,7 +268,7 @@ def _in_order(problems: list[Problem], path: str) -> list[Problem]:
 def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
     for piece in pieces:
         if isinstance(piece.component, Anchor):
-            message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"
+            message = f"`{piece.use}` is an anchor, but the line of a tow ends at the towed body"
             top.refuse_at(piece.line, piece.column, message)
 
 

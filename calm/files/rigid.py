@@ -30,7 +30,10 @@ Inclination = Annotated[
 ]
 Surface = Annotated[
     Literal["painted", "smooth"] | None,
-    described("`smooth` may follow the drag curves; `painted` keeps the constant", "smooth"),
+    described(
+        "`smooth` allows drag curves by Reynolds number; `painted` keeps the constant coefficient",
+        "smooth",
+    ),
 ]
 SphereCoefficient = Annotated[
     float | None, definition.COEFFICIENT, described("drag coefficient of a sphere", 0.5)
@@ -76,7 +79,9 @@ def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
         except (TypeError, ValueError):
             at = 0.0
         if not 0.0 < at < inf:
-            raise ValueError(f"`{key}` is no angular frequency in rad/s, such as `0.5: [1, 0 deg]`")
+            raise ValueError(
+                f"`{key}` is not an angular frequency in rad/s, such as `0.5: [1, 0 deg]`"
+            )
         if not isinstance(row, list) or len(row) not in (2, 4):
             raise ValueError(
                 "a row has two figures, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
@@ -177,7 +182,7 @@ class Rigid(definition.Definition):
             if abs(self.buoyancy - computed) > definition.DISAGREEMENT * largest:
                 raise ValueError(
                     f"`buoyancy` is {self.buoyancy:g} N but `mass` and `volume` give "
-                    f"{computed:.5g} N, more than 1 % apart; leave one of the three out"
+                    f"{computed:.5g} N, more than 1 % apart; remove one of the three"
                 )
         definition.refuse_weight_above_mass(self.mass, self.net_buoyancy)
         if isinstance(self.hull, Displacement):

@@ -140,8 +140,8 @@ RULES = {
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
         "`fishbite_depth`, 1000 m: a warning",
-        "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more, far "
-        "from the shores; the limits of water depth and latitude are defaults of CALM",
+        "Berteaux, Prindle & May, OCEANS '87: fish bite ropes from the surface to 1000 m and "
+        "deeper, far from the shores; the limits of water depth and latitude are defaults of CALM",
         "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -171,8 +171,8 @@ RULES = {
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
-        "Practice of mooring groups, 50 to 100 kgf above the release; no value is published, so "
-        "the limits are defaults of CALM"),
+        "Mooring groups keep 50 to 100 kgf above the release; no value is published, so the "
+        "limits are defaults of CALM"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
         "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
@@ -275,8 +275,8 @@ RULES = {
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "load",
-        "minimum net buoyancy of the part that remains connected to the release, over all breaks "
-        "and losses of a float considered (below)",
+        "minimum net buoyancy of the section with the release, over all breaks and float losses "
+        "that are considered (see below)",
         "the larger of `backup_margin`, 0.1, times the weight lifted and its drag at "
         "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
         "most 50 m above the release; a warning for a surface mooring without floats below its "
@@ -305,7 +305,7 @@ RULES = {
     "tangling": RuleText("Tangling", "",
         "whether a part overtakes the parts ahead in the fall or the rise, in loops of 2 m or more",
         "a warning",
-        "A default of CALM: no part overtakes the parts ahead",
+        "A default of CALM: parts that overtake others may tangle with them",
         _ONCE),
 }  # fmt: skip
 """All rules by id, in the order of the report."""

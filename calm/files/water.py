@@ -37,7 +37,7 @@ class TableKeys(Model):
     """A table: columns with a name and a unit, and rows of values."""
 
     columns: tuple[Text, ...] = described(
-        "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
+        "column names with units: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
         ["depth m", "speed m/s", "toward deg"],
     )
     rows: tuple[tuple[Text | None, ...], ...] = described(

@@ -72,7 +72,7 @@ class WaveKeys(Model):
             raise ValueError(
                 f"`{shown(self.spectrum)}` is none of {', '.join(SPECTRA)}; did you mean `{near}`?"
                 if near
-                else "a measured `spectrum` has its own height and period; leave them out"
+                else "a measured `spectrum` has its own height and period; remove these keys"
             )
         if named and height is None and (self.scatter is None or period is not None):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")

@@ -51,7 +51,7 @@ class GriddedRecord:
     Attributes
     ----------
     fields : samples and fitted field of each quantity
-    names : name of each quantity in the dataset
+    names : variable of each quantity in the dataset
     levels : (k,) depths of the levels [m]
     cards : summary of each file that was read
     notes : notes on the input, in sentences
@@ -315,19 +315,22 @@ def sample_notes(
         one, here = series[i], f"`{labels[at]}` was at {usual:.0f} m"
         if abs(one.pressure - usual) > max(ANOTHER_PLACE, 0.1 * usual):
             yield (
-                f"{one.source}: the median of its pressures is {one.pressure:.0f} dbar, where "
-                f"{here}: are two files exchanged, or is its unit wrong?"
+                f"{one.source}: the median of its pressures is {one.pressure:.0f} dbar, but "
+                f"{here}: check for exchanged files or a wrong unit"
             )
         if one.called in labels and one.called != labels[at]:
-            yield f"{one.source}: given as `{labels[at]}`, and calls itself `{one.called}`"
+            yield (
+                f"{one.source} is assigned to `{labels[at]}`, but names its instrument "
+                f"`{one.called}`"
+            )
     if name == "temperature":
         known = [column[np.isfinite(column)] for column in samples.value.T]
         means = np.array([column.mean() if column.size else np.nan for column in known])
         if pair := exchanged_pair(means):
             upper, lower = (samples.label[i] for i in pair)
             yield (
-                f"{name}: only if `{upper}` and `{lower}` are exchanged do the means of all "
-                f"{len(means)} instruments fall or rise with depth: are two files exchanged?"
+                f"{name}: the means of all {len(means)} instruments would fall or rise steadily "
+                f"with depth if `{upper}` and `{lower}` were exchanged; check for exchanged files"
             )
     if dropped := sum(series[i].dropped for i in points):
         yield f"{name}: {dropped} values excluded because of their flag"

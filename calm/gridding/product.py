@@ -48,9 +48,9 @@ def parse_levels(text: str) -> NDArray[np.float64]:
     if by_step:
         first, step, last = levels.tolist()
         if step <= 0.0 or last < first:
-            raise UsageError(f"--levels: `{text}` does not go down; {wanted}")
+            raise UsageError(f"--levels: `{text}` does not increase; {wanted}")
         if (last - first) / step >= MOST_LEVELS:
-            raise UsageError(f"--levels: `{text}` are more than {MOST_LEVELS} levels")
+            raise UsageError(f"--levels: `{text}` makes more than {MOST_LEVELS} levels")
         levels = first + step * np.arange(int((last - first) / step + 1e-9) + 1)
     return check_levels(levels)
 
@@ -143,7 +143,7 @@ def grid_layout(
         "summary": (
             f"{', '.join(QUANTITIES_MEASURED[name].long_name for name in fields)} of the mooring "
             f"{title} on {len(levels)} fixed levels: measured at the moving depths of its "
-            f"{len(labels)} instruments, put onto levels by a Gaussian process over depth and "
+            f"{len(labels)} instruments, mapped to the levels by a Gaussian process over depth and "
             "time, each value with its standard deviation."
         ),
         "keywords": "EARTH SCIENCE > OCEANS > OCEAN TEMPERATURE, EARTH SCIENCE > OCEANS > "
@@ -151,7 +151,10 @@ def grid_layout(
         "keywords_vocabulary": GCMD,
         "source": "subsurface mooring",
         "processing_level": "Data interpolated",
-        "comment": "Flag 8: between instruments; 3: beyond them, or little is known; 9: no value",
+        "comment": (
+            "Flag 8: between instruments; 3: beyond the instruments, or poorly constrained; 9: no "
+            "value"
+        ),
         "QC_indicator": "mixed",
         "instrument": ", ".join(labels),
         "calm": __version__,

@@ -79,7 +79,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
         deviation.append(np.asarray(dataset[spread].values, np.float64))
         clamps = len(mine) if dimension == "clamp" else clamps
     if not depth or "time" not in dataset.variables:
-        raise UnreadableError("is not a result of calm motion: it has no depths with their labels")
+        raise UnreadableError("is not a result of calm motion: it has no labelled depths")
     time = read_times(dataset, "time")
     whole = np.hstack(depth)
     if len(time) < 2 or not np.isfinite(whole).any():
@@ -143,7 +143,10 @@ def common_times(
     if first > last:
         spans = ((solved[0], solved[-1]), (min(k[0] for k in known), max(k[-1] for k in known)))
         texts = [" to ".join(np.datetime_as_string(one, "m") for one in span) for span in spans]
-        raise UsageError(f"no time is common: depths are of {texts[0]}, values of {texts[1]}")
+        raise UsageError(
+            f"depths and values have no common time: the depths cover {texts[0]}, the values "
+            f"{texts[1]}"
+        )
     if step is None:
         inside: Times = depths.time[(depths.time >= first) & (depths.time <= last)]
         return inside
@@ -151,7 +154,7 @@ def common_times(
     wide = step.astype("m8[ns]")
     begin = since + -(-(first - since) // wide) * wide
     if (last - begin) // wide >= MOST:
-        raise UsageError(f"--step: more than {MOST} times; take a longer one")
+        raise UsageError(f"--step makes more than {MOST} times; set a longer step")
     times: Times = np.arange(begin, last + np.timedelta64(1, "ns"), wide)
     if len(times) < 2:
         raise UsageError("--step is longer than the time for which depths and values are known")
@@ -180,7 +183,7 @@ def gather(
     for at, below in each:
         if each.count((at, below)) > 1:
             who = ", ".join(series[i].source for i in points if points[i] == at)
-            raise UsageError(f"two series are of `{depths.places.label[at]}`: {who}; remove one")
+            raise UsageError(f"two series belong to `{depths.places.label[at]}`: {who}; remove one")
     order = sorted(points, key=lambda i: still[points[i]] + series[i].below)
     shape = len(time), len(order)
     value, depth, deviation = (np.full(shape, np.nan) for _ in range(3))

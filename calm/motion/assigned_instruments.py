@@ -81,13 +81,13 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     deployed = mooring.file.deployed
     date = None if deployed is None else deployed.date
     since = np.datetime64("1950") if date is None else parse_time(date)
-    doubts = [f"{one.where}: {one.name} {one.serial} is at no place of the line"
+    doubts = [f"{one.where}: {one.name} {one.serial} matches no part of the line"
               for i, one in enumerate(listed) if i not in points]  # fmt: skip
     twice = {at for at in points.values() if [*points.values()].count(at) > 1}
     for i, at in sorted(points.items(), key=lambda pair: line.still[pair[1]]):
         one, label, still = listed[i], line.label[at], float(line.still[at])
         if at in twice:
-            doubts.append(f"{one.where}: two instruments are `{label}`: neither is assigned")
+            doubts.append(f"{one.where}: two instruments match `{label}`, so neither is assigned")
             continue
         row = rows.setdefault(label, {"label": label})
         if one.serial:
@@ -110,10 +110,11 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
                 f"{one.where}: {name} is {abs(one.nominal - still):.0f} m from its nominal depth"
             )
     if timeless:
-        when = "" if date is None else f", after the deployment at {date}"
+        when = "" if date is None else f", which must be after the deployment ({date})"
         doubts.append(
-            f"{list_of_instruments.name}: {len(timeless)} clock offsets are remarks only, and "
-            f"correct no times: add a column `clock checked`, the time of the comparison{when}"
+            f"{list_of_instruments.name}: clock offsets of {len(timeless)} of {len(listed)} "
+            "instruments are remarks only and correct no times: add a column `clock checked` with "
+            f"the time of the comparison{when}"
         )
     kept = [row for row in rows.values() if len(row) > 1]
     try:

@@ -56,14 +56,14 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("component",),
         ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
-    "current_factor": ((), ("1", "factor on the current, estimated", {})),
+    "current_factor": ((), ("1", "estimated factor on the current", {})),
     "current_doubt": (("level",), ("1", "probability that the current of the level is false", {})),
     "residual": (("sensor",), ("m", "measured less estimated depth of the sensor", {})),
     "plain_depth": (
         ("sensor",),
         (
             "m",
-            "depth of the sensor by the currents alone, nothing fitted",
+            "depth of the sensor computed from the currents alone, without fitting",
             {"standard_name": "depth", "positive": "down"},
         ),
     ),
@@ -137,7 +137,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     made = f"{made.replace(' batch', ' motion')}: {sources}"
     attributes: Attributes = {
         **layout.attributes,
-        "title": f"{name}: where its parts were",
+        "title": f"{name}: motion of its parts",
         **ARCHIVED,
         **coverage(measured.time, Forward(mooring, {}).still, place),
         **about(mooring),
@@ -145,7 +145,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
         "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
         "keywords_vocabulary": GCMD,
         "processing_level": "Data interpolated",
-        "comment": "Depths of a mooring line, estimated from its statics; x, y from the anchor",
+        "comment": "Depths of a mooring line, estimated from its statics; x and y from the anchor",
         "instrument": ", ".join(measured.label),
         "history": "\n".join([made, *read]),
     }

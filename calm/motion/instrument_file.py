@@ -109,7 +109,7 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     try:
         points, notes = points_of(everyone, line)
     except UsageError as error:
-        raise UsageError(f"--onto: no instrument of {given} is found: {error}") from None
+        raise UsageError(f"--onto: {given}: {error}") from None
     each = iter(range(len(everyone)))
     return [replace(file, point=tuple(points.get(next(each)) for _ in file.who)) for file in found
             ], notes  # fmt: skip
@@ -121,8 +121,8 @@ def _read(path: Path, seabed: float) -> Instruments:
     with cf_files.opened(path) as dataset:
         if groups := cf_files.groups_of(path):
             raise cf_files.UnreadableError(
-                f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of "
-                "its instruments as a file of their own"
+                f"has groups ({', '.join(groups)}), which would be missing from a copy; save the "
+                "variables of its instruments in a separate file"
             )
         clock = next((name for name in _TIMES if name in dataset.variables), None)
         if clock is None or dataset[clock].ndim != 1:
@@ -148,8 +148,8 @@ def _who(
     alone = who_along(dataset, None, seabed, path.name)
     if not alone[0].known:
         raise cf_files.UnreadableError(
-            "has no labels of instruments (`instrument` or `label`), and no serial number or "
-            "nominal depth of one"
+            "has neither labels (`instrument` or `label`) nor serial numbers nor nominal depths of "
+            "instruments"
         )
     return None, tuple(alone)
 
@@ -161,15 +161,15 @@ def _refuse_depths(dataset: Dataset, path: Path, time: str, along: str | None) -
         counted.append(str(along))
     if counted:
         raise UsageError(
-            f"--onto: `{counted[0]}` is a dimension of {path}; rename it: a variable of two "
-            "dimensions cannot have the name of one"
+            f"--onto: `{counted[0]}` is a dimension of {path}; rename it, because a variable with "
+            "two dimensions cannot have the name of one of them"
         )
     there = [
         name for name in names
         if name in dataset.variables and (along is not None or time in dataset[name].dims)
     ]  # fmt: skip
     if there:
-        raise UsageError(f"--onto: {path} has `{there[0]}` already; rename it there")
+        raise UsageError(f"--onto: {path} already has `{there[0]}`; rename that variable")
 
 
 def write_depths(

@@ -161,7 +161,10 @@ def hung_currents(
     hung = np.array([bool(each) for each in label])
     moved = replace(one, label=label, depth=np.where(hung, np.nan, one.depth))
     named = ", ".join(each for each in label if each)
-    return moved, [*sentences, f"{one.source}: the currents of {named} move with the line"]
+    return moved, [
+        *sentences,
+        f"{one.source}: {named} move with the line, and so do their currents",
+    ]
 
 
 CERTAIN = 2.0
@@ -197,14 +200,14 @@ def matched_by_place(
         raise UsageError(f"--match: no nominal height or depth is given for {', '.join(lacking)}")
     if len(given) > len(places):
         raise UsageError(
-            f"--match: {len(given)} sensors, but the line has {len(places)} instruments"
+            f"--match: there are {len(given)} sensors, but the line has {len(places)} instruments"
         )
     try:
         points, _ = in_order(given, line, places, 1.0, 0.0, CERTAIN)
     except UsageError as error:
         raise UsageError(f"--match: {error}") from None
     return points, [
-        f"the sensor at {given[i].nominal:.1f} m of {given[i].source} is `{line.label[at]}`"
+        f"the sensor at {given[i].nominal:.1f} m in {given[i].source} matches `{line.label[at]}`"
         for i, at in points.items()
     ]
 
@@ -246,17 +249,17 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
         order = {placed[i]: at for i, at in order.items()}
         found |= order
         lost += [
-            f"{series[placed[i]].named}, nominally at {series[placed[i]].nominal:.0f} m, is at no "
-            f"place of {line.name}"
+            f"{series[placed[i]].named}, with a nominal depth of {series[placed[i]].nominal:.0f} "
+            f"m, matches no part of {line.name}"
             for i in left
         ]
-        each = [f"{series[i].named} is `{line.label[at]}`" for i, at in sorted(order.items())]
+        each = [f"{series[i].named} to `{line.label[at]}`" for i, at in sorted(order.items())]
         if each:
-            sentences.append(f"by nominal depths, in their order: {'; '.join(each)}")
+            sentences.append(f"matched by nominal depth, from the top down: {'; '.join(each)}")
     if not found:
         raise UsageError(
-            "no instrument is a part of the line: " + "; ".join(lost[:8])
-            + "; name a file of one instrument by LABEL=FILE"
+            "no instrument matches a part of the line: " + "; ".join(lost[:8])
+            + "; if a file holds one instrument, name its part with LABEL=FILE"
         )  # fmt: skip
     return {i: found[one] for i, one in enumerate(first) if one in found}, sentences + lost
 
@@ -284,10 +287,10 @@ def nowhere(one: Identity, line: LinePlaces) -> str:
     """Return a message that an instrument matches no point of the line."""
     name = one.label or one.serial
     if not name:
-        return f"{one.named}: neither label, serial number nor nominal depth is known"
+        return f"{one.named} has no label, serial number or nominal depth"
     near = nearest(name, line.label)
     hint = f"; did you mean `{near}`?" if near else ""
-    return f"`{name}` of {one.source} is not in {line.name}{hint}"
+    return f"`{name}` of {one.source} matches no part of {line.name}{hint}"
 
 
 def in_order(
@@ -323,14 +326,14 @@ def in_order(
     best, second = aligned(few, many, depths, spacings)
     if second is not None and second[0] - best[0] < clear:
         differs = next(k for k in range(len(few)) if best[1][k] != second[1][k])
-        row, may_be = best[1][differs], "one or another part of the line"
+        row, may_be = best[1][differs], "more than one part of the line"
         if few is one:
             row = differs
             may_be = " or ".join(f"`{line.label[down[way[1][row]]]}`" for way in (best, second))
         raise UsageError(
-            f"{series[rows[row]].named}, nominally at {one[row]:.0f} m, may be {may_be}: its file "
-            "has no label or serial number that the line has. Give serial numbers in the mooring "
-            "file, or a file each as LABEL=FILE"
+            f"{series[rows[row]].named}, with a nominal depth of {one[row]:.0f} m, could be "
+            f"{may_be}: its file has no label or serial number of the line. Set serial numbers in "
+            "the mooring file, or name the part of each file with LABEL=FILE"
         )
     pairs = enumerate(best[1]) if few is one else ((j, i) for i, j in enumerate(best[1]))
     found = {rows[row]: down[at] for row, at in pairs}

@@ -185,6 +185,7 @@ class Columns:
 
     @property
     def count(self) -> int:
+        """Number of unknowns."""
         return int(self.offset.stop)
 
     @property
@@ -277,6 +278,7 @@ class CurrentSmoother:
     # --- the line
 
     def currents(self, state: Floats) -> tuple[Floats, Floats]:
+        """Return (n, K) u and v at the knots."""
         count = len(self.knots.depth)
         whole = self.mean + state
         return whole[:, :count], whole[:, count:]
@@ -437,6 +439,7 @@ class CurrentSmoother:
 
     @property
     def at_levels(self) -> tuple[Floats, Floats]:
+        """Estimated currents (n, k), u and v, at the levels [m/s]."""
         u, v = self.currents(self.state[:, self.columns.current])
         return u @ self.knots.level.T, v @ self.knots.level.T
 
@@ -612,6 +615,7 @@ class CurrentSmoother:
 
     @cached_property
     def best(self) -> Forward:
+        """Mooring with the estimated factors."""
         return self.forward(self.factor)
 
     def read(self, times: slice) -> ReadCurrents:

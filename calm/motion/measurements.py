@@ -286,7 +286,7 @@ def joined(
     if sea_level is not None:
         tide = interpolated(*sea_level, time, gap)
         if not np.isfinite(tide).any():
-            raise UsageError("--sea-level: it covers no time of the currents")
+            raise UsageError("--sea-level: the file covers none of the times of the estimate")
         tide = np.nan_to_num(tide - np.nanmean(tide))
     when = [one.time[one.false] for one in currents if one.false is not None]
     measured = MooringMeasurements(
@@ -305,8 +305,8 @@ def joined(
     both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
     if currents and not both.any():
         raise UsageError(
-            "no time has both a current and a pressure; the currents have no values, the records "
-            "do not overlap, or their samples are further apart than --gap"
+            "no time has both a current and a pressure: either the currents have no values, or the "
+            "records do not overlap, or their samples are further apart than --gap"
         )
     return measured
 
@@ -395,7 +395,7 @@ def read_currents(
             )
         if label:
             if len(mine.label) > 1:
-                raise UsageError(f"{path} has {len(mine.label)} levels; `{label}=` names only one")
+                raise UsageError(f"{path} has {len(mine.label)} levels; `{label}=` is for one")
             mine = replace(mine, label=(label,), depth=np.full_like(mine.depth, np.nan))
         found.append(_plausible(mine, maximum_speed))
     return found
@@ -409,9 +409,10 @@ def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasure
     at, level = (int(index[0]) for index in np.nonzero(false))
     where = one.label[level] or f"{one.depth[at, level]:g} m"
     note = (
-        f"{false.sum()} currents left out as implausible (above `maximum_speed`, "
-        f"{maximum_speed:g} m/s): the first at {np.datetime_as_string(one.time[at], unit='m')}, "
-        f"{where}: {np.hypot(one.u[at, level], one.v[at, level]):.5g} m/s"
+        f"implausible currents were excluded (above `maximum_speed`, {maximum_speed:g} m/s): "
+        f"{false.sum()} of {np.isfinite(one.u).sum()}, the first "
+        f"{np.hypot(one.u[at, level], one.v[at, level]):.5g} m/s at {where}, "
+        f"{np.datetime_as_string(one.time[at], unit='m')}"
     )
     u, v = (np.where(false, np.nan, each) for each in (one.u, one.v))
     return replace(

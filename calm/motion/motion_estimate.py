@@ -67,7 +67,7 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     several, some = int((count >= 2).sum()), int((count >= 1).sum())
     if several >= RARE * some:
         return []
-    shared = f"{several} of {some} times have the pressures of two sensors or more"
+    shared = f"only {several} of {some} times have pressures of two or more sensors"
     if not several and not currents:
         spans = [
             f"{label} {' to '.join(np.datetime_as_string(measured.time[there][[0, -1]], 'D'))}"
@@ -75,8 +75,8 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
             if there.any()
         ]
         raise UsageError(
-            f"--pressures: {shared}: the records share no time ({'; '.join(spans)}). Give "
-            "currents, records of one deployment, or a longer --gap"
+            f"--pressures: {shared}: the records do not overlap ({'; '.join(spans)}). Add "
+            "currents, use records of one deployment, or set a longer --gap"
         )
     return [shared]
 
@@ -167,7 +167,8 @@ class RecoveredMooring:
             raise UsageError(not_among("--match", self.match, _MATCHES))
         if position is None:
             raise UsageError(
-                f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
+                f"{mooring.file.path} has no `position`; its latitude is needed to convert "
+                "pressures to depths"
             )
         seabed, line = float(mooring.water.depth), matching.places_of(mooring)
         wanted = sensors.parse_flags(self.flags)
@@ -226,7 +227,7 @@ class RecoveredMooring:
         notes += [f"{label} {reason}" for label, reason in lost.items()]
         measured = without(measured, list(lost))
         if not measured.label:
-            raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+            raise UsageError("--pressures: no usable sensor remains: " + "; ".join(notes))
         notes += shared_times(without(measured, self.hidden), bool(self.currents))
         self.measured, more = torn(measured, distances_of(mooring), self.hidden)
         self.notes = notes + more
@@ -244,7 +245,7 @@ class RecoveredMooring:
         off += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
         off += ["all sensors: 10.13 dbar, the pressure of the air"] * absolute
         if off:
-            self.source["corrected"] = "taken off: " + "; ".join(off)
+            self.source["corrected"] = "corrected for: " + "; ".join(off)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
         """Return the points of the sensors that are not ignored.

@@ -123,22 +123,23 @@ class Fault:
             100.0 * abs(one - 1.0) for one in (self.value, self.low, self.high)
         )
         text = {
-            "currents": f"they measure {share} of the current",
-            "speed": f"its speeds are {share} of the true current"
+            "currents": f"they measure {share} times the true speed",
+            "speed": f"its speeds are {share} times the true speed"
             + ": its direction or its unit is wrong" * (not 0.25 < self.value < 4.0),
             "slows": (
-                f"its speeds decrease to {share} of the true current by the end; its rotor may be "
-                "fouled"
+                f"its speeds decrease to {share} times the true speed by the end of the record; "
+                "its rotor may be fouled"
             ),
             "buoyancy": (
-                f"the net buoyancy of its floats is {share} of the value in the file; a float may "
-                "be missing, flooded or wrongly listed"
+                f"the net buoyancy of its floats is {share} times the value in the file; a float "
+                "may be missing, flooded or wrongly listed"
             ),
             "length": f"its cables are {longer:.1f} % ({low:.1f} to {high:.1f}) "
             f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
-            "drag": f"its drag is {share} of the assumed drag",
+            "drag": f"its drag is {share} times the assumed drag",
             "fouling": (
-                f"its drag changes to {share} of its initial value by the end, probably by fouling"
+                f"its drag changes to {share} times its initial value by the end of the record, "
+                "probably because of fouling"
             ),
             "moved": f"the whole mooring is {abs(self.value):.1f} m {band} "
             f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on; it has probably "
@@ -212,10 +213,10 @@ def alone_remarks(common: Common) -> list[str]:
     if not far and common.worst < WORST:
         return []
     return [
-        f"{LINE}: it is inconsistent with the pressures (its cables would be "
-        f"{100.0 * abs(length - 1.0):.1f} % {'longer' if length > 1.0 else 'shorter'} than in the "
-        f"file, and the error of the line {100.0 * common.worst:.0f} % of the knockdown); a "
-        "length, a float or the water depth is wrong"
+        f"{LINE}: it is inconsistent with the pressures; a length, a float or the water depth is "
+        f"wrong (in the best fit, the cables are {100.0 * abs(length - 1.0):.1f} % "
+        f"{'longer' if length > 1.0 else 'shorter'} than in the file, and the remaining error is "
+        f"{100.0 * common.worst:.0f} % of the knockdown)"
     ]
 
 

@@ -67,7 +67,7 @@ def read_sensors(
             mine = _from_csv(path, latitude)
         if label:
             if len(mine) > 1:
-                raise UsageError(f"{path} holds {len(mine)} sensors; `{label}=` names only one")
+                raise UsageError(f"{path} holds {len(mine)} sensors; `{label}=` is for one")
             mine = [replace(mine[0], label=label)]
         found += mine
     labels = [one.label for one in found if one.label]
@@ -105,10 +105,13 @@ def _from_arrays(
     if _NOT_MEASURED.search(words):
         flagged = flag_variable(dataset, name)
         if flagged is None or not {found.axis} < set(flagged.dims):
-            raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
+            raise UnreadableError(
+                f"`{name}` is not a measurement according to its attributes: {words[:120]}"
+            )
         # with several instruments, variable attributes describe no single instrument
         note = (
-            f"`{name}` says `{words[:80]}` of one instrument or more: what counts is by its flags"
+            f"`{name}` is described as `{words[:80]}` for at least one instrument; its flags "
+            "decide which values are used"
         )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
@@ -134,8 +137,8 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
         ):
             return name, False
     raise UnreadableError(
-        "holds no pressures: a variable of standard name sea_water_pressure is looked for, then "
-        "one of depths over time"
+        "has no pressures: CALM looks for a variable with the standard name sea_water_pressure, "
+        "then for a depth that varies in time"
     )
 
 
@@ -177,9 +180,9 @@ def parse_flags(text: str) -> frozenset[int]:
     except ValueError:
         raise UsageError(f"--flags: `{text[:40]}` is not a list of flags; write 1,2") from None
     if instrument_series.INTERPOLATED in flags:
-        raise UsageError("--flags: 8 marks what was interpolated, which is never a measurement")
+        raise UsageError("--flags: 8 marks interpolated values, which are not measurements")
     if not flags <= set(range(MISSING)):
-        raise UsageError(f"--flags: `{text[:40]}`: flags are from 0 to 8")
+        raise UsageError(f"--flags: `{text[:40]}`: flags must be from 0 to 8")
     return flags
 
 
@@ -206,17 +209,19 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:
-            message = "has several columns; the sea level is one: `time,level[m]`"
+            message = "has several columns; only one is allowed: `time,level[m]`"
             raise InputError([Problem(str(path), 1, 1, message)])
         _refuse_far(path, table.time, table.values[:, 0])
         return table.time, table.values[:, 0]
     with cf_files.opened(path) as dataset:
         names = instrument_series.named(dataset, _STANDARD, ())
         if not names:
-            raise UnreadableError("holds no height of the sea surface")
+            raise UnreadableError("has no sea-surface height")
         found = instrument_series.readings(dataset, names, frozenset(range(MISSING)))
         if found.along is not None:
-            raise UnreadableError(f"`{names[0]}` is of several places: {found.along}")
+            raise UnreadableError(
+                f"`{names[0]}` has values at several places (dimension `{found.along}`)"
+            )
         level = found.values[0][:, 0] * factor_of(dataset[names[0]], "length")
         _refuse_far(path, found.time, level)
         return found.time, level
@@ -228,9 +233,8 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
     if far.any():
         at = int(far.argmax())
         message = (
-            f"is {level[at]:g} m at {np.datetime_as_string(time[at], 's')}: no height of the sea "
-            f"surface is more than {FURTHEST:g} m from the others; leave empty what was not "
-            "measured"
+            f"the sea level is {level[at]:g} m at {np.datetime_as_string(time[at], 's')}, more "
+            f"than {FURTHEST:g} m from its median; leave missing values blank"
         )
         raise InputError([Problem(str(path), 0, 0, message)])
 
@@ -281,7 +285,7 @@ def plausible(
         if 3 * again.sum() >= again.size and 2 * differ.sum() > differ.size:
             raise UsageError(
                 f"--pressures: `{sensor.label}` has several depths at {again.sum()} of its times: "
-                "these are readings of several instruments; give the file of each"
+                "they are readings of several instruments; give one file for each"
             )
         when = np.datetime_as_string(sensor.time[again][0], "s")
         notes.append(
@@ -294,8 +298,8 @@ def plausible(
     deck = sensor.value[sensor.value < min(least, 2.0 * AIR)]
     if len(deck) >= FEWEST and np.percentile(np.abs(deck - AIR), 75.0) < ON_DECK:
         notes.append(
-            f"{sensor.label}: reads {np.median(deck):.1f} m on deck: its pressures are absolute, "
-            "and 10.13 dbar, the air's, are taken off"
+            f"{sensor.label} reads {np.median(deck):.1f} m on deck, so its pressures are absolute; "
+            "the pressure of the air, 10.13 dbar, was subtracted"
         )
         sensor = replace(sensor, value=sensor.value - AIR)
     stuck = _stuck(sensor.value)
@@ -303,16 +307,16 @@ def plausible(
         first, last = np.flatnonzero(stuck)[[0, -1]]
         begins, ends = (np.datetime_as_string(sensor.time[at], "m") for at in (first, last))
         notes.append(
-            f"{sensor.label}: has the same value at {stuck.sum()} of its {stuck.size} times, from "
-            f"{begins} to {ends}, and is left out there"
+            f"{sensor.label} has the same value at {stuck.sum()} of its {stuck.size} times, from "
+            f"{begins} to {ends}; these readings were excluded"
         )
         sensor = replace(sensor, value=np.where(stuck, np.nan, sensor.value))
     wrong = (sensor.value < least) | (sensor.value > greatest)
     if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.value).sum():
         first = int(wrong.argmax())
         notes.append(
-            f"{sensor.label}: {wrong.sum()} of its readings cannot be from its place, "
-            f"{place:.1f} m, and are left out: the first is {sensor.value[first]:.1f} m, at "
+            f"{sensor.label}: readings that are impossible at its depth of {place:.1f} m were "
+            f"excluded: {wrong.sum()}, the first {sensor.value[first]:.1f} m at "
             f"{np.datetime_as_string(sensor.time[first], 's')}"
         )
         sensor = replace(sensor, value=np.where(wrong, np.nan, sensor.value))
@@ -359,9 +363,10 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
     if abs(alike - AIR) > NEAR_AIR:
         return []
     return [
-        f"all sensors are {alike:.1f} m or more below their places at their least: these pressures "
-        "look absolute, 10.13 dbar being the air's. `--correct air` takes it off; else they are "
-        "taken as they stand, the depth of the water being wrong, and all depths are from there"
+        f"even at their shallowest, all sensors are {alike:.1f} m or more below their depths in "
+        "the mooring file. Their pressures appear to be absolute: `--correct air` subtracts the "
+        "pressure of the air, 10.13 dbar. Without it, the pressures are used as they are, and the "
+        "excess counts as an error of the water depth"
     ]
 
 
@@ -397,14 +402,14 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
         if (far or units) and not any(f"`{label}`" in one for one in exchanged):
             doubted = "sign" if least[j] < -MISPLACED else f"unit ({units or 'bar, kPa?'})"
             far_off[label] = (
-                f"is at {least[j]:.1f} m at its least, where the line has it at {place[j]:.1f} m: "
-                f"its {doubted} or its label is wrong"
+                f"is at {least[j]:.1f} m at its shallowest, but at {place[j]:.1f} m in the mooring "
+                f"file: its {doubted} or its label is wrong"
             )
     if exchanged or 2 * len(far_off) >= max(len(labels) - len(reasons), 1):
         doubts = [*exchanged, *(f"`{label}` {reason}" for label, reason in far_off.items())]
         if doubts:
             raise UsageError("--pressures: " + "; ".join(doubts))
-    return reasons | {one: f"{reason}; it is left out" for one, reason in far_off.items()}
+    return reasons | {one: f"{reason}; it was excluded" for one, reason in far_off.items()}
 
 
 def _least(depth: Floats) -> float:
@@ -415,9 +420,9 @@ def _least(depth: Floats) -> float:
 def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]:
     """Return a remark for each pair of sensors that appear in the reverse order of depth."""
     return [
-        f"`{labels[i]}` is at {least[i]:.1f} m at its least and `{labels[j]}` at {least[j]:.1f} m, "
-        f"where the line has them at {place[i]:.1f} m and {place[j]:.1f} m: their labels are "
-        "exchanged"
+        f"`{labels[i]}` is at {least[i]:.1f} m at its shallowest and `{labels[j]}` at "
+        f"{least[j]:.1f} m, but the mooring file has them at {place[i]:.1f} m and "
+        f"{place[j]:.1f} m: their labels are exchanged"
         for i, j in combinations(range(len(labels)), 2)
         if abs(place[j] - place[i]) > APART
         and min(least[i], least[j]) > -MISPLACED

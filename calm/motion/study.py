@@ -181,7 +181,7 @@ def prepare(
             raise UsageError(unknown(what, label, measured.label))
     used = without(measured, hidden)
     if not used.label:
-        raise UsageError("--hold-out: no sensor is left to estimate from")
+        raise UsageError("--hold-out: no sensor remains for the estimate")
     if used.u.shape[1]:
         smoother = CurrentSmoother(mooring, used, names)
         smoother.solve()
@@ -239,7 +239,7 @@ def judged(
         point = int(measured.point[measured.label.index(label)])
         held[label] = judge_hidden(measured, used, label, *depths_at(result, point), still)
     remarks = [
-        f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis
+        f"{one.sentence()}{'; this is corrected' if one.corrected else ''}" for one in diagnosis
     ]
     false: Mapping[str, NDArray[np.datetime64]] = {}
     unfit = alone_remarks(task.common) if alone else []

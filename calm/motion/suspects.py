@@ -190,15 +190,17 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             part = min(min(np.abs(straight)), 1.0) ** 2
             band = BAND * np.degrees(np.sqrt((1.0 - part) / (2.0 * part * count)))
             sense = "clockwise" if mean > 0.0 else "anticlockwise"
-            why = "its compass, its declination, or a current that veers there"
+            why = "its compass or its declination is wrong, or the current veers there"
             if abs(mean) > 180.0 - least - band:
-                why = "it gives the direction from which the current comes, or both signs are wrong"
-            what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {sense}: {why}"
+                why = "it gives the direction the current comes from, or both signs are wrong"
+            what = f"its direction is rotated {abs(mean):.0f}° (± {band:.0f}°) {sense}; {why}"
         elif max(fast) * UNLIKE < min(1.0, usual) or min(fast) > UNLIKE * max(1.0, usual):
-            what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} of theirs: its unit"
+            what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} times theirs; its unit is wrong"
         else:
             continue
-        remarks.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
+        remarks.append(
+            f"current at {name}, compared with {names[near[0]]} and {names[near[1]]}: {what}"
+        )
     return remarks
 
 
@@ -244,9 +246,9 @@ def torn(
         wrong[:, j] |= apart & (away[:, i] <= away[:, j])
     wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
     notes = [
-        f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are farther from those of "
-        f"others than the line is long, and are left out: the first is {depth[at, j]:.1f} m, at "
-        f"{np.datetime_as_string(measured.time[at], 's')}"
+        f"{measured.label[j]}: readings that differ in depth from another sensor by more than the "
+        f"length of line between them were excluded: {wrong[:, j].sum()}, the first "
+        f"{depth[at, j]:.1f} m at {np.datetime_as_string(measured.time[at], 's')}"
         for j, at in enumerate(wrong.argmax(axis=0).tolist())
         if wrong[at, j]
     ]

@@ -144,14 +144,14 @@ def learn_currents(
     down = np.nansum(part.depth - part.moved[:, None], axis=1)
     used = np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
     for turn in range(TURNS):
-        tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
+        tell(f"inferring the currents from the pressures: {turn + 1} of {TURNS}")
         moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
         if not np.isfinite(at.depth).any():
             names_of = ", ".join(part.label)
             raise UsageError(
-                f"--pressures: the line has no equilibrium that fits {names_of}: check their "
+                f"--pressures: the line has no equilibrium that fits {names_of}. Check their "
                 "labels, the lengths of the line and the depth of the water"
             )
         found = fit.posterior(at)
@@ -208,6 +208,7 @@ class _Fit:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
+        """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.read, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
@@ -215,6 +216,7 @@ class _Fit:
         return replace(at, logs=logs, depth=self.moments.depths(self.read, logs))
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
+        """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
         return posterior(one, at, self.law.covariance, common or self.common, still)
 

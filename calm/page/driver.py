@@ -45,6 +45,7 @@ class PageTerminal:
     driver: PageDriver | None = None
 
     def resize(self, columns: int, rows: int) -> None:
+        """Set the size."""
         self.columns, self.rows = columns, rows
         if self.driver is not None:
             self.driver.show_size()
@@ -70,13 +71,16 @@ class PageDriver(Driver):
         return True
 
     def write(self, data: str) -> None:
+        """Send the output of the terminal to the page."""
         self._terminal.write(data)
 
     def start_application_mode(self) -> None:
+        """Start full-screen drawing in the terminal of the page."""
         self.write(_BEGIN)
         self.show_size()
 
     def stop_application_mode(self) -> None:
+        """End full-screen drawing and release the terminal."""
         self.write(_END)
         if self._terminal.driver is self:
             self._terminal.driver = None
@@ -100,6 +104,7 @@ class PageDriver(Driver):
                 self.process_message(events.Key(name, character))
 
     def paste(self, text: str) -> None:
+        """Send pasted text."""
         self.process_message(events.Paste(text))
 
     def move_mouse(self, kind: str, x: int, y: int, button: int, held: Mapping[str, bool]) -> None:

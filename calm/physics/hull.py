@@ -83,9 +83,11 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     table = tuple(HullRow(*map(float, row)) for row in (*keel, *rows))
     for name in ("draft", "volume"):
         if any(getattr(b, name) <= getattr(a, name) for a, b in pairwise(table)):
-            raise ValueError(f"the {name} must grow from row to row")
+            raise ValueError(f"the {name} must increase from row to row")
     if any(b.area < a.area for a, b in pairwise(table)) or len(table) < 2:
-        raise ValueError("the area must not fall from row to row, and one row is not enough")
+        raise ValueError(
+            "the area must not decrease from row to row, and at least two rows are needed"
+        )
     return Hull(table[-1].draft, table[-1].area, TABULATED, table)
 
 
@@ -137,6 +139,7 @@ class Riding(NamedTuple):
 
     @property
     def push(self) -> tuple[float, float]:
+        """East and north component of the wind force [N]."""
         return self.push_east, self.push_north
 
 

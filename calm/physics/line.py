@@ -43,7 +43,7 @@ FAILURES = (
     "the forces on a segment do not balance",
     "the moments on a rigid piece do not balance",
     "the line would need more than 50000 segments",
-    "there is no room for so many segments",
+    "the line needs more segments than the solver can hold",
 )
 """Description of each outcome of a march."""
 NO_BALANCE = -2.0
@@ -366,7 +366,7 @@ class Line(_Arrays):
                 raise ValueError(f"Line.{name} must not be negative")
         on = self.clamp_piece
         if ((on < 0) | (on >= len(self.length))).any() or (self.clamp_at < 0).any():
-            raise ValueError("Line: a clamp sits on no piece")
+            raise ValueError("Line: a clamp is not on a piece")
         if not 0.0 <= self.anchor_height < inf:
             raise ValueError("Line.anchor_height must be finite and not negative")
 
@@ -476,7 +476,7 @@ class Water(_Arrays):
         if (self.density <= 0).any() or (self.viscosity <= 0).any():
             raise ValueError("Water: densities and viscosities must be positive")
         if (np.diff(self.level) <= 0).any() or (np.diff(self.viscosity_level) <= 0).any():
-            raise ValueError("Water: levels must rise")
+            raise ValueError("Water: levels must increase")
 
     @cached_property
     def moving(self) -> bool:

@@ -144,14 +144,23 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
             raise ValueError(f"point {number}: a load or a strain is not a number")
         if number == 1 and load == 0.0:
             if strain != 0.0:
-                raise ValueError("the strain at no load must be 0; it is a `permanent_elongation`")
+                raise ValueError(
+                    "the strain at no load must be 0; set a lasting strain as "
+                    "`permanent_elongation`"
+                )
             continue
         if load > 1.0:
-            raise ValueError(f"point {number}: a load of {load:g} times the breaking load")
+            raise ValueError(
+                f"point {number}: the load is {load:g} times the breaking load, more than 1"
+            )
         if load <= loads[-1]:
-            raise ValueError(f"point {number}: the load {load:g} does not grow")
+            raise ValueError(
+                f"point {number}: the load {load:g} is not above that of the point before"
+            )
         if strain < strains[-1]:
-            raise ValueError(f"point {number}: the strain {strain:g} falls")
+            raise ValueError(
+                f"point {number}: the strain {strain:g} is below that of the point before"
+            )
         loads.append(load)
         strains.append(strain)
     if len(loads) == 1:

@@ -42,6 +42,7 @@ class RangeModel:
 
     @property
     def unknowns(self) -> int:
+        """Number of unknowns."""
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:

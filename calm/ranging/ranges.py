@@ -95,7 +95,7 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
         columns.lacks(name, "deg") for name in ("latitude", "longitude") if name not in heads
     ]
     if ("range" in heads) == ("time" in heads):
-        both = "there are columns `range` and `time`; leave one of them out"
+        both = "there are columns `range` and `time`; remove one of them"
         none = "there is no column `range[m]` or `time[s]`"
         problems.append(columns.header.problem(both if "range" in heads else none))
     measure = "time" if "time" in heads else "range"
@@ -164,7 +164,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     """Parse a cell to SI units or degrees; raise ValueError with the reason if it is invalid."""
     placed = name in HEMISPHERES
     if re.sub(r"\.0*$", "", text) in _FILLS:
-        leave = "leave the row out" if placed else "leave the cell blank"
+        leave = "remove the row" if placed else "leave the cell blank"
         raise ValueError(f"is a fill value; {leave} if it is missing")
     sexagesimal = degrees_of(text, name) if placed else None
     if sexagesimal is None and (complaint := delimited.no_number(text)):
@@ -180,7 +180,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
         unit = DIMENSIONS[_COLUMNS[name]].unit
-        farther = f"{LONGEST[name]:g} {unit}, farther than a transponder replies"
+        farther = f"{LONGEST[name]:g} {unit}, beyond the reach of a transponder"
         raise ValueError(f"is more than {farther}{hint}")
     return value
 
@@ -191,7 +191,7 @@ def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> lis
     places = []
     for line, latitude, longitude, _ in values:
         if latitude == 0.0 and longitude == 0.0:
-            message = "position 0, 0 is a fill value; leave the row out"
+            message = "position 0, 0 is a fill value; remove the row"
             problems.append(Problem(str(path), line, 1, message))
         else:
             places.append((line, latitude, longitude))

@@ -72,7 +72,7 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
         vertical = {dim.lower() for dim in dims.replace(":", "").split() if dim not in layers}
         averaged = method in ("mean", "median", "sum") and vertical & {*_VERTICAL}
         if method in _SPREADS or averaged or "over" in over:
-            return f"is `cell_methods: {methods}`, no value of one time and depth"
+            return f"has `cell_methods: {methods}`, so it is not a value at one time and depth"
     if variable.encoding.get("scale_factor") == 0:
         return "has `scale_factor: 0`, which makes every value the same"
     return None
@@ -87,7 +87,7 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
         frame = str(attributes[name]).lower()
         if _OTHER_FRAME.search(frame) and not _TO_THE_EARTH.search(frame):
             reason = f"is in other coordinates, `{name}: {attributes[name]}`"
-            return f"{reason}, not to the east and north; rotate it to the earth's first"
+            return f"{reason}, not east and north; rotate it to earth coordinates first"
     return None
 
 
@@ -99,7 +99,7 @@ def moving_platform(dataset: xr.Dataset) -> str | None:
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
-        return f"is of an ADCP on a ship (`source_program: {program}`), not of a mooring"
+        return f"is from an ADCP on a ship (`source_program: {program}`), not from a mooring"
     for name, variable in dataset.variables.items():
         standard = str(variable.attrs.get("standard_name", ""))
         moves = standard in _PLATFORM or _BOTTOM_TRACK.fullmatch(str(name))
@@ -107,7 +107,9 @@ def moving_platform(dataset: xr.Dataset) -> str | None:
             speed = np.abs(np.asarray(variable[:100_000], np.float64))
             typical = float(np.median(speed[np.isfinite(speed)])) if np.isfinite(speed).any() else 0
             if typical > _MOVING:
-                return f"is of a platform that moves over the ground (`{name}`: {typical:.2g} m/s)"
+                return (
+                    f"is from a platform that moves over the ground (`{name}`: {typical:.2g} m/s)"
+                )
     return None
 
 

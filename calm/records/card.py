@@ -159,10 +159,10 @@ def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
         rows.append(("levels", str(card["levels"])))
     if card["times"]:
         rows.append(("time", _when(card)))
-    removed = (f"{_counted(n, 'reading')} left out by {name}" for name, n in card["flags"].items())
+    removed = (f"{_counted(n, 'reading')} excluded by {name}" for name, n in card["flags"].items())
     rows.append(("flags", "; ".join(removed) or "none"))
     turned = card["declination"]
-    rows.append(("declination", "none" if turned is None else f"turned by {turned:g}°"))
+    rows.append(("declination", "none" if turned is None else f"rotated by {turned:g}°"))
     return tuple(rows)
 
 

@@ -43,16 +43,16 @@ _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "in
 
 _KINDS = {
     rb"\AMATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
-    rb"\AGRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
-    rb"\A\x0e\x03\x13\x01": "an HDF 4 file; turn it into NetCDF",
+    rb"\AGRIB": "a GRIB file; convert it to NetCDF (`cdo -f nc copy`)",
+    rb"\A\x0e\x03\x13\x01": "an HDF 4 file; convert it to NetCDF",
     rb"\APK\x03\x04": "a packed file or a spreadsheet; unpack it, or save the sheet as CSV",
     rb"\A\xd0\xcf\x11\xe0": "a spreadsheet; save it as CSV",
     rb"\A\x1f\x8b": "a packed file; unpack it first (`gunzip`)",
-    rb"\A\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
-    rb"\A\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
-    rb"(?m)^\s*ODF_HEADER\b": "an ODF file of Fisheries and Oceans Canada; turn it into NetCDF "
+    rb"\A\x7f\x7f": "a raw Teledyne ADCP file; convert it to NetCDF with its software or MHKiT",
+    rb"\A\xa5": "a raw Nortek file; convert it to NetCDF with its software or MHKiT",
+    rb"(?m)^\s*ODF_HEADER\b": "an ODF file of Fisheries and Oceans Canada; convert it to NetCDF "
     "(`ocean-data-parser` does)",
-    rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; turn it into NetCDF "
+    rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; convert it to NetCDF "
     "(`ocean-data-parser` does)",
 }
 """Bytes near the start of unsupported files that may hold currents, and the remedy."""
@@ -73,14 +73,14 @@ def holds_arrays(path: Path) -> bool:
     """
     if path.is_dir():
         if not is_zarr(path):
-            raise refused(path, "is a folder, and not a zarr store; join its files into one first")
+            raise refused(path, "is a folder but not a zarr store; join its files into one first")
         return True
     if not path.is_file():  # opening a pipe or a device could block
         raise refused(path, "is not a regular file" if path.exists() else no_such_file(path))
     with path.open("rb") as file:
         head = file.read(_HEAD)
     for kind in (kind for mark, kind in _KINDS.items() if re.search(mark, head)):
-        raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
+        raise refused(path, f"is {kind}; CALM reads NetCDF, zarr and CSV")
     return bool(engine_of(path) or reader_of(path))
 
 
@@ -165,8 +165,8 @@ def _refuse_large(path: Path, engine: str) -> None:
 def _refuse_many(name: object, count: int) -> None:
     if count > MOST_VALUES:
         raise UnreadableError(
-            f"`{name}` has {count:,} values to be read at once, more than {MOST_VALUES:,}: give a "
-            "part of it (`ncks -d`)"
+            f"`{name}` has {count:,} values, more than the {MOST_VALUES:,} that can be read at "
+            "once; extract a part of it (`ncks -d`)"
         )
 
 
@@ -192,8 +192,8 @@ def holdings(dataset: xr.Dataset) -> str:
     more = [f"and {hidden} more"] if hidden > 0 else []
     if groups := groups_of(Path(dataset.encoding.get("source", ""))):
         more.append(
-            f"and the groups {', '.join(groups)}, which are not read: make one a file of its own "
-            f"(`ncks -G : -g {groups[0]} in.nc out.nc`)"
+            f"and the groups {', '.join(groups)}, which are not read; extract one into a separate "
+            f"file (`ncks -G : -g {groups[0]} in.nc out.nc`)"
         )
     return "; ".join([*listed[:_MOST_LISTED], *more]) or "nothing"
 
@@ -233,7 +233,7 @@ def converted(variable: xr.DataArray, values: Floats, wanted: str) -> Floats:
     """
     unit = str(variable.attrs.get("units", "")).strip()
     if not unit:
-        raise UnreadableError(f"`{variable.name}`: its unit is missing, such as {wanted}")
+        raise UnreadableError(f"`{variable.name}` has no unit; set one, such as {wanted}")
     try:
         factor, zero = unit_line(unit, wanted)
     except QuantityError as error:
@@ -249,7 +249,7 @@ def refuse_other_salinity(variable: xr.DataArray) -> None:
     """Raise UnreadableError if the unit of a salinity is not a unit of practical salinity."""
     unit = str(variable.attrs.get("units", "")).strip()
     if unit.lower() not in _PRACTICAL:
-        reason = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
+        reason = f"`{unit}`, is not a unit of practical salinity (1 or PSU)"
         raise UnreadableError(f"`{variable.name}`: its unit, {reason}")
 
 
@@ -420,6 +420,6 @@ def _no_date(times: xr.DataArray) -> UnreadableError:
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(
-        f"`{times.name}` has {worst:.10g} among its times, in `{times.attrs['units']}`: no date "
-        f"between {_FIRST} and {_LAST}"
+        f"`{times.name}` has {worst:.10g} among its times, in `{times.attrs['units']}`, which is "
+        f"not a date between {_FIRST} and {_LAST}"
     )

@@ -246,18 +246,20 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
     which = " and ".join(f"`{name}`" for name in counted)
     if current.magnetic and declination is None:
         raise cf_files.UnreadableError(
-            f"{which} are relative to magnetic north; give the `declination` there, positive "
-            "to the east (beside `file:`, or `--declination`)"
+            f"{which} are relative to magnetic north; set the `declination` of the site, positive "
+            "to the east (next to `file:`, or with `--declination`)"
         )
     if declination is not None and current.true:
         raise cf_files.UnreadableError(
             f"{which} are relative to true north by their attributes, so no `declination` is "
-            "applied; leave it out"
+            "applied; remove it"
         )
     if declination is None:
         return ()
     unstated = "" if current.magnetic else ", as specified by the user, not by the file"
-    return (f"{which} were relative to magnetic north{unstated}, turned by {declination:g}°",)
+    return (
+        f"{which} were relative to magnetic north{unstated}, and were rotated by {declination:g}°",
+    )
 
 
 def _single_levels(
@@ -276,7 +278,7 @@ def _single_levels(
     levels = [str(dim) for dim in dataset[name].dims if dim != time]
     if len(levels) > 1:
         raise cf_files.UnreadableError(
-            f"`{name}` is not a single profile, but spreads over {_spread(dataset[name])}"
+            f"`{name}` is not a single profile; it has the dimensions {_spread(dataset[name])}"
         )
     return (levels[0] if levels else None), dataset
 
@@ -313,12 +315,14 @@ class ArrayRecord(Record):
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
+        """Return the levels of profiles `start` to `stop`, see `Record.profiles`."""
         first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
         depth = depth[mine] if self._current.moves else depth
         return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """Return the quality flags of profiles `start` to `stop`, see `Record.flags`."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 
@@ -346,4 +350,5 @@ class ArrayRecord(Record):
         return start + min(chunk, READ_AHEAD // max(self._current.size, 1))
 
     def close(self) -> None:
+        """Close the dataset."""
         self._dataset.close()

@@ -256,6 +256,7 @@ class CsvRecord(Record):
         return header
 
     def profiles(self, start: int, stop: int) -> Levels:
+        """Return the levels of profiles `start` to `stop`, see `Record.profiles`."""
         chosen = np.arange(len(self._times))[part(self._index, start, stop)]
         first, behind = self._first[chosen], self._first[chosen + 1]
         levels = first[:, np.newaxis] + np.arange(self._most)
@@ -266,6 +267,7 @@ class CsvRecord(Record):
         return depth, u, v, (w if self._has_w else None)
 
     def close(self) -> None:
+        """Free the memory of the rows."""
         self._rows = np.empty((0, COLUMNS))
 
 

@@ -58,7 +58,7 @@ def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
         return None
     return (
         f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s: a fill value, or "
-        "another unit? (`maximum_speed` of the environment allows it if it is true)"
+        "another unit? (if it is true, raise `maximum_speed` of the environment)"
     )
 
 

@@ -237,7 +237,7 @@ def table_lines(
     skipped = int(not cells[0])
     header = CellRow(path, number, line, cells[skipped:], dialect, skipped)
     if len(cells) > 1 and not cells[-1]:
-        message = f"the line ends in a {_SEPARATORS[dialect.separator]}; take it off every line"
+        message = f"the line ends in a {_SEPARATORS[dialect.separator]}; remove it from every line"
         raise refused(path, message, line=number, column=len(line.rstrip(" ")))
     if all(NUMBER.fullmatch(cell) for cell in cells):
         raise refused(path, f"there is no header; did you mean `{example}`?", line=number)

@@ -63,5 +63,7 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
                 found[-1], index=timed, index_label="time", date_format="%Y-%m-%dT%H:%M:%S.%f"
             )
         else:
-            raise TypeError(f"{name}: {type(one).__name__} is no path, xarray or pandas object")
+            raise TypeError(
+                f"{name}: {type(one).__name__} is not a path, an xarray object or a pandas object"
+            )
     return found

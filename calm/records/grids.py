@@ -95,8 +95,8 @@ def choose_column(
         return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
     if wanted is None:
         raise cf_files.UnreadableError(
-            f"it has {count} columns, {_span(latitude.values, longitude.values)}: say which by "
-            "`--at LAT,LON`, or by the `position` of the mooring file"
+            f"it has {count} columns of water, {_span(latitude.values, longitude.values)}; select "
+            "one with `--at LAT,LON` or the `position` of the mooring file"
         )
     box = _box(latitude, longitude, horizontal, wanted)
     near = dataset[list(velocity)].isel(box)
@@ -239,7 +239,7 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
     latitude, longitude = (values[known] for values in found)
     first = float(latitude[0]), float(longitude[0])
     away = float(kilometres_from(latitude, longitude, first).max())
-    moved = f"its place changes with time, by up to {away:.0f} km; all profiles are taken"
+    moved = f"its position changes with time, by up to {away:.0f} km; all profiles are used"
     return (*([moved] if away > FAR else []), *_far(first, wanted))
 
 
@@ -249,7 +249,7 @@ def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
     distance = float(kilometres_from(np.array(place[0]), np.array(place[1]), wanted))
     if not distance > FAR:
         return ()
-    return (f"its only place, {written(place)}, is {distance:.0f} km from {written(wanted)}",)
+    return (f"its only position, {written(place)}, is {distance:.0f} km from {written(wanted)}",)
 
 
 def _span(latitude: NDArray[Any], longitude: NDArray[Any]) -> str:
@@ -298,7 +298,7 @@ class SeabedGrid:
         """
         if path.suffix.lower() in (".tif", ".tiff"):
             turn = f"gdal_translate -of netCDF {path.name} {path.stem}.nc"
-            raise refused(path, f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`")
+            raise refused(path, f"is a GeoTIFF, which is not read; convert it to NetCDF: `{turn}`")
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         grid = cls(str(path), digest, latitude, longitude, reach)
         with cf_files.reading(path):
@@ -307,7 +307,7 @@ class SeabedGrid:
             if grid.depth <= 0.0:
                 raise cf_files.UnreadableError(
                     f"has land, {-grid.depth:.4g} m high, at the position of the mooring; if that "
-                    "is water, let `positive` of its variable say `down`, or `up`"
+                    "is water, set the attribute `positive` of its variable to `down` or `up`"
                 )
         return grid
 

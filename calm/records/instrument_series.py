@@ -166,7 +166,7 @@ def read_series(
             continue
         for name, series in mine.items():
             if label and len(series) > len({one.below for one in series}):
-                raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` names one")
+                raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` is for one")
             found[name] += [replace(one, label=label or one.label) for one in series]
     if problems:
         raise InputError(problems)
@@ -269,7 +269,7 @@ def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
         count = dataset.sizes[instances]
         if whose.size != dataset.sizes[readings] or whose.max(initial=0.0) >= count:
             raise UnreadableError(
-                f"`{name}` does not fit its {count} instruments, which are counted from 0, and "
+                f"`{name}` must give one of its {count} instruments, numbered from 0, for each of "
                 f"{dataset.sizes[readings]} readings"
             )
         return [
@@ -381,8 +381,8 @@ class _SeriesFile:
             return None
         if current.magnetic:
             raise UnreadableError(
-                f"`{current.names[-1]}` is relative to magnetic north; turn it to true north "
-                "before it is gridded"
+                f"`{current.names[-1]}` is relative to magnetic north; rotate it to true north "
+                "before you grid it"
             )
         return current
 

@@ -135,7 +135,7 @@ class _Levels:
         levels, name = self.variable, self.variable.name
         if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
             raise UnreadableError(
-                f"`{name}` is {levels.attrs['standard_name']}, a share of the water depth, "
+                f"`{name}` is {levels.attrs['standard_name']}, a fraction of the water depth, "
                 "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
             )
         texts = words_of(levels, "standard_name", "long_name", "reference_datum")
@@ -193,7 +193,7 @@ class _Levels:
         offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
         offset = offset and str(name).startswith("range")
         if offset and orientation == "down":
-            note = f"`{name}` is measured from the surface, as its offset is added already"
+            note = f"`{name}` is measured from the surface, because its offset is already added"
             return LevelDepths(self.variable, factor, 0.0, None, (note,))
         zero, what = instrument, "the instrument"
         if offset and instrument is None:
@@ -201,7 +201,7 @@ class _Levels:
                 return self._above_seabed()
             zero, what = water, "the seabed"
         if zero is None:
-            but = f"; `{water[0].name}` is that of the water" if water is not None else ""
+            but = f"; `{water[0].name}` is the water depth" if water is not None else ""
             raise UnreadableError(
                 f"`{name}` is measured from the instrument, whose depth is not in the file{but}"
             )

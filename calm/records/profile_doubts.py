@@ -73,8 +73,9 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
     at_the_bed = _AT_THE_BED * water_depth <= depth[-1] < inf
     if len(depth) > 2 and at_the_bed and (np.diff(speed) > 0.0).all():
         yield (
-            f"the current grows from {say('speed', float(speed[0]))} down to "
-            f"{say('speed', float(speed[-1]))} at the seabed: are the depths heights above it?"
+            f"the current increases with depth, from {say('speed', float(speed[0]))} to "
+            f"{say('speed', float(speed[-1]))} at the seabed: are the depths really heights above "
+            "the seabed?"
         )
     yield from strength_doubts(depth, speed, water_depth)
 

@@ -175,7 +175,7 @@ def check_depths(
     for start, stop in pairwise([0, *ends.tolist(), len(depths)]):
         mine = depths[start:stop]
         if len(mine) > 1 and (mine <= 0.0).all() and mine.any():
-            message = "the depths count upwards; depth is positive down, so leave the sign out"
+            message = "the depths are negative; depth is positive down, so remove the signs"
             first = int(rows[start + int(np.argmax(mine < 0.0))])
             table.refuse(("rows", first, column), message)
             continue
@@ -320,7 +320,7 @@ def read_currents(
     speeds = values.get("speed", np.zeros(0))
     for i in np.flatnonzero(speeds < 0.0).tolist():
         place = ("rows", i, list(values).index("speed"))
-        table.refuse(place, f"`speed` {speeds[i]:g} m/s is negative; turn `toward`")
+        table.refuse(place, f"`speed` {speeds[i]:g} m/s is negative; reverse `toward` instead")
     check_depths(table, values, np.flatnonzero(~gaps), profile)
     if len(table.problems) > before:
         return None
@@ -347,7 +347,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
-    return (f"{which} were relative to magnetic north, turned by {terms.declination:g}°",)
+    return (f"{which} were relative to magnetic north, and were rotated by {terms.declination:g}°",)
 
 
 def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str], float]:
@@ -359,7 +359,7 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
             table.refuse(
                 ("columns",),
                 "no column is relative to magnetic north, such as `toward[deg magnetic]`, so no "
-                "`declination` is applied; leave it out",
+                "`declination` is applied; remove it",
             )
         return plain, 0.0
     first = next(j for j, column in enumerate(columns) if column != plain[j])
@@ -370,8 +370,8 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
     if terms.declination is None:
         table.refuse(
             ("columns", first),
-            f"`{shown(columns[first])}` is relative to magnetic north; give the `declination` "
-            "there, positive to the east (beside `file:`, or `--declination`)",
+            f"`{shown(columns[first])}` is relative to magnetic north; set the `declination` of "
+            "the site, positive to the east (next to `file:`, or with `--declination`)",
         )
     return plain, terms.declination or 0.0
 

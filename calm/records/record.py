@@ -37,9 +37,10 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 RULES = (
     "levels without a current or a depth are excluded from their profile",
     "levels above the surface are excluded",
-    "levels below the seabed are used where they have a value: the current at the seabed lies "
-    "between",
-    "between levels the current is linear in depth, beyond the first and the last it is constant",
+    "levels below the seabed are used if they have a value, to interpolate the current at the "
+    "seabed",
+    "the current is linear in depth between levels, and constant above the first and below the "
+    "last",
 )
 """Rules that apply to every record."""
 
@@ -120,9 +121,9 @@ def parse_place(text: str) -> Place:
         first, second = parts
         latitude, longitude = plain_degrees(first, "latitude"), plain_degrees(second, "longitude")
     except ValueError:
-        raise UsageError(f"`{text[:40]}` is not a place; write 48.3,-5.2") from None
+        raise UsageError(f"`{text[:40]}` is not a position; write 48.3,-5.2") from None
     if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):
-        raise UsageError(f"`{text[:40]}` is not a place; latitude comes first, then longitude")
+        raise UsageError(f"`{text[:40]}` is not a position; latitude must be first, then longitude")
     return latitude, longitude
 
 
@@ -146,7 +147,7 @@ def choose_profiles(
         No profile is in the period, or `every` is not positive.
     """
     if every < 1:
-        raise UsageError(f"every {every} profiles: at least one is needed")
+        raise UsageError(f"every {every} profiles is not possible; use a number of at least 1")
     if not len(times):
         raise refused(path, "has no times")
     notes = []
@@ -158,7 +159,7 @@ def choose_profiles(
     again = np.flatnonzero(times[1:] == times[:-1])
     if len(again):
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
-        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
+        message = f"has two profiles of {time_text(times[again[0]])}{more}; remove one of them"
         raise refused(path, message)
     start, stop = period or (None, None)
     first = 0 if start is None else int(np.searchsorted(times, start, "left"))
@@ -259,8 +260,8 @@ def made_record() -> bytes:
         },
         {
             "Conventions": "CF-1.11",
-            "title": "A made record of currents: a tide, a mean flow and a storm surge",
-            "comment": "Made by a formula, not measured.",
+            "title": "A synthetic record of currents: a tide, a mean flow and a storm surge",
+            "comment": "Computed from a formula, not measured.",
         },
     )
     dataset["time"].attrs["calendar"] = "standard"

@@ -200,7 +200,9 @@ def _impossible(height: float, period: float) -> str | None:
     if period < SHORTEST_PERIOD:
         return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
-        highest = f"{length:.1f} m long, they are {STEEPEST * length:.2f} m high at most"
+        highest = (
+            f"with a length of {length:.1f} m, they can be {STEEPEST * length:.2f} m high at most"
+        )
         return f"{waves} would break: {highest}"
     return None
 
@@ -216,9 +218,9 @@ def doubted(sea: SeaState) -> str | None:
     if steepness <= float(np.interp(period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0])):
         return None
     return (
-        f"Hs {height:.3g} m with Tp {period:.3g} s is steeper than seas are, 1 in "
-        f"{1.0 / steepness:.0f}: look whether the period is a mean one ({PEAK_BY_MEAN}) and the "
-        "height in metres."
+        f"Hs {height:.3g} m with Tp {period:.3g} s is steeper than any measured sea (1 in "
+        f"{1.0 / steepness:.0f}). Check whether the period is a mean period ({PEAK_BY_MEAN}) and "
+        "the height is in metres."
     )
 
 
@@ -232,8 +234,8 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
         raise UsageError(
-            f"a swell of {period:g} s with a sea of {sea.peak_period:g} s: a swell has the "
-            "longer period"
+            f"the swell of {period:g} s must have a longer period than the sea of "
+            f"{sea.peak_period:g} s"
         )
     swell = ochi_hubble(((height, period, 3.0),))
     form = SpectralForm(_together, (sea.density, swell))
@@ -287,8 +289,8 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     problems = [
         Problem(str(path), lines[int(row)] if lines else 0, column, message)
         for wrong, column, message in (
-            (falls, 1, "frequencies are not negative, and grow"),
-            (~(density >= 0.0), 2, "a density is not negative"),
+            (falls, 1, "frequencies must increase and must not be negative"),
+            (~(density >= 0.0), 2, "a density must not be negative"),
         )
         for row in np.flatnonzero(wrong)
     ]
@@ -307,7 +309,7 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     if density[-1] > CUT_OFF * density.max():
         wrong = wrong or f"it is cut off at {frequency[-1]:.3g} Hz, near its peak"
     if wrong is not None:
-        raise refused(path, f"{wrong}; look at its units")
+        raise refused(path, f"{wrong}; check its units")
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
     peak = float(omega[int(density.argmax())])
     first = max(float(lowest), 0.02 * peak)
@@ -335,7 +337,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
         spectrum = data[names[0]]
         along = [str(each) for each in spectrum.dims if str(each).startswith("freq")]
         if not along or along[0] not in data.coords:
-            raise UnreadableError(f"{names[0]} has no dimension of frequencies with its values")
+            raise UnreadableError(f"{names[0]} has no frequency dimension with values")
         values = spectrum.transpose(along[0], ...)
         for name in [str(each) for each in spectrum.dims if str(each).startswith("dir")]:
             count, unit = data.sizes[name], str(spectrum.attrs.get("units", ""))
@@ -367,7 +369,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     whole = sum(shares)
     for number, (height, period, share) in rows:
         if height <= 0.0 or period <= 0.0 or share < 0.0:
-            message = "height and period are above 0, and a share is not negative"
+            message = "height and period must be above 0, and a share must not be negative"
             problems.append(Problem(str(path), number, 1, message))
             continue
         try:
@@ -378,7 +380,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
         if share > 0.0:
             states.append(SeaState(height, period, sea.density, share / whole))
     if not problems and not states:
-        problems.append(Problem(str(path), 1, 1, "no sea has a share of the time"))
+        problems.append(Problem(str(path), 1, 1, "no sea has a share above 0"))
     counts = all(share == round(share) for share in shares)
     if not counts and min(abs(whole - 1.0), abs(whole / 100.0 - 1.0)) > SHARES:
         message = f"shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"

@@ -299,7 +299,10 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     yield from _years(times)
     again = int((times[1:] == times[:-1]).sum())
     if 2 * again >= len(times) > 1:
-        yield f"{again} of {len(times)} times repeat the one before: several instruments in one?"
+        yield (
+            f"{again} of {len(times)} times repeat the time before: does the file combine several "
+            "instruments?"
+        )
     elif len(times) > 2:
         yield from _gaps(times)
     yield from _unchanged(values, times, names)
@@ -316,8 +319,8 @@ def step_doubts(times: Times) -> Iterator[str]:
     """Yield a doubt if profiles are too far apart in time to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
-            f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, means "
-            "or samples: tides and peaks between them are missing"
+            f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
+            "and peaks between them are missing"
         )
 
 
@@ -339,7 +342,7 @@ WATER = {
         "K": (1.0, -273.15), "degF": (1.0 / 1.8, -32.0 / 1.8), "0.001 degC": (1e-3, 0.0),
     }),
     "salinity": WaterLimits(0.0, 42.0, "", {
-        "kg/kg": (1e3, 0.0), "mS/cm, being a conductivity": (0.7, 0.0), "0.001": (1e-3, 0.0),
+        "kg/kg": (1e3, 0.0), "mS/cm, as a conductivity": (0.7, 0.0), "0.001": (1e-3, 0.0),
     }),
 }  # fmt: skip
 """The limits of TEOS-10, as in tables of mooring files."""
@@ -438,9 +441,9 @@ def _gaps(times: Times) -> Iterator[str]:
         k = int(steps.argmax())
         hours = np.timedelta64(1, "h")
         yield (
-            f"{at.size} gap{'s' * (at.size != 1)} in time: the longest is of "
-            f"{longest / hours:.4g} h, from {time_text(times[k])} to {time_text(times[k + 1])}, "
-            f"where the step is {step / hours:.4g} h"
+            f"{at.size} gap{'s' * (at.size != 1)} in time: the longest is {longest / hours:.4g} h, "
+            f"from {time_text(times[k])} to {time_text(times[k + 1])}; the step is "
+            f"{step / hours:.4g} h"
         )
 
 
@@ -485,8 +488,9 @@ def _interleaved(values: Floats) -> Iterator[str]:
     if woven.any():
         k = int(np.argmax(one * woven))
         yield (
-            f"{woven.sum()} of {woven.size} series look like two in turn: readings next to each "
-            f"other differ by {one[k]:.3g}, every second ones by {two[k]:.3g}"
+            f"{woven.sum()} of {woven.size} series appear to alternate between two instruments: "
+            f"consecutive readings differ by {one[k]:.3g}, but every second reading only by "
+            f"{two[k]:.3g}"
         )
 
 

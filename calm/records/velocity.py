@@ -185,7 +185,9 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
         regular = regular or not any(dataset[one].ndim == 2 for one in places)
     if regular and _ALONG_THE_GRID.get(own) is sought:
         sense = "east" if sought is _EAST else "north"
-        notes.append(f"`{name}`, {own}, is {sense}ward: the grid runs along latitudes")
+        notes.append(
+            f"`{name}`, {own}, is used as {sense}ward, because the grid runs along latitudes"
+        )
     elif own and own not in sought.standard and not _only_marked(own, sought):
         raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
     return _checked(dataset, name)
@@ -235,8 +237,8 @@ def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
             many = len({*variable.to_numpy().reshape(-1).tolist()})
         if many > 1:
             raise UnreadableError(
-                f"`{name}` has {many} instruments one after the other (`{index}` says whose a "
-                "reading is): give the file of each instrument"
+                f"`{name}` has {many} instruments one after the other (`{index}` gives the "
+                "instrument of each reading): give one file for each instrument"
             )
 
 
@@ -270,8 +272,8 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
             parts[f"{name}[{label}]"] = part
         elif sense != "up":
             raise UnreadableError(
-                f"`{name}` has the directions {', '.join(labels)}, not E and N: rotate it to the "
-                "earth's coordinates first"
+                f"`{name}` has the directions {', '.join(labels)}, not E and N; rotate it to earth "
+                "coordinates first"
             )
     return dataset.assign(parts)
 

@@ -163,7 +163,7 @@ def _depths_table(plan: DropPlan) -> list[Table]:
         number("reached", after),
         quantity("depth", lambda row: row[0].rest, "at rest"),
         quantity("depth", lambda row: row[1][0].rating, "rated to"),
-        note="Depths are at the upper end of a part; a rating is exceeded if the deeper end does.",
+        note="Depths are at the upper end; a rating is exceeded if the deeper end exceeds it.",
     )
     return [table] if listed else []
 
@@ -364,7 +364,10 @@ def located_figure(located: Located) -> str:
     scatter = float(np.abs(located.residuals[located.used]).max())
     close = max(3.0 * np.nan_to_num(located.horizontal_95), 3.0 * scatter, 1.0)
     page = Graph(2 * _PANEL + 110.0, _PANEL + 52.0, "Position of the anchor by ranges", _SIZE)
-    titles = "all ranges, numbered by line of the file", "the position, with its 95 % ellipse"
+    titles = (
+        "all ranges, numbered by their lines in the file",
+        "the position, with its 95 % ellipse",
+    )
     for panel, half in enumerate((max(reach, 2.0 * close), close)):
         left = 48.0 + panel * (_PANEL + 54.0)
         scale = Scale(-half, half)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import (
+    DEFAULT_ENVIRONMENT,
+    OWN,
     Conclusion,
     Finding,
     State,
@@ -142,7 +144,8 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     verdict += f"; {len(incomplete)} more lack values." if incomplete else "."
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
     yield Prose(((Span(head, state), Span(verdict)),), state)
-    note = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
+    called = {name: DEFAULT_ENVIRONMENT if name == OWN else name for name in shown}
+    note = ", ".join(f"{codes[name]} {short(called[name], 24)}" for name in shown)
     note += ". Launch includes recovery and breaks."
     if len(shown) < len(names):
         note += f" {len(names) - len(shown)} milder environments are omitted."

@@ -253,7 +253,10 @@ def _breaks(assessment: Assessment) -> Table:
     unjudged = sum(not one.judged for one in assessment.backup)
     note = ""
     if rows:
-        note = f"{len(assessment.backup)} breaks; a row shows the most critical of its section. "
+        note = (
+            f"{len(assessment.backup)} breaks were computed; each row shows the most critical "
+            "break of a section. "
+        )
     if left > 0:
         note += f"{left} sections with a larger margin are omitted. "
     if unjudged:
@@ -394,7 +397,7 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
         words("Limit", lambda key: Cell(called(key), strong=own(key))),
         number("Value", lambda key: Cell(_value(key, key.value), strong=own(key))),
         words("Source", source, 1.6),
-        aside="limits set by the design in bold",
+        aside="limits set by the design are in bold",
         ruled=False,
     )
 

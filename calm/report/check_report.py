@@ -90,7 +90,10 @@ def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
             running=sections[0].running,
         )  # fmt: skip
     environments = {name for row in rows for name in row.cells}
-    title = f"Design check of {len(rows)} moorings in {len(environments)} environments"
+    title = (
+        f"Design check of {len(rows)} moorings in {len(environments)} "
+        f"environment{'s' * (len(environments) != 1)}"
+    )
     worst = max((row.conclusion for row in rows), key=[*type(rows[0].conclusion)].index)
     foot = f"CALM {__version__}  the inputs of each mooring are on its own page"
     running = Running("", title, worst.words, provenance.date() or "", foot)

@@ -275,7 +275,11 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
         *(_of_environment(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
         note="! fails  ~ over 100, a warning or accepted  ? unknown\n"
-        + ", ".join(f"{codes[name]} {name}" for name in kept if codes[name] != name)
+        + ", ".join(
+            f"{codes[name]} {DEFAULT_ENVIRONMENT if name == OWN else name}"
+            for name in kept
+            if codes[name] != name
+        )
         + milder,
         dense=True,
     )

@@ -125,7 +125,9 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """Tabulate number and amount of each component, with an empty column for spares."""
     note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
     if any(item.dry_mass is None for item in items):
-        note += " ≥ marks a lower bound without the unknown masses: do not plan lifts by it."
+        note += (
+            " ≥ marks a lower bound, because some masses are unknown: do not use it to plan lifts."
+        )
 
     def summed(name: str) -> Field:
         return quantity(name, lambda group: None)[0], lambda group: _sum(name, group)

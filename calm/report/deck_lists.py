@@ -259,7 +259,7 @@ def instruments_part(deck: Deck) -> ReportPart:
     if several:
         note += (
             f" Minimum and maximum depth, and tilt, cover {len(deck.environments)} environments; "
-            "the governing environment is below the depth."
+            "the governing environment is named below the depth."
         )
     table = table_of(
         "Instruments and releases",

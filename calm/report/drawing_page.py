@@ -109,7 +109,7 @@ def _sheets(
             title if sheet == 0 else f"{title}, continued",
             shown,
             *columns,
-            aside="from the top, not to scale; item numbers are those of all tables",
+            aside="from the top, not to scale; all tables use these item numbers",
             note=_DRAWING_NOTE if end == len(rows) and result is case.results[-1] else "",
         )
 

@@ -36,7 +36,7 @@ _SHARES = (
     "Shares: all drag forces are increased together from zero to their full value, and each is "
     "attributed the change that its own increase causes. Drag is the horizontal force of the water."
 )
-_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are kept."
+_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are unchanged."
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
@@ -87,6 +87,7 @@ class _Shown(NamedTuple):
         return max(usual, min(2 - floor(log10(abs(whole * self.scale))), 4))
 
     def text(self, figures: Figures) -> str:
+        """Format the value."""
         value = getattr(figures, self.name)
         return f"{value * self.scale:z.{self.decimals(value)}f}"
 
@@ -232,10 +233,12 @@ def _answer(sizing: Sizing) -> str:
     growth = after.value - before.value
     several = len(change.parts) > 1 and not change.whole
     each = f", each of {len(change.parts)}" if several else ""
+    sign = "+" if growth > 0.0 else ""
     share = f" ({growth / abs(before.value):+.1%})".replace("%", " %") if before.value else ""
     return (
         f"{change.text}: {with_unit(before.value, change.unit)} → "
-        f"{with_unit(after.value, change.unit)}, {growth:+.6g}{share}{each}"
+        f"{with_unit(after.value, change.unit)}, "
+        f"{sign}{with_unit(growth, change.unit)}{share}{each}"
     )
 
 

@@ -85,9 +85,9 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
         number("widened", widened),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
-        "the rest of the variance is uncorrelated. Widened: factors on the bands between "
-        "instruments (the largest one) and beyond them, from a test that omits each instrument in "
-        "turn.",
+        "the rest of the variance is uncorrelated. Widened: the largest factor by which the bands "
+        "were widened between instruments, and the factor beyond them, from a test that omits "
+        "each instrument in turn.",
     )
 
 

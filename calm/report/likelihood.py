@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import inf
 
 from calm.checks.assess import RULES
-from calm.checks.finding import AS_GIVEN, Finding, by_rule
+from calm.checks.finding import AS_GIVEN, OWN, Finding, by_rule
 from calm.report import blocks
 from calm.report.blocks import number, words
 from calm.report.open_items import limit_text
@@ -50,7 +50,8 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
 def _place(finding: Finding) -> str:
     changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
-    return f"{finding.environment}{changed}"
+    environment = "default" if finding.environment == OWN else finding.environment
+    return f"{environment}{changed}"
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:

@@ -71,6 +71,7 @@ class LoadCase:
 
     @property
     def words(self) -> str:
+        """Description of the load case."""
         name = DEFAULT_ENVIRONMENT.capitalize() if self.environment == OWN else self.environment
         if self.situation in (STILL, STILL_LOW):
             return self.situation.capitalize()

@@ -19,7 +19,7 @@ _HEAD = """\
 # colon; a key without a value stays unknown. calm build FILE, key f, asks for the same values.
 """
 _OPTIONAL = """\
-# Optional values: no check is unknown without them. To set one, uncomment its key and its component
+# Optional values: no check requires them. To set one, uncomment its key and its component
 # below `components:`. A published value replaces the estimate.
 """
 _WIDTH = 100
@@ -71,7 +71,7 @@ def missing_block(
         )
     optional = _optional_values(found, [*inventory])
     if not figures:
-        return f"# No check is unknown for lack of a value.\n{optional}"
+        return f"# No check lacks a value.\n{optional}"
     ids = grouped_by(figures, lambda one: one.component_id)
     lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
     lines += [] if "" in places else ["components:"]

@@ -26,9 +26,12 @@ if TYPE_CHECKING:
 
 
 _BARE = "Instruments without a pressure: depths estimated, with the 95 % band"
-_DEPTHS = "Depths measured (black), estimated (blue, 95 % band), by the currents alone (orange)"
+_DEPTHS = "Depths measured (black), estimated (blue, 95 % band), from the currents alone (orange)"
 _FALSE = "Times when a current is probably wrong"
-_WHOLE = "Depths of all instruments, with 95 % bands; hidden ones and those without pressure dashed"
+_WHOLE = (
+    "Depths of all instruments, with 95 % bands; dashed: withheld instruments and those without a "
+    "pressure"
+)
 _ASSUMED = (
     "Prior assumptions: buoyancy, weights, lengths and positions as in the mooring file; an "
     "uncertainty of 15 % in the drag of each part, 1 % of the water depth in the datum, and 1 m "
@@ -207,7 +210,7 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """Tabulate the common factors with their intervals."""
     rows = [
-        (TITLES[name] + (": not drag, see below" if no_drag(name, value) else ""),
+        (TITLES[name] + (": not a plausible drag, see below" if no_drag(name, value) else ""),
          f"{value:.3f}", f"{low:.3f}–{high:.3f}")
         for name, (value, low, high) in factors.items()
     ]  # fmt: skip
@@ -346,7 +349,7 @@ def depth_figure(series: Sequence[SensorSeries]) -> str:
         hidden = one.hidden and np.isfinite(one.measured).any()
         place = (_LEFT, row * (tall + apart) + apart, _WIDTH - _LEFT - _RIGHT, tall)
         axes = _draw_depths(page, place, [one], curves, numbered=row == len(series) - 1)
-        axes.title(f"{one.label}{', hidden: not used' if hidden else ''}")
+        axes.title(f"{one.label}{', withheld' if hidden else ''}")
     return page.svg()
 
 

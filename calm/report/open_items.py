@@ -229,7 +229,7 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
-        of = f" ({len(labels)})" if len(labels) > 1 else of
+        of = f" ({len(labels)} parts)" if len(labels) > 1 else of
     rules = dict.fromkeys(RULES[one.rule].title for one in group)
     return f"{_capital(', '.join(rules).lower())}{of}{use}"
 
@@ -238,15 +238,17 @@ def _item_text(group: Sequence[Finding], worst: Finding) -> str:
     """Describe an open item by value and limit, and by the remedy or the reason for acceptance."""
     found, limit = figure_text(worst), figure_text(worst, "limit")
     several = len({one.component for one in group}) > 1
-    where = ", ".join(filter(None, (worst.component if several else "", worst.case)))
+    case = f"case {worst.case}" if worst.case else ""
+    where = ", ".join(filter(None, (worst.component if several else "", case)))
     where = f" ({where})" if where else ""
+    value = f"The value is {found}{where}"
     bound = "minimum" if worst.sense == ">=" else "limit"
-    figures = f"{found}{where}; the {bound} is {limit}." if limit else ""
+    figures = f"{value}; the {bound} is {limit}." if limit else ""
     if worst.accept is not None:
         until = f", until {worst.accept.until}" if worst.accept.until else ""
         by = worst.accept.by or "no name"
-        figures = figures or f"{found}{where}; no value is published." * bool(found)
-        example = " Replace before signing." if by == EXAMPLE else ""
+        figures = figures or f"{value}; its limit is not published." * bool(found)
+        example = " Replace this example before signing." if by == EXAMPLE else ""
         accepted = f"Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
         return f"{figures} {accepted}" if figures else accepted
     if worst.state is State.ESTIMATED:

@@ -380,7 +380,7 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
     texts += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
     water = first.results[0].water
     towards = f" Current towards {bearing_text(bearing_of(water.u[0], water.v[0]))} at the surface."
-    aside = f"left to scale, 1 : {_round(scale * 72.0 / 0.0254)}; right not to scale"
+    aside = f"left: to scale, 1 : {_round(scale * 72.0 / 0.0254)}; right: not to scale"
     note = f"{', '.join(texts)}.{towards} Depths in m."
     return Figure("The mooring", svg, aside=aside, note=note)
 

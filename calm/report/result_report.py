@@ -93,7 +93,7 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
         *blocks.warned(
             [(f"{failures}; the values refer to the other samples.")] if uncertain.failed else []
         ),
-        blocks.quiet(f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."),
+        blocks.quiet(f"{uncertain.samples} samples, seed {uncertain.seed}; varied: {drawn}."),
     )
     return ReportPart("Uncertainty of these values", shown)
 

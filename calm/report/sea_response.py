@@ -21,8 +21,8 @@ _NOTE = (
     "!: the piece goes slack."
 )
 _SEAS = (
-    "Measured: range of the standard deviation that tensions measured at sea imply. Half, twice: "
-    "standard deviation with half and with twice the cut-off frequency."
+    "Measured: range of the standard deviation, as implied by tensions measured at sea. Half, "
+    "twice: standard deviation with half and with twice the cut-off frequency."
 )
 _CUT_OFFS = (
     "Tension at the top if the waves are cut off at another frequency, with the same drag. Most "

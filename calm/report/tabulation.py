@@ -74,6 +74,7 @@ class Tabulation:
 
     @property
     def title(self) -> str:
+        """Title of the table."""
         count = len(self.rows)
         return f"{self.name}: tow at {count} speed{'s' if count != 1 else ''}"
 

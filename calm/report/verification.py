@@ -138,5 +138,5 @@ def _sum(findings: Findings) -> Prose:
     if totals:
         lines.append(_sentence("; ".join(totals)))
     if copied:
-        lines.append(f"Not counted: {_count(copied, 'figure')} met by construction")
+        lines.append(f"Not counted: {_count(copied, 'figure')} that are met by construction")
     return Prose(tuple(lines))

@@ -184,7 +184,9 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
     if closed.ending == solution.MARCH_STOPPED:
         return march_stopped(closed.value)
     if closed.ending == solution.NO_SHAPE_NEAR:
-        return Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
+        return Status.NOT_CONVERGED.because(
+            "No exact equilibrium was found near the approximate shape."
+        )
     if closed.ending == solution.SLACK_ON_DIGITS:
         return Status.SLACK.because(
             "The line is slack: its shape depends on the last digits of the buoyancy in use."
@@ -196,7 +198,9 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
 
 def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
     """Return the exception for a march that stopped, with the reason that its number stands for."""
-    return Status.NOT_CONVERGED.because(f"The march stopped: {FAILURES[int(failure)]}.", piece)
+    return Status.NOT_CONVERGED.because(
+        f"The integration along the line stopped: {FAILURES[int(failure)]}.", piece
+    )
 
 
 def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
@@ -215,8 +219,8 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         length = float(line.length.sum())
         radius = watch_circle_radius(length, water.depth - line.anchor_height)
         return Status.SLACK.because(
-            f"There is no current and the line, {length:.1f} m unstretched, is longer than "
-            "the water is deep: it has no unique shape. Its watch circle has a radius of "
+            f"There is no current and the line, {length:.1f} m unstretched, is longer than the "
+            "water depth, so it has no unique shape. Its watch circle has a radius of "
             f"{radius:.{0 if radius >= 100.0 else 1}f} m."
         )
     if ending == solution.TOO_MANY_AFLOAT:

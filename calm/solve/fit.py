@@ -114,7 +114,9 @@ def _upright_length(
             miss, None, room - others, -1.0, shortest, water.depth, small, 1e-9 * water.depth
         )
     except MarchError as error:
-        raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
+        raise Status.NOT_CONVERGED.because(
+            f"The integration along the line stopped: {error}.", piece
+        ) from error
     if not found or abs(left) > settings.tolerance * water.depth:
         return None
     return fitting

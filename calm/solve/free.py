@@ -75,7 +75,9 @@ def solve_rise(
         place, cuts = terminal(rising, settings.angle_step)
         return _recorded(rising, place, cuts, settings)
     except MarchError as error:
-        raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
+        raise Status.NOT_CONVERGED.because(
+            f"The integration along the line stopped: {error}."
+        ) from error
 
 
 def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) -> FreeMotion:

@@ -164,6 +164,7 @@ class LaidLeg:
 
     @property
     def bed(self) -> Bed:
+        """The seabed below the leg."""
         lower, bed = self.leg.lower, self.problem.limits.bed
         own = lower.deeper if isfinite(lower.seabed) else bed[:2]
         return bed._replace(east=own[0], north=own[1])

@@ -290,7 +290,9 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
     """
     net, nearly_out = rough.net, LEAVING_DEPTH * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
-    failure = Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
+    failure = Status.NOT_CONVERGED.because(
+        "No exact equilibrium was found near the approximate shape."
+    )
     if stopped != GOES_ON:
         failure = march_stopped(stopped)
     elif lacking:
@@ -356,7 +358,7 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
     if height[lowest] < -depth - margin:
         piece = solution.piece_at(lowest)
         raise Status.GROUNDED.because(
-            f"The towed line would touch the seabed: {{piece}} comes "
+            f"The towed line would touch the seabed: {{piece}} would be "
             f"{-depth - height[lowest]:.2f} m below it.",
             piece,
             "Pay out less line, tow faster, or remove weight.",
@@ -369,8 +371,8 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
     if not len(wetted) or height[out] > margin:
         piece = solution.piece_at(out)
         raise Status.ABOVE_SURFACE.because(
-            f"The towed line would rise out of the water: {{piece}} comes "
-            f"{height[out]:.2f} m above the surface.",
+            f"The towed line would rise out of the water: {{piece}} would be {height[out]:.2f} m "
+            "above the surface.",
             piece,
             STAY_BELOW,
         )

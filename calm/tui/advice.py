@@ -163,8 +163,10 @@ def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -
         change = _put(item, "use", id) if view.anchored else _added(id)
         yield Offer(title, f"use {id}", change)
     else:
-        heavy = f"No anchor of the catalogue holds: {says(present)}. Add one with `o`."
-        yield Offer(f"anchor: none of the catalogue holds; {says(present)}", "anchor", _no(heavy))
+        heavy = f"No anchor in the catalogue is heavy enough: {says(present)}. Define one with `o`."
+        yield Offer(
+            f"anchor: none in the catalogue is heavy enough; {says(present)}", "anchor", _no(heavy)
+        )
     known = catalogue.levels[-1].get(last.use)
     plain = view.anchored and present.mass is None
     if plain and (known is None or known is not catalogue.entry(last.use)):
@@ -213,7 +215,7 @@ def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer
         own = [piece for piece in file.pieces if piece.place.item == item]
         count = len(own) + ceil(lacking / own[0].component.net_buoyancy)
         label = f"{count} {own[0].use}"
-        title = f"back-up: {label} instead of {len(own)}"
+        title = f"back-up buoyancy: {label} instead of {len(own)}"
         yield Offer(title, label, _put(item, "count", str(count)))
 
 

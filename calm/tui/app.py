@@ -156,6 +156,7 @@ class BuildApp(App[int]):
         return self.builder
 
     def on_mount(self) -> None:
+        """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
         self.set_interval(_DISK_INTERVAL, self.saving.check_external_change)
@@ -199,6 +200,7 @@ class BuildApp(App[int]):
 
     @cached_property
     def output(self) -> TerminalOutput:
+        """What the driver writes to the terminal."""
         return TerminalOutput()
 
     def on_cursor_position(self) -> None:
@@ -210,6 +212,7 @@ class BuildApp(App[int]):
         self.output.clear()
 
     def action_repaint(self) -> None:
+        """Redraw the whole screen."""
         self.output.forget()
         self.screen.refresh()
 
@@ -237,22 +240,27 @@ class BuildApp(App[int]):
         self._edited()
 
     def action_save(self) -> None:
+        """Save, asking for a file name if needed."""
         if self.is_settled():
             self.saving.save()
 
     def action_save_as(self) -> None:
+        """Save under another name."""
         if self.is_settled():
             self.saving.save_as()
 
     async def action_quit(self) -> None:
+        """Quit; prompts for unsaved changes."""
         if self.is_settled():
             self.saving.quit()
 
     def action_command_palette(self) -> None:
+        """Find a command by its name."""
         if not isinstance(self.screen, CommandPalette):
             self.push_screen(palette.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
+        """Show all keys."""
         self.push_screen(dialogs.LongText(key_table.all_keys()))
 
     # judging
@@ -328,7 +336,7 @@ class BuildApp(App[int]):
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
-            return f"Unsaved work could not be kept: {error}"
+            return f"Unsaved work could not be stored: {error}"
         return ""
 
     def _autosave(self) -> None:
@@ -342,7 +350,7 @@ class BuildApp(App[int]):
         try:
             file.keep()
         except (CalmError, OSError) as error:
-            self.call_later(self.tell, f"Unsaved work cannot be kept: {error}", wrong=True)
+            self.call_later(self.tell, f"Unsaved work cannot be stored: {error}", wrong=True)
 
     def on_unmount(self) -> None:
         """Save unsaved work to its backup copy, even after a failure or when the page is closed."""

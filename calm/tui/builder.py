@@ -39,18 +39,22 @@ class BuilderScreen(ComparingScreen):
     BINDINGS = bindings("anywhere")
 
     def on_resize(self) -> None:
+        """Fit the title to the new width."""
         self.show_title()
 
     def on_mount(self) -> None:
+        """Show the line and give it the focus."""
         self.line.show_rows()
         self.line.table.focus()
 
     def on_key(self, event: Key) -> None:
+        """Clear the message in the key bar."""
         if not self.line.editor.is_open:
             self.tell("")
 
     @on(DescendantFocus)
     def show_keys(self) -> None:
+        """Show the keys of the focused widget."""
         places: dict[Any, str] = {CellEditor: "cell", VerdictPane: "verdict", Picture: "anywhere"}
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
@@ -65,15 +69,18 @@ class BuilderScreen(ComparingScreen):
             self.app.action_suspend_process()
 
     def action_picture(self, tab: Tab) -> None:
+        """Show the picture of a tab."""
         self.pictures.tab = tab
 
     def action_zoom(self) -> None:
+        """Show the picture on the whole screen, or restore the screen."""
         self.remove_class("-searching")
         self.toggle_class("-zoomed")
         is_zoomed = self.has_class("-zoomed")
         (self.query_one(Picture) if is_zoomed else self.line.table).focus()
 
     def action_next_environment(self) -> None:
+        """Show the line in its next environment."""
         standing = self.session.standing
         if len(standing.environments) == 1:
             self.tell("The file has one environment; add others on the screen of the water (w)")
@@ -85,11 +92,13 @@ class BuilderScreen(ComparingScreen):
         self.workspace.edited()
 
     def action_verdict(self) -> None:
+        """Move the focus to the lines of the verdict."""
         self.remove_class("-zoomed", "-searching")
         self.add_class("-reading")
         self.verdict.focus()
 
     def action_figures(self) -> None:
+        """Ask for all missing values of components, and write the answers to the file."""
         session = self.session
         if not self.settle():
             return
@@ -118,6 +127,7 @@ class BuilderScreen(ComparingScreen):
             self.tell(f"All component values are present so far. {PENDING}")
 
     def action_begin(self) -> None:
+        """Start a mooring from an empty line."""
         session = self.session
         if session.draft.items:
             self.tell("The line is not empty; templates are for new files")
@@ -133,6 +143,7 @@ class BuilderScreen(ComparingScreen):
         choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
+        """List the changes made, and return to the state before a chosen change."""
         steps = self.session.history
         if not self.settle():
             return
@@ -153,9 +164,11 @@ class BuilderScreen(ComparingScreen):
         choose(self.app, Question("Changes", text, answers))
 
     def action_search(self, purpose: Purpose) -> None:
+        """Search the catalogue."""
         self.search(purpose)
 
     def action_define(self) -> None:
+        """Define a new component in the file, and add it to the line."""
         from calm.tui.component_screen import ComponentScreen
 
         index, session = self.workspace.index, self.session
@@ -198,11 +211,13 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(begun=(id, values)), take)
 
     def action_water(self) -> None:
+        """Open the screen for depth, density, current and wind."""
         from calm.tui.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
+        """Open the file in the text editor."""
         from calm.tui.text_screen import TextScreen
 
         spot, session = self.line.table.spot, self.session
@@ -217,6 +232,7 @@ class BuilderScreen(ComparingScreen):
         self.workspace.edited()
 
     def action_sheet(self, name: str) -> None:
+        """Edit a group of file-level keys on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         part = part_of_row(None if view is None else view.file, self.line.table.spot)
         sheet, label, changed = sheet_of(name, session.draft, part)
@@ -227,6 +243,7 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, sheet, take)
 
     def action_settings(self) -> None:
+        """Choose a section of the file, and edit the section in a form."""
         models = MooringKeys.model_fields
         answers = numbered(
             (f"{name}: {models[name].description}", partial(self.action_sheet, name))

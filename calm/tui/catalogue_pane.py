@@ -58,6 +58,7 @@ class ComponentList(TableCells, can_focus=False):
 
     @property
     def chosen(self) -> Listed | None:
+        """The component under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
     def show(
@@ -199,6 +200,7 @@ class CataloguePane(Vertical):
         self._target = ""
 
     def compose(self) -> ComposeResult:
+        """Yield the title, the search field, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
         yield self.search
         with Horizontal(id="catalogue-found"):
@@ -280,12 +282,14 @@ class CataloguePane(Vertical):
             card.show(Text(str(error)))
 
     def action_sort(self) -> None:
+        """Sort by the next quantity, or by relevance."""
         keys = [None, *(column.key for column in COLUMNS)]
         self._by = keys[(keys.index(self._by) + 1) % len(keys)]
         self.retitle(self._target)
         self._search()
 
     def action_mark(self) -> None:
+        """Toggle the favourite mark of the component."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:
@@ -298,11 +302,13 @@ class CataloguePane(Vertical):
             self._search_again()
 
     def action_choose(self, by: int) -> None:
+        """Move the cursor of the list."""
         self.listing.cursor += by
 
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
+        """Add the component to the line, after asking for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return
@@ -331,4 +337,5 @@ class CataloguePane(Vertical):
         dialogs.enter(self.app, chosen.id, "", [form_field, label], take)
 
     def action_close(self) -> None:
+        """Close the catalogue."""
         self._close()

@@ -31,6 +31,7 @@ class EditableTable(Vertical):
         self.tell, self.table, self.editor = tell, table, CellEditor(self)
 
     def compose(self) -> ComposeResult:
+        """Yield the rows, and the editor above them."""
         yield self.table
         yield self.editor
 
@@ -50,6 +51,7 @@ class EditableTable(Vertical):
         """React to the cancellation of editing; does nothing by default."""
 
     def action_move_column(self, by: int) -> None:
+        """Move the cursor to the left or the right."""
         self.table.column += by
 
     @property
@@ -138,6 +140,7 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_open(self) -> bool:
+        """Whether a value is being edited."""
         return self.has_class("-open")
 
     @property
@@ -185,10 +188,12 @@ class CellEditor(field.ScrolledEntry):
         return reading
 
     def watch_value(self) -> None:
+        """Check the text at each key press."""
         if self.is_open:
             self._owner.tell_reading(self._judged())
 
     def action_done(self, then: Then = "stay") -> None:
+        """Accept the text and move the cursor."""
         reading = self._judged()
         if reading.is_good:
             self._owner.done(then)
@@ -207,6 +212,7 @@ class CellEditor(field.ScrolledEntry):
             self.action_cursor_right()
 
     def action_abandon(self) -> None:
+        """Cancel editing."""
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:

@@ -33,6 +33,7 @@ class Reading:
 
     @property
     def is_good(self) -> bool:
+        """Whether the text is valid."""
         return not self.complaint
 
     @property

@@ -81,6 +81,7 @@ class ComparingScreen(line_screen.LineScreen):
     # advice
 
     def action_advise(self) -> None:
+        """Suggest changes that correct findings or meet a target."""
         from calm.tui.advice import offers, single
 
         if not self.settle():

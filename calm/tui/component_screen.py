@@ -61,6 +61,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         self._values = dict(self._begun)
 
     def compose(self) -> ComposeResult:
+        """Yield the title, the fields with the resulting card, and the keys."""
         yield TitleBar()
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
@@ -81,6 +82,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         yield KeyBar()
 
     async def on_mount(self) -> None:
+        """Show the fields of the first kind."""
         what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(key_table.hints("form"))
@@ -142,6 +144,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_take(self) -> None:
+        """Return the component if all values are valid."""
         if not all_settled(self.all_parts):
             return
         component, problems = defined(*self._all())

@@ -124,9 +124,11 @@ class Field(Horizontal):
         )
 
     def compose(self) -> ComposeResult:
+        """Yield the input."""
         yield self.input
 
     def render(self) -> Content:
+        """Render the name and, if there is room, the note."""
         before, width = self.input.styles.margin.left, self.input.outer_size.width + 1
         title = Content(self.form_field.title).truncate(before, ellipsis=True, pad=True)
         room = max(self.content_size.width - before - width, 0)
@@ -194,6 +196,7 @@ class Field(Horizontal):
             self.post_message(self.Entered(self))
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
+        """Accept a valid text when the focus leaves."""
         if self.reading.is_good:
             self.settle()
 
@@ -246,9 +249,11 @@ class Cycle(Widget, can_focus=True):
 
     @property
     def hint(self) -> str:
+        """Keys of this widget."""
         return "← → another, ↑ ↓ go on"
 
     def show(self, word: str) -> None:
+        """Select a word."""
         self.word = word
         self.refresh()
 
@@ -258,13 +263,16 @@ class Cycle(Widget, can_focus=True):
         return self.words[(here + by) % len(self.words)]
 
     def action_turn(self, by: int) -> None:
+        """Select the next or the previous word."""
         self.show(self.next_word(by))
         self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
+        """Select the next word."""
         self.action_turn(1)
 
     def render(self) -> Text:
+        """Render the name, the arrows and the word."""
         return Text.assemble(
             (self._title, "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),

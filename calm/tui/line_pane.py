@@ -83,21 +83,26 @@ class LinePane(LineSearch):
     # the cursor and the marks
 
     def action_move_cursor(self, by: int) -> None:
+        """Go up or down."""
         self.table.cursor += by
 
     def action_move_page(self, by: int) -> None:
+        """Go a page up or down."""
         self.table.cursor += by * max(self.table.size.height - 2, 1)
 
     def action_move_to_end(self, direction: int) -> None:
+        """Go to the top or the bottom."""
         self.table.cursor = 0 if direction < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
+        """Toggle the mark of the row, or extend the marks and move on."""
         table = self.table
         marked, spot = table.marked, table.chosen_here
         table.cursor += by
         table.mark(marked | {spot, table.chosen_here} if by else marked ^ {spot})
 
     def action_mark_all(self) -> None:
+        """Mark all pieces, or remove all marks if all are marked."""
         pieces = frozenset(row.spot for row in self.table.rows if not row.spot.is_clamp)
         self.table.mark(frozenset() if self.table.marked >= pieces else pieces)
 
@@ -122,6 +127,7 @@ class LinePane(LineSearch):
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
     def action_why(self) -> None:
+        """Show all findings of the row under the cursor."""
         row = self.table.rows[self.table.cursor]
         found = self._found_of(row.spot)
         if not found:
@@ -134,12 +140,14 @@ class LinePane(LineSearch):
     # rows
 
     def action_search(self, purpose: Purpose) -> None:
+        """Search the catalogue for a component for the row."""
         if self.table.rows or purpose in ("below", "above"):
             self._search(purpose)
         elif purpose == "clamp":
             self.workspace.tell("Add a piece before clamping an instrument")
 
     def action_equipment(self) -> None:
+        """Edit the serial number, calibration and other equipment keys of the row."""
         spot = self.table.chosen_here
         values = self.session.written(spot)
         label = str(values.get("label") or values.get("use") or "")
@@ -179,6 +187,7 @@ class LinePane(LineSearch):
         choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
+        """Add several copies of the selected rows."""
         chosen = self._chosen_of_a_kind()
 
         def take(texts: dict[str, str]) -> None:
@@ -189,6 +198,7 @@ class LinePane(LineSearch):
             enter(self.app, "Repeat", "", fields, take)
 
     def action_duplicate(self) -> None:
+        """Duplicate the selected rows."""
         chosen = self._chosen_of_a_kind()
         named = [each for spot in chosen for each in references_to(self.session.draft, spot)]
 
@@ -206,11 +216,13 @@ class LinePane(LineSearch):
             duplicate()
 
     def action_delete(self) -> None:
+        """Delete the selected rows."""
         chosen = self.table.chosen
         what = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
         self.attempt(lambda: self.session.delete(chosen), f"{what}; u restores")
 
     def action_move_piece(self, by: int) -> None:
+        """Move the selected rows up or down."""
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
         moved: list[Place] = []
 
@@ -222,16 +234,19 @@ class LinePane(LineSearch):
             self.table.mark(frozenset(moved))
 
     def action_copy(self) -> None:
+        """Copy the selected rows for pasting."""
         if copied := self.session.copy(self._chosen_of_a_kind()):
             self.table.mark(frozenset())
             self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
 
     def action_cut(self) -> None:
+        """Cut the selected rows for pasting."""
         chosen = self._chosen_of_a_kind()
         if self.session.copy(chosen):
             self.attempt(lambda: self.session.delete(chosen), "cut; v pastes below")
 
     def action_paste(self, below: int) -> None:
+        """Paste the copied rows."""
         if not self.session.copied:
             self.workspace.tell("There are no copied rows to paste")
         else:
@@ -253,6 +268,7 @@ class LinePane(LineSearch):
     # a value in place
 
     def action_edit(self) -> None:
+        """Edit the value under the cursor."""
         self.action_edit_column(EDITABLE[self.table.column])
 
     @on(LineTable.Pressed)
@@ -260,6 +276,7 @@ class LinePane(LineSearch):
         self.action_edit()
 
     def action_edit_column(self, column: Column) -> None:
+        """Edit a value of the row under the cursor."""
         spot = self.table.spot
         if spot is None:
             self._search("below")
@@ -280,6 +297,7 @@ class LinePane(LineSearch):
         self.open_editor(cell.text, cell.check, least_width=least)
 
     def write(self, text: str) -> None:
+        """Write a valid text into the draft."""
         cell, before = self._cell, self.session.draft
         is_put = cell is not None and self.workspace.attempt(lambda: cell.put(text))[0]
         if is_put and self.session.draft is not before:

@@ -55,6 +55,7 @@ class LineScreen(screen.DraftScreen):
         self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
+        """Yield the line, and the picture and verdict, which the catalogue may replace."""
         with Horizontal(id="body"):
             yield self.line
             yield self.catalogue
@@ -72,6 +73,7 @@ class LineScreen(screen.DraftScreen):
         return self.line.settle()
 
     def show_draft(self) -> None:
+        """Show the current draft."""
         self.line.show_draft()
         self._show_side_panes()
         self.show_title()
@@ -179,6 +181,7 @@ class LineScreen(screen.DraftScreen):
         self.catalogue.retitle(self._target(self.catalogue.purpose))
 
     def close_catalogue(self) -> None:
+        """Close the catalogue and return to the line."""
         self.remove_class("-searching")
         self.line.table.focus()
 

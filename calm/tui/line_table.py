@@ -72,6 +72,7 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def columns(self) -> tuple[TableColumn, ...]:
+        """Columns that fit the current width."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
             names = ("component", "label", "length", "leg")
@@ -85,10 +86,12 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
+        """Names of the editable columns."""
         return EDITABLE
 
     @property
     def row(self) -> TableRow | None:
+        """The row under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
     @property
@@ -128,6 +131,7 @@ class LineTable(TableCells, can_focus=True):
         self.refresh()
 
     def on_resize(self) -> None:
+        """Keep the cursor visible as the window changes."""
         self.follow()
 
     def below(self, y: int) -> list[Segment]:
@@ -139,6 +143,7 @@ class LineTable(TableCells, can_focus=True):
         return [Segment(hints[y - 2], self.get_component_rich_style("line-table--clamp"))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
+        """Return the text of a cell."""
         return self.rows[number].texts.get(column.name, "")
 
     def row_style(self, number: int) -> Style:
@@ -282,6 +287,8 @@ class LineSearch(cell_editor.EditableTable):
     words = ""
 
     def action_find(self) -> None:
+        """Ask for words, and go to the next row that contains them."""
+
         def take(texts: dict[str, str]) -> None:
             self.words = texts["words"]
             self.action_find_next(1)
@@ -301,6 +308,7 @@ class LineSearch(cell_editor.EditableTable):
         )
 
     def action_weakest(self) -> None:
+        """Go to the row with the highest utilisation of strength."""
         view = self.workspace.judged("Checks are still running; try again in a moment")
         if view is None:
             return

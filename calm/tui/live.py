@@ -92,6 +92,7 @@ class View:
 
     @cached_property
     def items(self) -> tuple[editing.LineItem, ...]:
+        """Items of the line in the text."""
         return editing.Draft(self.text).items
 
     @property

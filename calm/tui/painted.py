@@ -225,6 +225,7 @@ class TerminalOutput:
 
     @property
     def is_out(self) -> bool:
+        """Whether an answer of the terminal is pending."""
         return self._pace.is_out
 
 

@@ -128,11 +128,13 @@ class Pictures(Vertical):
         self._caption = Static("dashed: the saved line", id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
+        """Yield the tabs, the caption and the picture."""
         yield self._tabs
         yield self._caption
         yield self._picture
 
     def on_mount(self) -> None:
+        """Show the tabs before the first solution."""
         self._show()
 
     def show(self, view: View | None, note: str = "") -> None:
@@ -146,6 +148,7 @@ class Pictures(Vertical):
         self._show()
 
     def watch_tab(self) -> None:
+        """Draw the picture of the selected tab."""
         self._show()
 
     def _show(self) -> None:
@@ -169,6 +172,7 @@ class Pictures(Vertical):
         self._tabs.update("".join(parts), layout=False)
 
     def on_click(self, event: events.Click) -> None:
+        """Give the picture the focus."""
         self._picture.focus()
 
 

@@ -170,7 +170,7 @@ class Saving:
             text = self._session.file.read()
         except (CalmError, OSError) as error:
             if not quietly:
-                self._workspace.tell(f"The file cannot be read any more: {error}", wrong=True)
+                self._workspace.tell(f"The file can no longer be read: {error}", wrong=True)
             return
         self._session.write(text, "reload the file")
         self._session.history.saved()
@@ -194,7 +194,7 @@ class Saving:
             go_on()
 
         whose = "" if keeper.is_here else f" on {keeper.host}, where the file may still be open"
-        text = f"An earlier run ended before {session.name} was saved. It kept its work "
+        text = f"An earlier run ended before {session.name} was saved. Its work was stored "
         text += f"{moment(kept.at)}{whose}."
         if session.file.is_of_another(kept):
             stamp = session.file.stamp
@@ -207,7 +207,7 @@ class Saving:
 
         def ask_again() -> None:
             yes = [Answer("y", "discard permanently", throw_away)]
-            kept_text = f"It was kept {moment(kept.at)}."
+            kept_text = f"It was stored {moment(kept.at)}."
             choose(
                 app,
                 Question(
@@ -269,7 +269,7 @@ def _is_writable(text: str) -> Reading:
     if not tidy:
         return Reading("", "a name is needed")
     if "\0" in tidy:
-        return Reading(tidy, "cannot be a name: it holds a null character")
+        return Reading(tidy, "cannot be a name: it contains a null character")
     try:
         path = chosen_path(tidy)
         if path.is_dir() or tidy.endswith(("/", os.sep)):

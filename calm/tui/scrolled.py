@@ -49,9 +49,11 @@ class Scrolled(ScrollView, inherit_bindings=False):
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
     def on_focus(self) -> None:
+        """Draw the cursor."""
         self.refresh()
 
     def on_blur(self) -> None:
+        """Remove the cursor."""
         self.refresh()
 
 
@@ -67,6 +69,7 @@ class DrawnRows(Scrolled, can_focus=False):
         raise NotImplementedError
 
     def draw_again(self) -> None:
+        """Redraw the rows."""
         self._drawn = (None, self._drawn[1])
         self.refresh()
 
@@ -78,6 +81,7 @@ class DrawnRows(Scrolled, can_focus=False):
         return self._drawn[1]
 
     def render_line(self, y: int) -> Strip:
+        """Return a line of the screen."""
         rows, number, left = self.drawn(), y + self.scroll_offset.y, self.scroll_offset.x
         width, style = self.scrollable_content_region.width, self.rich_style
         strip = Strip(rows[number] if number < len(rows) else []).apply_style(style)
@@ -102,9 +106,11 @@ class ScrolledText(DrawnRows):
         self.drawn()
 
     def on_resize(self) -> None:
+        """Wrap the texts to the new width."""
         self.drawn()
 
     def rows_for(self, size: Size) -> list[Row]:
+        """Wrap the texts."""
         wrapped = self._wrapped(size.width)
         self._numbers = [number for number, _ in wrapped]
         self.virtual_size = Size(size.width, len(wrapped))
@@ -232,17 +238,21 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
+        """Limit the cursor to the rows."""
         return max(0, min(cursor, len(self.rows) - 1))
 
     def validate_column(self, column: int) -> int:
+        """Limit the cursor to the editable columns."""
         return max(0, min(column, len(self.editable) - 1))
 
     def watch_cursor(self, before: int, now: int) -> None:
+        """Keep the cursor visible."""
         if not self.follow():
             self.refresh_rows(before, now)
         self.post_message(self.Moved())
 
     def watch_column(self) -> None:
+        """Draw the cursor in its new column."""
         self.refresh_rows(self.cursor)
         self.post_message(self.Moved())
 
@@ -294,6 +304,7 @@ class TableCells(Scrolled, inherit_bindings=False):
     # drawing
 
     def render_line(self, y: int) -> Strip:
+        """Return a line of the screen."""
         width, number = self.scrollable_content_region.width, self.row_at(y)
         ground = self.rich_style
         if y == 0:

@@ -63,10 +63,12 @@ class Session:
 
     @property
     def draft(self) -> Draft:
+        """The current draft of the file."""
         return self.history.draft
 
     @property
     def changed(self) -> bool:
+        """Whether there are unsaved changes."""
         return self.history.changed
 
     @property

@@ -59,9 +59,11 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
+        """Names of the editable columns: all columns."""
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
+        """Return the text of a cell."""
         return self.rows[number][int(column.name)]
 
     def lead(self, number: int, style: Style) -> list[Segment]:
@@ -122,6 +124,7 @@ class Grid(cell_editor.EditableTable):
         self._before: Rows | None = None  # rows without the row that Enter added
 
     def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
+        """Replace the rows."""
         self._columns = tuple(columns)
         self.cells.show([column.heading for column in columns], rows)
 
@@ -148,6 +151,7 @@ class Grid(cell_editor.EditableTable):
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Disable row actions while a value is typed."""
         return not self.editor.is_open
 
     def action_move_row(self, by: int) -> None:
@@ -172,12 +176,14 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_next()
 
     def on_key(self, event: events.Key) -> None:
+        """Start editing at a digit."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
             event.stop()
             self._edit(event.character)
 
     @on(GridCells.Pressed)
     def action_edit(self) -> None:
+        """Edit the cell."""
         if self.cells.rows:
             self._edit()
 
@@ -191,6 +197,7 @@ class Grid(cell_editor.EditableTable):
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
+        """Add a row above or below."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
@@ -202,6 +209,7 @@ class Grid(cell_editor.EditableTable):
         self._edit()
 
     def action_drop_row(self) -> None:
+        """Delete the row."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "delete a row")
@@ -242,6 +250,7 @@ class Grid(cell_editor.EditableTable):
     # pasted text
 
     def on_paste(self, event: events.Paste) -> None:
+        """Replace all rows by pasted rows."""
         event.stop()
         self.take_text(event.text)
 

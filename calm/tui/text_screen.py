@@ -23,17 +23,21 @@ class YamlArea(TextArea):
     BINDINGS = key_table.bindings("area")
 
     def action_indent(self) -> None:
+        """Insert blanks up to the next even column."""
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
     def action_end(self, direction: int) -> None:
+        """Go to the beginning or the end of the text."""
         self.move_cursor(self.document.end if direction > 0 else (0, 0))
 
     def undo(self) -> None:
+        """Undo the last typing."""
         super().undo()
         self._wrap()
 
     def redo(self) -> None:
+        """Redo the last undone typing."""
         super().redo()
         self._wrap()
 
@@ -71,6 +75,7 @@ class TextScreen(screen.DraftScreen):
         self._edited = False
 
     def parts(self) -> ComposeResult:
+        """Yield the text and the mistakes."""
         yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
@@ -118,6 +123,7 @@ class TextScreen(screen.DraftScreen):
             self.workspace.edited()
 
     def settle(self) -> bool:
+        """Accept the current text."""
         self._take()
         return True
 
@@ -161,6 +167,7 @@ class TextScreen(screen.DraftScreen):
         self.workspace.tell(f"{self._search_text}: not found", wrong=True)
 
     def action_next_problem(self) -> None:
+        """Put the cursor on the next mistake."""
         if self._problems and not self._here:
             self.workspace.tell(f"{self.session.name} itself has no mistakes")
         placed = [each for each in self._here if each.line]
@@ -172,14 +179,17 @@ class TextScreen(screen.DraftScreen):
             self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
     def action_find(self) -> None:
+        """Ask for search words, and go to the first match."""
         fields = [forms.FormField("words", "Find", placeholder="a label, a key, a number")]
         text, app = "F3 goes to the next match.", self.app
         dialogs.enter(app, "Find in the text", text, fields, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
+        """Go to the next match."""
         self.find()
 
     def action_back(self) -> None:
+        """Return to the line if the text is valid."""
         if self.session.draft.problems:
             self.tell("Correct the text first: it is not valid", wrong=True)
         else:

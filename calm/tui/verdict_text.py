@@ -43,6 +43,7 @@ class VerdictLine:
 
     @property
     def sign(self) -> str:
+        """Sign before the line."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else self.state.sign

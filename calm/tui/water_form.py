@@ -241,13 +241,16 @@ class FormChoice(Cycle):
         self._given = forms[0]
 
     def show(self, word: str) -> None:
+        """Show the current form."""
         self._given = word
         super().show(word)
 
     def action_turn(self, by: int) -> None:
+        """Show the next form."""
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
+        """Accept the form shown, or move to the next field."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:

@@ -80,6 +80,7 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def parts(self) -> ComposeResult:
+        """Yield the form on the left and the current profile on the right."""
         with Horizontal():
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
@@ -92,6 +93,7 @@ class WaterScreen(screen.DraftScreen):
                 yield pictures.ProfilePicture()
 
     def on_mount(self) -> None:
+        """Show the environment."""
         self.show_draft()
         self.query_one("#depth", Field).input.focus()
 
@@ -324,10 +326,13 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def action_next_environment(self) -> None:
+        """Show the next environment, and solve the line in this environment."""
         if self.settle():
             self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
+        """Add a named environment with the current of the displayed environment."""
+
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
             if name in self.session.standing.environments:
@@ -349,6 +354,7 @@ class WaterScreen(screen.DraftScreen):
             dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
+        """Delete the displayed named environment from the file."""
         name = self.water.variant
         if name is None:
             self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
@@ -365,6 +371,8 @@ class WaterScreen(screen.DraftScreen):
         self.workspace.edited()
 
     def action_preset(self) -> None:
+        """Choose a typical current profile."""
+
         def take(speed: Callable[[float], float]) -> None:
             deep = self.water.depth or USUAL_DEPTH
             rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in SHARES]

@@ -121,6 +121,7 @@ class Workspace:
 
     @property
     def path(self) -> Path:
+        """Path of the file, as given in its mistakes."""
         return Path() if self.view is None else self.view.path
 
     @property

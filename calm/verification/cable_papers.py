@@ -123,17 +123,18 @@ _READ = _figures(0.02 * 20.0, 0.5, 0.02 * 250.0)
 
 BRACONNOT = Source(
     "Braconnot's charts",
-    """H. Braconnot's charts of cables in a uniform current with normal drag only (EDF),
-K = ρ Cx D V²/(2w); A is the lower end of the cable, B the upper, angles are to the current.
+    """H. Braconnot (EDF) drew charts of cables in a uniform current with normal drag only, for
+values of K = ρ Cx D V²/(2w). A is the lower end of the cable and B the upper end; angles are
+measured from the current.
 
-For his buoy (K = 2.4, w = 5 N/m, φ_B = 75°, T_B = 350 N, 20 m above A) he reads 28.3 m of cable,
-18.5 m, 22° and 250 N off the charts. That buoy's true K is 2.7, and the chart of a nearby K makes a
-difference: with 2.7, L is 30.71 m. His towed cable (K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N,
-L = 100 m) reaches a depth of 69.5 m in the paper, which takes H₀ from 1 + z′ = 2.4. The point is at
-z′ = 2.27, so the depth is 73.20 m; at the knot he tows at, K is 3.176 and the depth 82.87 m. Other
-figures are integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable
-of the second branch, beyond the critical angle of 144.4°, and one that dips below its lower end.
-All are compared with `calm.analytic.chart`, the buoy and the tow with the march as well.""",
+For his buoy (K = 2.4, w = 5 N/m, φ_B = 75°, T_B = 350 N, 20 m above A) Braconnot reads 28.3 m of
+cable, 18.5 m, 22° and 250 N off the charts. The true K of this buoy is 2.7, for which the length is
+30.71 m. For his towed cable (K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N, L = 100 m) the paper
+gives a depth of 69.5 m, because it computes H₀ with 1 + z′ = 2.4. The point is at z′ = 2.27, so the
+depth is 73.20 m. At his tow speed of one knot, K is 3.176 and the depth 82.87 m. Two more cases are
+integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable of the second
+branch, beyond the critical angle of 144.4°, and a cable that dips below its lower end. All values
+are compared with `calm.analytic.chart`; the buoy and the tow are also compared with the march.""",
     (
         *table(
             [_READ[name] for name in ("L", "D", "phi_a", "T_A")],
@@ -152,7 +153,7 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
                 CaseColumn[Ends]("angle φ_A, march", "°", 2e-3, lambda ends: 90.0 - ends.lean),
             ],
             [("buoy", partial(finely, buoy, BUOY_LIFT, 25.0), (20.0, 18.782, 250.00, 22.027))],
-            "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
+            "The length of the cable, 28.467 m, is known to half a millimetre.",
             Kind.INDEPENDENT),
         *table(
             [
@@ -162,7 +163,7 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
                 CaseColumn[Solution]("reserve, march", "N", 5e-3, lambda s: s.reserve),
             ],
             [("buoy of 1000 N, afloat", _afloat, (338.0740, 661.9260))],
-            "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
+            "The length of the cable, 28.467 m, is known to half a millimetre.",
             Kind.INDEPENDENT),
         *table(
             [_figures(5.5e-3, 0.0, 0.0)[name] for name in ("L", "D")],
@@ -258,17 +259,18 @@ _FITTED = (
 
 BOURGET_MARICHAL = Source(
     "Bourget & Marichal",
-    """Bourget & Marichal's towed cable: V = 1.30 m/s, 3.845 m of cable of 17 mm and 2383 kg/m³, a
-sphere of 100 mm and 1.47 kg, Cx 0.90, in fresh water. The whole cable strums at one frequency,
-F = 0.166 V₀ sin φ_n/D with φ_n the angle at the ship; its amplitude is a/D = A₁ + B₁ φ + C₁ φ², its
-drag coefficient C* = C₀ f(λ), at most 3.0. The paper does not print A₁, B₁ and C₁. CALM's follow
-from three of its own figures: a/D = 0.5 at 90°, C* = 1.25 at the sphere, φ_n = 16.28°. So these
-three are met by construction; the frequency, the immersion, the maximum C* and the amplitudes of
-the bare cable from 0.6 to 2.0 m/s, for which the paper prints 0.9 to 1.4, are not. The prefactor of
-f, printed 2/π on [0, π], must be 1/π: f(0) = 1.
+    """Bourget and Marichal towed a sphere of 100 mm and 1.47 kg (Cx 0.90) at 1.30 m/s in fresh
+water, on 3.845 m of cable of 17 mm and 2383 kg/m³. In their model, the whole cable strums at one
+frequency, F = 0.166 V₀ sin φ_n/D, where φ_n is the angle at the ship. The amplitude is a/D = A₁ +
+B₁ φ + C₁ φ², and the drag coefficient is C* = C₀ f(λ), at most 3.0. The paper does not give A₁, B₁
+and C₁. CALM's values are fitted to three results of the paper: a/D = 0.5 at 90°, C* = 1.25 at the
+sphere, φ_n = 16.28°. These three therefore agree by construction. The frequency, the immersion, the
+maximum C*, and the amplitudes of the bare cable from 0.6 to 2.0 m/s, for which the paper has 0.9 to
+1.4, are not fitted. The factor of f, printed as 2/π on [0, π], must be 1/π, because f(0) = 1.
 
-The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, and the gap of
-13 % is the model's. The same tow with a constant C of 1.2 was computed without CALM.""",
+The paper computes 3.56 Hz and measured 4.07 Hz. CALM's 3.559 Hz agrees with the computed value; the
+difference of 13 % is an error of the model. The same tow with a constant C of 1.2 was computed
+without CALM.""",
     (
         Case("strumming: angle φ_n at the ship", 16.280, "°", 1e-3, _FITTED,
              lambda: _example(True).angle, Kind.BY_CONSTRUCTION),
@@ -280,7 +282,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
              lambda: _example(True).frequency, Kind.PUBLISHED),
         Case("strumming: C* at the sphere", 1.250, "", 1e-3, _FITTED, _at_the_sphere,
              Kind.BY_CONSTRUCTION),
-        Case("strumming: C* at the ship", 3.0, "", 1e-9, "The model's ceiling.",
+        Case("strumming: C* at the ship", 3.0, "", 1e-9, "The upper limit of the model.",
              lambda: _coefficient(radians(_example(True).angle)),
              Kind.PUBLISHED),
         Case("a/D at 90°", 0.5, "", 1e-4, _FITTED, lambda: _LAW.amplitude(pi / 2.0),
@@ -321,11 +323,11 @@ def _cable(start: float, mean: float) -> Station:
 
 VILLAIN_GUILLOT = Source(
     "Villain-Guillot, figure 1",
-    """S. Villain-Guillot's towed cable with a drag linear in each component of the velocity, equal
-along and across (D = 1, k_t = k_n): tan α_d = μg/(kV), ℓ = T₀/√((μg)² + (kV)²), with L = 1.25 and ℓ
-= 0.5 as in his figure 1; evaluated from the closed form in the paper and compared with
-`calm.analytic.villain_guillot`. His formula for ρ(α) at D = 1 is printed upside down; s, T and the
-shape are right.""",
+    """S. Villain-Guillot's towed cable has a drag that is linear in each component of the velocity
+and equal along and across the cable (D = 1, k_t = k_n). With tan α_d = μg/(kV) and ℓ = T₀/√((μg)² +
+(kV)²), the cases have L = 1.25 and ℓ = 0.5, as in his figure 1. The expected values come from the
+closed form in the paper, and are compared with `calm.analytic.villain_guillot`. His formula for
+ρ(α) at D = 1 is printed upside down; s, T and the shape are right.""",
     table(
         [
             CaseColumn("x", "", 5.5e-7, lambda cable: float(cable.x)),

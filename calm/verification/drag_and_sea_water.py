@@ -49,7 +49,7 @@ _KAPPA = (0.58, 0.62, 0.68, 0.74, 0.82, 0.87, 0.98)
 _KAPPA_ABOVE = (0.80, 0.80, 0.82, 0.90, 0.98, 0.99, 1.00)
 _END_FACE = ((0.1, 1.17), (0.6, 1.07), (0.88, 0.97), (1.3, 0.86), (1.8, 0.82))
 
-_COPIED = "The printed digits: they are the points CALM's curve is drawn through."
+_COPIED = "The printed digits, because CALM's curve passes through these points."
 _SHARE = 1e-9
 
 
@@ -62,14 +62,15 @@ def cheng(reynolds: float) -> float:
 
 DRAG_CURVES = Source(
     "Drag curves of smooth bodies",
-    """Cn of a long smooth cylinder against Reynolds number (C23): Wieselsberger's measurements
-(NACA report 121) up to 1.61e5 and the recommendation of DNV-RP-C205, figure 6-6, from 2.1e5. In the
-drag crisis the two differ, by a roughness or a turbulence that nobody states; CALM takes DNV's
-curve there: it is the more recent and the more conservative. Factors for finite length:
-DNV-RP-C205, table 6-2; flow against the end face: Kritzinger. Cx of a sphere: F. A. Morrison's
-correlation (Michigan Technological University, 2016). Recovering the printed points only guards
-against copying errors; Cheng's fit (Journal of Hydraulic Engineering 139, 2013), which uses none of
-them, is compared with some. These curves apply only to components declared smooth.""",
+    """Cn of a long smooth cylinder depends on the Reynolds number (C23). CALM uses Wieselsberger's
+measurements (NACA report 121) up to 1.61e5 and the curve of DNV-RP-C205, figure 6-6, from 2.1e5. In
+the drag crisis the two sources differ, probably because of roughness or turbulence, which neither
+states; CALM uses DNV's curve there, because it is more recent and more conservative. Factors for
+finite length are from DNV-RP-C205, table 6-2, the drag of an end face from Kritzinger, and Cx of a
+sphere from F. A. Morrison's correlation (Michigan Technological University, 2016). Agreement with
+the printed points only excludes copying errors. Some points are therefore also compared with
+Cheng's fit (Journal of Hydraulic Engineering 139, 2013), which uses none of them. The curves apply
+only to components declared smooth.""",
     (
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Wieselsberger", cn, "", _SHARE, _COPIED,
@@ -84,7 +85,7 @@ them, is compared with some. These curves apply only to components declared smoo
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Cheng", round(cheng(reynolds), 4), "",
                  0.05 * cheng(reynolds),
-                 "5 %, to which the fit and the measurements agree from Re 17 to 1.6e5.",
+                 "5 %, the difference between fit and measurements from Re 17 to 1.6e5.",
                  partial(cylinder_coefficient, reynolds), Kind.CLOSED_FORM)
             for reynolds in (17.7, 63.6, 196.0, 892.0, 5.15e3, 1.5e4, 6.55e4, 1.07e5)
         ),
@@ -119,11 +120,12 @@ _AMPLITUDES = (0.3, 0.5, 0.9, 1.0, 1.4)
 
 STRUMMING_FACTORS = Source(
     "Strumming factors",
-    """Cn of a line that strums over Cn at rest, from its amplitude A/D: Vandiver (1983), 1 + 1.043
-(2 Y_rms/D)^0.65 with Y_rms = A/√2; Blevins (1990), 1 + 2.1 A/D; Skop, Griffin & Ramberg (1977), 1 +
-1.16 (w_r − 1)^0.65 with w_r = 1 + 2 A/D. Beyond A/D = 1 CALM follows Blevins' line, which
-overshoots what Griffin et al. (1984) measured on cables at sea: Cn of 2.4 to 3.2, some 2.0 to 2.7
-times that at rest, the band of all three at A/D from 0.5 to 1.""",
+    """The ratio of Cn of a strumming line to Cn at rest depends on the amplitude A/D. It is 1 +
+1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2 by Vandiver (1983), 1 + 2.1 A/D by Blevins (1990), and 1 +
+1.16 (w_r − 1)^0.65 with w_r = 1 + 2 A/D by Skop, Griffin & Ramberg (1977). Above A/D = 1, CALM
+keeps Blevins' ratio constant, because the straight line exceeds the values measured on cables at
+sea: Cn of 2.4 to 3.2, about 2.0 to 2.7 times the value at rest (Griffin et al. 1984). All three
+laws give such ratios for A/D from 0.5 to 1.""",
     tuple(
         Case(f"{name}, A/D {amplitude:g}", printed, "", 5.5e-4,
              PRINTED, partial(factor, amplitude), Kind.CLOSED_FORM)
@@ -178,10 +180,11 @@ def _density(salinity: float, temperature: float, depth: float) -> float:
 
 SEA_WATER = Source(
     "Sea water and gravity",
-    """Viscosity by Sharqawy, Lienhard & Zubair (Desalination and Water Treatment 16, 2010,
-equations 22 and 23; themselves good to 1.5 %), density by TEOS-10 (at 30° of latitude), gravity by
-the international formula that TEOS-10 takes (C23). They are also compared with a regression of
-Dorsey's viscosities (1940), other measurements, and the viscosity of pure water at 20 °C.""",
+    """CALM computes viscosity by Sharqawy, Lienhard & Zubair (Desalination and Water Treatment 16,
+2010, equations 22 and 23, accurate to 1.5 %), density by TEOS-10 (here at 30° of latitude), and
+gravity by the international formula that TEOS-10 uses (C23). The viscosity is also compared with a
+regression of Dorsey's measurements (1940), with other measurements, and with the viscosity of pure
+water at 20 °C.""",
     (
         *(
             Case(f"C23 dynamic viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
@@ -233,10 +236,10 @@ by the manufacturer.
 
 CALM_PAPER = Source(
     "Paper on the original CALM",
-    """The paper on the original CALM has a table of dynamic viscosities (in mPl, which is mPa s)
-and the drag of an Aanderaa RCM4/RCM5 at five speeds with the rule K = Σ(F/V) / ΣV, by which CALM
-derives a drag from such pairs. It gives K as 2.694 N. The manufacturer's figures are in
-kilograms-force, which the drag of a plate of that size confirms, so that K is 26.4 N/(m/s)².""",
+    """The paper on the original CALM has a table of dynamic viscosities, in mPl, which is mPa s. It
+also has the drag of an Aanderaa RCM4/RCM5 at five speeds, with the rule K = Σ(F/V) / ΣV, by which
+CALM derives a drag from such measurements. The paper gives K as 2.694 N. The manufacturer's forces
+are in kilograms-force, as the drag of a plate of that size confirms, so K is 26.4 N/(m/s)².""",
     (
         *(
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",

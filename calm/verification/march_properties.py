@@ -235,21 +235,24 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
     return Case(f"C20 {name}", 0.0, "", tolerance, why, got, Kind.PROPERTY)
 
 
-_SAME = "The same segments: rounding, and 1e-9 of the depth where each search for the root stops."
-_RODS = "The rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°."
+_SAME = (
+    "Both solutions have the same segments: the tolerance covers rounding, and 1e-9 of the depth, "
+    "at which each search for a root stops."
+)
+_RODS = "The error of straight segments: 1 − cos of half an angle step, 4e-7 at 0.1°."
 
 INVARIANTS = Source(
     "Invariants",
-    """Properties that hold without a reference (C20). A line with one of everything (a float, 300 m
-of wire with two clamps, an instrument that follows the line, 400 m of rope that stretches, four
-glass balls, a release, chain) stands in a current that veers, reverses and has an upward part, in
-water whose density grows with depth. Each difference is the largest over all positions, as a
-fraction of the depth, or over all tensions, as a fraction of the largest.
+    """These properties hold for every line and need no reference (C20). The line has one piece of
+each kind (a float, 300 m of wire with two clamps, an instrument that follows the line, 400 m of
+rope that stretches, four glass balls, a release, chain). The current turns with depth, reverses and
+has an upward component, and the density grows with depth. Each difference is the maximum over all
+positions, divided by the depth, or the maximum over all tensions, divided by the largest tension.
 
-Where the current grows with depth there may be more than one equilibrium: a float of 500 N and 100
-N of drag at 1 m/s on 100 m of thread in a current of 0.2 m/s that rises to 3 m/s between 12 and 30
-m has three, the roots 10.0032, 21.0044 and 61.4357 m of d = 110 − 100/√(1 + (D(d)/B)²); CALM
-returns the highest and reports the lowest; the one between them is unstable.""",
+If the current grows with depth, there may be several equilibria. A float of 500 N, with a drag of
+100 N at 1 m/s, on 100 m of thread in a current of 0.2 m/s that rises to 3 m/s between 12 and 30 m
+has three. They are the roots 10.0032, 21.0044 and 61.4357 m of d = 110 − 100/√(1 + (D(d)/B)²). CALM
+gives the highest and reports the deepest; the equilibrium between them is unstable.""",
     (
         _nothing("current turned by 37°: the line turns", 1e-8, _SAME, _turned),
         _nothing("current reversed: the line reverses", 1e-8, _SAME,
@@ -257,7 +260,7 @@ returns the highest and reports the lowest; the one between them is unstable."""
         _nothing("current mirrored: the line is mirrored", 1e-8, _SAME,
                  lambda: _mirrored(1.0, -1.0)),
         _nothing("seabed and axes moved by 100 m: the line follows", 4e-6,
-                 "Segments are at most a share of the depth, so they differ: 2e-6 each at 0.1°.",
+                 "Each shape has its own segments, and an error of 2e-6 at 0.1°.",
                  _deeper),
         _nothing("lengths × 3, forces × 0.2, speeds × 1.7: similar", 1e-8, _SAME,
                  lambda: _similar(3.0, 0.2, 1.7)),
@@ -268,7 +271,7 @@ returns the highest and reports the lowest; the one between them is unstable."""
         _nothing("constant friction: T − T₀ − w Δz − F s, over T", 1e-6, _RODS,
                  _tension_by_height_and_friction),
         _nothing("S1000 with its cable in ten pieces", 1e-8,
-                 "At an angle step of 0.01° the march errs by 1e-9 of the depth.", _split),
+                 "The error of the march is 1e-9 of the depth at an angle step of 0.01°.", _split),
         *(
             Case(f"C20 three equilibria: depth of the {name}", depth, "m", 1e-6,
                  "The roots are given to nine digits; CALM closes to 1e-9 of the depth.", got,
@@ -315,10 +318,10 @@ def _order(coarse: float, fine: float) -> float:
 
 CONVERGENCE = Source(
     "Order of convergence",
-    """The heavy line of C5 at 1 m/s, a current without shear, marched at angle steps from 4° to
-0.125°, against the closed form of `calm.analytic.uniform`, which shares nothing with the march. The
-march is of second order: halving the step divides the error by four. The results that CALM reports
-are extrapolated from two such shapes, and err far less.""",
+    """The heavy line of C5 in a uniform current of 1 m/s is solved at angle steps from 4° to 0.125°
+and compared with the closed form of `calm.analytic.uniform`, which shares no code with the march.
+The march is of second order: halving the step divides the error by four. The results that CALM
+reports are extrapolated from two such shapes and have much smaller errors.""",
     (
         *(
             Case(f"C20 order, {coarse:g}° to {fine:g}°", 2.0, "", 0.05,

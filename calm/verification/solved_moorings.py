@@ -73,9 +73,9 @@ _EXPECTED = DEPTH, OFFSET, TENSION, KNOCKDOWN
 
 S1000 = published_case.Source(
     "S1000",
-    """The reference case of accuracy and speed, `lines/s1000.yaml`: a float of 4000 N and 0.6 m² of
-drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water, in a
-current of 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. Its figures come from an
+    """`lines/s1000.yaml` is the reference case for accuracy and speed: a float of 4000 N with 0.6
+m² of drag area, on 1000 m of cable (10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN) in 1100 m of water. The
+current is 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. The expected values come from an
 initial-value integration of the differential equations with bracketing; the tests compare them with
 a second independent integration.""",
     (
@@ -201,29 +201,30 @@ sphere, below the third meter and at the anchor [kgf].
 """
 
 _PROGRAM = (
-    "Heights 1 m and tensions 2 %: the two programs err by 1 to 4 % themselves and differ from "
-    "each other by as much."
+    "1 m for heights and 2 % for tensions: the two programs have errors of 1 to 4 % and differ "
+    "from each other as much."
 )
-_RANGE = "The programs' range, with half a unit of their last digit."
+_RANGE = "The range of the programs, plus half a unit of their last digit."
 
 CDMS_1 = published_case.Source(
     "CDMS-1",
-    """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
-of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D
-users guide. From the top: a sphere of 1.2 m, 10 m of wire, three current meters with 98 m of Kevlar
-below the first two and 212.9 m below the third, ten glass balls, a release, 4.8 m of chain and the
-anchor, in 525 m of water. The current is 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
+    """CDMS-1 is an intermediate mooring of the user manual of Berteaux's CDMS package (C16). The
+users guide of R. Dewey's *Mooring Design & Dynamics* (MD&D) prints the results of Berteaux's SSMOOR
+and of MD&D. From the top, the mooring has a sphere of 1.2 m, 10 m of wire, three current meters
+with 98 m of Kevlar below the first two and 212.9 m below the third, ten glass balls, a release, 4.8
+m of chain and the anchor, in 525 m of water. The current is 1.5, 0.6 and 0.1 m/s at heights of 525,
+325 and 0 m.
 
-**Why the programs differ.** MD&D's tensions are 2 % above SSMOOR's from the third meter down. The
-gap is the downward part of the normal drag: on an inclined line a drag normal to the line has a
-component that pushes it down and takes tension off its lower part. SSMOOR and CALM include it; the
-drag law of the MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the
-current) does not. The users guide blames |U|Uᵢ in place of Uᵢ², but these are the same in a current
-of one direction. An independent solution with rigid links and segments of 0.25 to 1 m
-gives 815.1 kgf at the anchor with normal drag, 826.6 with MD&D's law: each within 0.3 % of the
-program it stands for. SSMOOR's offset is 4 to 6 m shorter than everyone else's. CALM takes normal
-drag and no tangential drag here; it agrees with the independent solution to 0.1 m in height and
-0.2 % in tension.""",
+**Why the programs differ.** From the third meter down, MD&D's tensions are 2 % above SSMOOR's. The
+difference is the downward component of the normal drag on an inclined line, which reduces the
+tension in the lower part of the line. SSMOOR and CALM include this component. The drag law of the
+MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the current) does not. The
+users guide attributes the difference to |U|Uᵢ instead of Uᵢ², but these are equal in a current of
+one direction. An independent solution with rigid links and segments of 0.25 to 1 m has 815.1 kgf at
+the anchor with normal drag, and 826.6 kgf with MD&D's law. Each is within 0.3 % of the program with
+the same law. SSMOOR's offset is 4 to 6 m shorter than all others. CALM, here with normal drag and
+no tangential drag, agrees with the independent solution to 0.1 m in height and 0.2 % in
+tension.""",
     (
         *(
             case
@@ -236,7 +237,7 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             )
         ),
         Case("C16 both programs: offset of the sphere", 74.0, "m", 3.0,
-             "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
+             "71 to 77 m: SSMOOR has 71.0, MD&D 75.5, the independent solution 76.8 m.",
              lambda: _OFFSET.of(solved_cdms_1()), Kind.PUBLISHED),
         Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
              lambda: _ends().lean, Kind.PUBLISHED),
@@ -247,7 +248,7 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             "better.", Kind.INDEPENDENT),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
-                 "0.2 %: the printed data define the mooring no better.", got,
+                 "0.2 %, the accuracy of the printed data of the mooring.", got,
                  Kind.INDEPENDENT)
             for name, kgf, got in (
                 ("anchor, horizontal", 131.6, lambda: _ends().horizontal / GRAVITY),

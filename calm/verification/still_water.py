@@ -41,8 +41,8 @@ from calm.verification.published_case import (
 )
 
 _MARCH = (
-    "1e-6 of the line's length or of the pull; the float pulls with the printed forces, and the "
-    "march errs by less than that at an angle step of 0.1°."
+    "1e-6 of the line's length or of the load. The float has the printed forces; the error of "
+    "the march is smaller at an angle step of 0.1°."
 )
 
 _SUSPENDED = 15677.747, 26291.876
@@ -120,13 +120,13 @@ _LANDED = (
 
 CATENARIES = Source(
     "Catenaries",
-    """The elastic catenary of M. Irvine, *Cable Structures* (1981), on four sets of figures (C12 to
-C14): ends 400 m apart and 300 m above each other, 50 N/m, EA 5 MN, once 520 m long and once
-stretched from 490 m; a line that reaches a frictionless seabed (the inputs are the public example
-of the Python package *pycatenary*: 5.3 m by 2.65 m, 6.98 m of 1.036 N/m, EA 560 kN); a level span
-of 300 m, 330 m of inextensible line, 20 N/m. The figures are roots of the closed forms with
-residuals below 1e-12. They are compared with `calm.analytic.catenary` and, where the line can be
-moored, with the march.""",
+    """These cases are elastic catenaries (M. Irvine, *Cable Structures*, 1981). C12 has ends 400 m
+apart, one 300 m above the other, 50 N/m and EA 5 MN, with an unstretched length of 520 m and of 490
+m. C13 is a line that reaches a frictionless seabed, the public example of the Python package
+*pycatenary*: ends 5.3 m apart, one 2.65 m above the other, 6.98 m of line, 1.036 N/m, EA 560 kN.
+C14 is a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected values are
+roots of the closed forms with residuals below 1e-12. They are compared with
+`calm.analytic.catenary` and, if the line can be moored, with the march.""",
     (
         *table(
             [*_pulls(5.5e-4), _LOWER_END],
@@ -193,9 +193,9 @@ def _hanging() -> Ends:
 
 ELASTIC_HANG = Source(
     "Elastic hang",
-    """A 19 mm nylon rope of 1000 m in still water (C15), 0.3 N/m, 2000 N at its lower end,
-EA 97 817.4 N (3.45e8 Pa on its section, the modulus of R. Dewey's *Mooring Design & Dynamics*):
-its elongation is (2000 L + 0.3 L²/2)/EA.""",
+    """A 19 mm nylon rope of 1000 m hangs in still water (C15), with a weight of 0.3 N/m, a load of
+2000 N at its lower end and EA 97 817.4 N (3.45e8 Pa on its section, the modulus of R. Dewey's
+*Mooring Design & Dynamics*). Its elongation is (2000 L + 0.3 L²/2)/EA.""",
     (
         Case("C15 elongation", 21.97973, "m", 5.5e-6, _WHY, lambda: _hanging().z - _LENGTH,
              Kind.CLOSED_FORM),
@@ -224,8 +224,8 @@ def _radius() -> float:
 WATCH_CIRCLE = Source(
     "Watch circle",
     """A surface mooring of scope 2 in 540 m of water without current (C22) is slack and has no
-unique shape: CALM refuses it with the status `slack` and reports the radius of its watch circle, at
-most depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for that mooring.""",
+unique shape. CALM reports the status `slack` and the radius of the watch circle, at most
+depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for this mooring.""",
     (
         Case("C22 radius", 934.0, "m", 0.002 * 934.0,
              "0.2 %: 1.73 is √3 to three digits.", _radius, Kind.PUBLISHED),
@@ -314,14 +314,14 @@ _THREAD = "The drag of the thread and the cork, and the last bend of the line."
 
 ANCHOR_DROP = Source(
     "Anchor drop",
-    """The deployment example of WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m of wire between a
+    """The deployment example of WHOI Cable (J. Gobat & M. Grosenbaugh) has 1050 m of wire between a
 sphere of 1.5 m at the surface and an anchor of 8896 N in water, released at 2 knots in 1000 m of
-still water. The expected figures come from a program with inertia and added mass, with drag on the
-end bodies by |V|V, as in CALM. WHOI Cable 3.12 takes their drag axis by axis and finds 233 to 234 s
-and 107.9 m; the other program with that drag finds 232.6 s and 108.3 m. The distance streamed is
-taken from WHOI Cable's static solution. Two terminal speeds follow, each compared with
-√(W/K) of its net weight W and the sum K of its drags: that of a plumb line and that of a heavy
-sphere.""",
+still water. The expected values come from a program with inertia and added mass, and with the drag
+|V|V on the end bodies, as in CALM. WHOI Cable 3.12 computes the drag of the end bodies axis by
+axis, and finds a fall time of 233 to 234 s and a fall-back of 107.9 m; the other program, with this
+drag law, finds 232.6 s and 108.3 m. The distance streamed is from WHOI Cable's static solution. Two
+terminal speeds follow, of a vertical (*plumb*) line and of a heavy sphere. Each is compared with
+√(W/K), where W is the net weight and K the sum of the drags.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
              lambda: float(-_start().node[0, 1]), Kind.INDEPENDENT),
@@ -336,7 +336,7 @@ sphere.""",
         Case("maximum tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
         Case("speed of a plumb line", _PLUMB, "m/s", 1e-4,
-             "After 2850 m the line is straight; the stretch of the wire, 0.1 %, costs 3e-5 m/s.",
+             "The line is straight after 2850 m; a stretch of 0.1 % reduces the speed by 3e-5 m/s.",
              _plumb, Kind.CLOSED_FORM),
         Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),
     ),

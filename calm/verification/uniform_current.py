@@ -40,10 +40,10 @@ _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
 _HEAVY = 2.0
 
-_PRINTED = "Half a unit of the last printed digit, plus 10 % of that: one straight rod is exact."
+_PRINTED = "Half a unit of the last printed digit, plus 10 % of that. One straight rod is exact."
 _SEVEN_DIGITS = (
-    "1e-6 of the line's length or of the tension, 6e-5° for an angle; the figures have seven "
-    "digits, and the march errs by 4e-8 at an angle step of 0.1°."
+    "1e-6 of the line's length or of the tension, 6e-5° for an angle. The expected values have "
+    "seven digits; the error of the march is 4e-8 at an angle step of 0.1°."
 )
 
 
@@ -130,16 +130,16 @@ _VERTICAL = CaseColumn[Ends]("anchor, vertical", "N", 5e-3, lambda ends: ends.ve
 
 UNIFORM_CURRENT = Source(
     "Floats and lines in a uniform current",
-    """A float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag (C1); a ball
-on a thread, the check of the R package *mooring* by D. Kelley, in water of 1027 kg/m³ (C2); the
-float of C1 on 1000 m of 12.7 mm line with Cn 1.3, which is neutral (C3), weighs 2 N/m (C4), or
-weighs 2 N/m and has a Ct of 0.01 as well (C5).
+    """The cases are a float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag
+(C1); a ball on a thread from the R package *mooring* by D. Kelley, in water of 1027 kg/m³ (C2); and
+the float of C1 on 1000 m of 12.7 mm line with Cn 1.3, which is neutral (C3), weighs 2 N/m (C4), or
+weighs 2 N/m and has a Ct of 0.01 (C5).
 
-C1 and C2 are elementary: tan θ = D/B, T² = B² + D². C3 is a catenary on its side, cot φ = cot φ₀ +
-R s/T at constant T. C4 and C5 follow from T′ = w sin φ + F, T φ′ = w cos φ − R sin² φ by quadrature
-(relative error 1e-10), without CALM. In C4 the tension differs between two points by w times their
-difference in height. C5 shows the sign of the tangential drag. All cases use g = 9.81 m/s² and,
-except C2, ρ = 1025 kg/m³; the march is compared at an angle step of 0.1°.""",
+C1 and C2 have elementary solutions: tan θ = D/B, T² = B² + D². C3 is a catenary on its side, cot φ
+= cot φ₀ + R s/T at constant T. C4 and C5 are quadratures of T′ = w sin φ + F, T φ′ = w cos φ − R
+sin² φ, with a relative error of 1e-10, evaluated without CALM. In C4 the tension differs between
+two points by w times their difference in height. C5 tests the sign of the tangential drag. All
+cases use g = 9.81 m/s² and, except C2, ρ = 1025 kg/m³. The march has an angle step of 0.1°.""",
     (
         *table(
             _thread(100.0, 5.5e-5, 5.5e-6, 5.5e-6),
@@ -207,19 +207,20 @@ _AT_THE_SHIP = "angle at the ship"
 
 TOWED_CABLES = Source(
     "Towed cables",
-    """A cable of 10 mm, 2.5 N/m and Cn 1.5, towed bare (C7), is straight at the critical angle, cos
-φc = √(1 + p²/4) − p/2, where p is its weight over its drag square to the stream. In the second case
-(C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of ½ρ
-0.02 D V² cos² φ along the cable; it is solved by quadrature of the differential equations (relative
-error 1e-10) without CALM. The march is compared with both; its angle step is 0.1° in C8.""",
+    """A bare towed cable of 10 mm, 2.5 N/m and Cn 1.5 (C7) is straight at the critical angle, cos
+φc = √(1 + p²/4) − p/2, where p is its weight divided by its drag perpendicular to the stream. In
+C8, 300 m of this cable tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of
+½ρ 0.02 D V² cos² φ along the cable. The expected values of C8 are quadratures of the differential
+equations, with a relative error of 1e-10, evaluated without CALM. The march has an angle step of
+0.1° in C8.""",
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
             _by_speed("C7 bare cable", _bare, (
                 (1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277),
             )),
-            "Half a unit of the last printed digit, plus 10 % of that: a straight cable is exact "
-            "whatever the angle step.", Kind.CLOSED_FORM),
+            "Half a unit of the last printed digit, plus 10 % of that. A straight cable is exact "
+            "at any angle step.", Kind.CLOSED_FORM),
         *table(
             [
                 CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
@@ -317,12 +318,13 @@ def _critical_angle(ratio: float) -> float:
 
 PODE = Source(
     "Pode's cable functions",
-    """L. Pode's functions of a heavy cable in a uniform stream (David Taylor Model Basin reports
-687 and 717, 1951), constant friction F = f R along it (C6): τ, σ, ξ, η between φ and 90°, as
-evaluated by quadrature to 1e-10 from his integrals, not copied from his tables. They are compared
-with `calm.analytic.uniform` and τ − 1 = p η + f σ; those with friction also with the march of a
-towed body, the tensions without friction with their closed form. The critical angle, cos φc = √(1 +
-p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 1957).""",
+    """L. Pode (David Taylor Model Basin reports 687 and 717, 1951) tabulated τ, σ, ξ and η,
+functions of a heavy cable in a uniform stream with a constant friction F = f R along it (C6). The
+expected values, between φ and 90°, are quadratures of his integrals to 1e-10, not copies of his
+tables. They are compared with `calm.analytic.uniform` and with τ − 1 = p η + f σ. The functions
+with friction are also compared with the march of a towed body, and the tensions without friction
+with their closed form. E. E. Zajac (Bell System Technical Journal 36, 1957) also gives the critical
+angle, cos φc = √(1 + p²/4) − p/2.""",
     (
         *table(
             [
@@ -345,8 +347,8 @@ p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 
             [(_name(critical, f, angle), partial(_march, critical, f, sigma),
               (angle, tau, xi, eta))
              for critical, f, angle, tau, sigma, xi, eta in _TABLE if f > 0.0],
-            "The cable is cut to σ, printed to 5e-7; the march errs by 1e-7 of its length, some "
-            "1e-6, at an angle step of 0.1°.", Kind.INDEPENDENT),
+            "5e-7 for the printed length σ of the cable, and 1e-7 of this length for the march, "
+            "about 1e-6, at an angle step of 0.1°.", Kind.INDEPENDENT),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
         Case("C6 all rows: maximum |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
              "Exact; the quadratures have an error of 1e-12.", _identity_missed, Kind.PROPERTY),

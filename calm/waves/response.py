@@ -102,6 +102,7 @@ class Waves:
 
     @property
     def number(self) -> Floats:
+        """Wave numbers [1/m]."""
         return wave_numbers(self.omega, self.depth, self.gravity)
 
     @property

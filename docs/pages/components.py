@@ -15,8 +15,8 @@ HEADS = ("id", "component", "net force in water", "breaking load", "Cd × area",
 HEAD = """# Components
 
 The {number} components that come with CALM, by family, with every figure and its source.
-[The catalogue](../catalogue.md) says which of several similar entries to use. `calm catalog list
-WORDS` searches them in a terminal.
+[The catalogue](../catalogue.md) explains which of several similar entries to use.
+`calm catalog list WORDS` searches them in a terminal.
 
 | family | components |
 | --- | ---: |

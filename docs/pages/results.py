@@ -18,9 +18,10 @@ from pages.markdown import code, plain, table
 
 HEAD = """# Names in results
 
-Names in the output of `calm run`, `calm batch` and `calm motion`, in SI units and degrees. x is
-east and y north of the anchor or the tow point; depths are positive downwards. Unknown values
-are `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
+These are the names in the output of `calm run`, `calm batch` and `calm motion`. Values are in SI
+units and degrees. x is east and y north of the anchor or the tow point; depths are positive
+downwards. Unknown values are `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other
+commands is on their pages:
 [`calm check`](check.md#json), [`calm batch`](batch-statistics.md),
 [`calm deck`](deck.md), [`calm locate`](locate.md),
 [`calm diff`](diff.md).
@@ -31,12 +32,12 @@ _MEANINGS = {
     "name": ("", "the name of the mooring"),
     "type": ("", "`subsurface`, `surface` or `tow`"),
     "status": ("", "`converged`, or [another status](messages.md#statuses)"),
-    "iterations": ("", "number of marches along the line until it closed"),
+    "iterations": ("", "number of integrations along the line"),
     "segments": ("", "number of segments of the line"),
     "miss": ("m", "distance of the end of the line from its anchor"),
     "closure": ("", "remaining sum of the forces, as a share of the maximum"),
-    "strumming": ("", "`frequency`, `cn_min` and `cn_max`, where a law of strumming is chosen"),
-    "strumming_band": ("", "`null` where a law of strumming is chosen"),
+    "strumming": ("", "`frequency`, `cn_min` and `cn_max`, with a law of strumming"),
+    "strumming_band": ("", "`null` with a law of strumming"),
     "strumming_band.factor": ("", "factor on the Cn of every cable"),
     "strumming_band.status": ("", "status of the line with that factor"),
     "other_equilibrium": (
@@ -45,8 +46,8 @@ _MEANINGS = {
         "anchor load in another equilibrium; `null` if none was found",
     ),
     "warnings": ("", "[sentences](messages.md#warnings)"),
-    "toward": ("deg", "where the ship goes to, clockwise from north"),
-    "cn_min": ("", "least Cn of the cables as they strum"),
+    "toward": ("deg", "course of the ship, clockwise from north"),
+    "cn_min": ("", "minimum Cn of the strumming cables"),
     "cn_max": ("", "maximum Cn of the strumming cables"),
 }
 

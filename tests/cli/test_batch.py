@@ -132,7 +132,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
     (folder / "magnetic.csv").write_text(magnetic)
     done = calm("batch", write_mooring(), "--currents", "magnetic.csv", "-o", "r.nc")
     assert (done.code, done.out) == (2, "")
-    assert "is relative to magnetic north; give the `declination` there" in done.err
+    assert "is relative to magnetic north; set the `declination` of the site" in done.err
     turned = ("--declination", "90 deg")
     done = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc", *turned)
     assert done.code == 2
@@ -141,7 +141,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
         done = calm("batch", "m.yaml", "--currents", f"{name if more else 'record'}.csv",
                     "-o", f"{name}.nc", *more)  # fmt: skip
         assert done.code == 0, done.err
-    assert "`u` and `v` were relative to magnetic north, turned by 90°" in done.err
+    assert "`u` and `v` were relative to magnetic north, and were rotated by 90°" in done.err
     true, other = (
         xarray.load_dataset(folder / f"{name}.nc", engine="h5netcdf") for name in ("r", "magnetic")
     )

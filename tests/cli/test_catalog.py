@@ -298,7 +298,7 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
         (
             "glass",
             (*GLASS[:3], "buoyancy=2500 N"),
-            "has a buoyancy of 2.50 kN; water of its size weighs 424 N",
+            "has a buoyancy of 2.50 kN; water of the same volume weighs only 424 N",
         ),
         ("glass", GLASS[:4], "has no `source` for its values"),
     ],

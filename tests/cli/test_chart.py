@@ -137,5 +137,8 @@ def test_without_matplotlib_the_command_that_installs_it_is_named(calm, folder, 
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     done = calm("chart", "draw", "--k", "0.6", "-o", "chart.svg")
     assert (done.code, done.out) == (2, "")
-    assert done.err == "calm: this needs matplotlib: in CALM's checkout, pip install '.[plot]'\n"
+    assert (
+        done.err
+        == "calm: matplotlib is not installed; in the checkout of CALM, run pip install '.[plot]'\n"
+    )
     assert not list(folder.iterdir())

@@ -59,7 +59,7 @@ def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, un
     assert (
         "    depth_rating:  # e.g. 2000 m: maximum depth of use\n      # needed for depth rating\n"
     ) in done.out
-    assert "working_load:  # e.g. 20 kN: load it may carry in use, or `breaking_load`" in done.out
+    assert "working_load:  # e.g. 20 kN: maximum load in use, or `breaking_load`" in done.out
     assert "is estimated: at least 10 N, probably 9.00 kN (its chain)\n" in done.out
 
 
@@ -133,7 +133,7 @@ def test_optional_values_are_listed_as_comments(calm, folder):
     done = calm("check", "m.yaml", "--missing", "-o", "block.yaml")
     assert done.err.rstrip().endswith("block.yaml written; it has only comments")
     block = (folder / "block.yaml").read_text(encoding="utf-8")
-    assert block.startswith("# No check is unknown for lack of a value.\n")
+    assert block.startswith("# No check lacks a value.\n")
     assert "#   swivel-13:\n#     working_load:  # estimated: at least 9.81 kN\n" in block
     assert "#   spacer:\n#     mass:  # in air; the total mass is a lower bound" in block
     assert "#   sbe37:  # sbe37 1 and 2\n#     grip:  # without it, clamp grip is not" in block

@@ -208,9 +208,9 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
 def test_signs_that_no_font_has_are_reported(deck):
     text = mooring(8).replace("A. Nobody", "海 Nobody")
     out, said = deck(text.replace("label: top float", "label: top 浮"))
-    assert "has no 海 (U+6D77), 浮 (U+6D6E), printed as �: in author, `top 浮`" in said
+    assert "lacks 海 (U+6D77), 浮 (U+6D6E); � is printed instead in author, `top 浮`" in said
     pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
-    assert "printedas" in "".join(pages)
+    assert "isprintedinstead" in "".join(pages)
     assert packed("top �") in pages[0]
     assert "top 浮" in (out / "diagram.svg").read_text(encoding="utf-8")
 

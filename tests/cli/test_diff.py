@@ -124,7 +124,7 @@ def test_the_design_and_what_was_deployed(calm, write_mooring, folder):
 def test_a_design_that_does_not_stand_is_compared(calm, write_mooring, heavy):
     done = calm("diff", write_mooring(), heavy)
     assert done.code == 0
-    assert "does not stand" in done.out
+    assert "has no equilibrium" in done.out
     assert "top float.buoyancy" in done.out
     figures = json.loads(calm("diff", "m.yaml", heavy, "--json", "-").out)["figures"]
     depth = next(one for one in figures if one["name"] == "top.depth")

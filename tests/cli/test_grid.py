@@ -41,7 +41,7 @@ def depths(folder):
             "longitude": -5.0,
         },
         coords={"time": START + np.arange(HOURS) * np.timedelta64(3600, "s")},
-        attrs={"title": "M1: where its parts were", "creator_name": "A. Martin",
+        attrs={"title": "M1: motion of its parts", "creator_name": "A. Martin",
                "history": "calm motion"},
     ).to_netcdf("depths.nc", engine="h5netcdf")  # fmt: skip
     return depth
@@ -184,7 +184,7 @@ def test_what_is_doubtful_is_said_with_a_count(calm, depths):
         one_file("TEMP", t, *WATER, label, **pressure)
 
     run = both(calm, depths, exchanged)
-    assert "the median of its pressures is 900 dbar, where `" in run.err
+    assert "the median of its pressures is 900 dbar, but `" in run.err
     for label in LABELS[:2]:
         other = LABELS[1 - LABELS.index(label)]
         one_file("TEMP", profile(depths[:, 0]), *WATER, label)
@@ -192,7 +192,7 @@ def test_what_is_doubtful_is_said_with_a_count(calm, depths):
             file.load().assign_attrs(instrument=other).to_netcdf(f"x{label}.nc", engine="h5netcdf")
     run = calm("grid", "depths.nc", *(f"{one}=x{one}.nc" for one in LABELS[:2]), "-o", "out.nc",
                "--levels", "100:25:300")  # fmt: skip
-    assert f"given as `{LABELS[0]}`, and calls itself `{LABELS[1]}`" in run.err
+    assert f"is assigned to `{LABELS[0]}`, but names its instrument `{LABELS[1]}`" in run.err
 
 
 def test_salinity_is_computed_where_a_file_holds_none(calm, depths):
@@ -254,7 +254,7 @@ def test_ragged_arrays_of_instruments_are_split(calm, depths, make):
     run = calm("grid", "depths.nc", "all.nc", "-o", "out.nc", "--levels", "100:25:150")
     if index[1][0] == 1:  # counted from 1
         assert run.code == 2
-        assert "`INDEX` does not fit its 2 instruments, which are counted from 0" in run.err
+        assert "`INDEX` must give one of its 2 instruments, numbered from 0" in run.err
         return
     assert run.code == 0, run.err
     assert f"TEMP [degree_Celsius]: {values.min():.4g} to {values.max():.4g}, median" in run.err
@@ -294,7 +294,7 @@ def test_serials_and_then_nominal_depths_say_who_is_who(calm, depths):
     by_serial, _ = gridded(calm, "v.nc")
     write_values("w.nc", depths, (None,) * 4, nominal_depth=[STILL - 8.0, {"units": "m"}])
     by_place, run = gridded(calm, "w.nc")
-    assert "by nominal depths, in their order" in run.err
+    assert "matched by nominal depth, from the top down" in run.err
     assert np.array_equal(by_serial["temperature"], by_place["temperature"], equal_nan=True)
 
 
@@ -318,8 +318,8 @@ def test_files_of_one_instrument_and_a_folder_of_them(calm, depths, folder):
     [
         ("0:20", "write FIRST:STEP:LAST"),
         ("deep", "write FIRST:STEP:LAST"),
-        ("100:-20:0", "does not go down"),
-        ("100:0:200", "does not go down"),
+        ("100:-20:0", "does not increase"),
+        ("100:0:200", "does not increase"),
         ("200,100", "must increase"),
         ("-50:10:50", "above the sea surface"),
         ("0:0.001:1000", "more than 5000 levels"),
@@ -343,16 +343,18 @@ def refused(calm, *words):
 def test_bad_inputs_are_refused(calm, depths, folder):
     write_values("v.nc", depths)
     write_values("later.nc", depths, shift=9000.0)
-    assert "no time is common: depths are of 2026-03-01" in refused(calm, "depths.nc", "later.nc")
+    assert "depths and values have no common time: the depths cover 2026-03-01" in refused(
+        calm, "depths.nc", "later.nc"
+    )
     write_values("other.nc", depths, ("uper", "b", "c", "d"))
     err = refused(calm, "depths.nc", "other.nc")
-    assert "no instrument is a part of the line" in err and "did you mean `upper`?" in err
+    assert "no instrument matches a part of the line" in err and "did you mean `upper`?" in err
     write_values("unit.nc", depths, unit="dbar")
     assert "its unit, `dbar`, is not degC, or a unit of that kind" in refused(
         calm, "depths.nc", "unit.nc"
     )
     write_values("none.nc", depths, unit="")
-    assert "its unit is missing, such as degC" in refused(calm, "depths.nc", "none.nc")
+    assert "has no unit; set one, such as degC" in refused(calm, "depths.nc", "none.nc")
     (folder / "empty.nc").write_bytes(b"")
     assert "empty.nc: is empty" in refused(calm, "depths.nc", "empty.nc")
     assert "no such file" in refused(calm, "depths.nc", "absent.nc")
@@ -360,7 +362,7 @@ def test_bad_inputs_are_refused(calm, depths, folder):
     write_values("blank.nc", np.full_like(depths, np.nan))
     assert "no instrument has a good value" in refused(calm, "depths.nc", "blank.nc")
     write_values("twin.nc", depths)
-    assert "two series are of `upper`: v.nc, twin.nc" in refused(
+    assert "two series belong to `upper`: v.nc, twin.nc" in refused(
         calm, "depths.nc", "v.nc", "twin.nc"
     )
     run = calm("grid", "depths.nc", "v.nc", "-o", "depths.nc", "--levels", "100,200")
@@ -377,7 +379,7 @@ def test_bad_inputs_are_refused(calm, depths, folder):
         ("--variables", "temprature", "did you mean `temperature`?"),
         ("--variables", "salinity", "holds no salinity"),
         ("--method", "linear", "`--method: linear` must be one of depth-time, depth"),
-        ("--flags", "1,8", "8 marks what was interpolated"),
+        ("--flags", "1,8", "8 marks interpolated values"),
     ],
 )
 def test_options_typed_wrong(calm, depths, option, value, said):
@@ -389,7 +391,7 @@ def test_without_matplotlib_a_report_names_the_command_that_installs_it(calm, de
     write_values("v.nc", depths)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     said = refused(calm, "depths.nc", "v.nc", "--report", "page")
-    assert "this needs matplotlib: in CALM's checkout, pip install '.[plot]'" in said
+    assert "matplotlib is not installed; in the checkout of CALM, run pip install '.[plot]'" in said
     assert not Path("out.nc").exists()
 
 

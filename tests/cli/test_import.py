@@ -55,7 +55,7 @@ def test_several_files_become_several_or_none(calm, folder, design):
     design("b.mat", H=None)
     done = calm("import", design("a.mat"), "b.mat", "-o", "out/")
     assert done.code == 2
-    assert "b.mat: holds no mooring" in done.err
+    assert "b.mat: contains neither a mooring" in done.err
     assert not (folder / "out").exists()
     done = calm("import", "a.mat", design("c.mat"), "-o", "out/", "--json", "-")
     assert sorted(path.name for path in (folder / "out").iterdir()) == ["a.yaml", "c.yaml"]
@@ -81,7 +81,7 @@ def test_an_environment_keeps_its_files(calm, folder, design):
     (folder / "out").mkdir()
     done = calm("import", design(), "-o", "out/a.yaml", "--environment", "site/site.yaml")
     assert done.code == 0, done.err
-    assert "left out: environment" in done.err
+    assert "omitted: environment" in done.err
     assert json.loads(calm("run", "out/a.yaml", "--json", "-").out)["top"]["x"] > 0.0
 
 
@@ -104,7 +104,7 @@ def test_the_catalogue_takes_the_place_of_what_agrees(calm, folder, design):
     done = calm("import", "a.mat", "-o", "a.yaml", "--match-catalogue", "--json", "-")
     matched = {each["name"]: each["entry"] for each in json.loads(done.out)["matched"]}
     assert matched["37in ORE"] == "sphere-ore-37in"
-    assert "37in ORE is sphere-ore-37in of the catalogue" in done.err
+    assert "37in ORE is replaced by sphere-ore-37in of the catalogue" in done.err
     assert "use: sphere-ore-37in" in (folder / "a.yaml").read_text()
     assert calm("run", "a.yaml").code == 0
 
@@ -172,7 +172,7 @@ def test_a_file_of_no_program_is_refused(calm, folder):
     (folder / "x.bin").write_bytes(bytes(range(256)))
     done = calm("import", "x.bin", "missing.mat", "-o", "out/")
     assert done.code == 2
-    assert "x.bin: is not a file of a program that CALM reads" in done.err
+    assert "x.bin: is not in a format that CALM reads" in done.err
     assert "missing.mat" in done.err
     assert "Traceback" not in done.err
 
@@ -180,7 +180,7 @@ def test_a_file_of_no_program_is_refused(calm, folder):
 def test_export_writes_and_tells_what_is_lost(calm, folder, write_mooring):
     done = calm("export", write_mooring(), "--to", "cbl", "-o", "m.cbl")
     assert (done.code, done.out) == (0, "")
-    assert "m.cbl: lost: limits of the design check" in done.err
+    assert "m.cbl: not exported: limits of the design check" in done.err
     assert calm("import", "m.cbl", "-o", "back.yaml").code == 0
     one, other = (
         json.loads(calm("run", each, "--json", "-").out) for each in ("m.yaml", "back.yaml")
@@ -191,7 +191,7 @@ def test_export_writes_and_tells_what_is_lost(calm, folder, write_mooring):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["m.yaml", "--to", "orca", "-o", "m.out"], "`orca` is not a program"),
+        (["m.yaml", "--to", "orca", "-o", "m.out"], "`orca` is not a format"),
         (["m.yaml", "--to", "mdd", "-o", "m.yaml"], "m.yaml is the input file"),
         (["m.yaml", "--to", "mdd", "-o", "m.txt"], "cannot write m.txt: its name must end in .mat"),
         (["m.yaml", "--to", "moordyn", "-o", "m.cbl"], "must end in .txt or .dat"),

@@ -111,10 +111,11 @@ def test_clock_offsets_and_what_has_no_place(assigned, calm):
     assert done.code == 0, done.err
     assert "{label: upper, serial: 3222, remark: clock 12 s late}" in written
     assert "{label: middle, serial: 3223, remark: clock 3 s early}" in written
-    assert "list.csv, line 5: Aquadopp 99 is at no place of the line" in done.err
-    assert "2 clock offsets are remarks only" in done.err
-    assert "add a column `clock checked`, the time of the comparison, after" in " ".join(
-        done.err.split()
+    assert "list.csv, line 5: Aquadopp 99 matches no part of the line" in done.err
+    assert "clock offsets of 2 of " in done.err
+    assert (
+        "add a column `clock checked` with the time of the comparison, which must be after"
+        in " ".join(done.err.split())
     )
     with open("out.json") as file:
         document = json.load(file)
@@ -163,7 +164,7 @@ def test_a_clock_offset_with_the_time_of_its_check_corrects_the_times(assigned, 
     done, written = assigned(name, CLOCKS[name])
     assert done.code == 0, done.err
     assert "remarks only" not in done.err
-    assert ("clock 5 s late from the deployment on" in written) == (name == "m.yml")
+    assert ("clock 5 s late since the deployment" in written) == (name == "m.yml")
     clocks = matching.clocks_of(package.load("new.yaml"), np.datetime64("2026-03-01"))
     assert {label: (str(one.checked)[:16], one.late) for label, one in clocks.items()} == {
         "upper": (CHECKED, pytest.approx(12.0)), "middle": (CHECKED, pytest.approx(-3.0)),
@@ -184,7 +185,7 @@ def test_a_time_of_recovery_that_no_clock_needs_is_not_read(assigned, name, old,
 def test_a_check_before_the_deployment_is_a_remark(assigned):
     text = CLOCKS["imos.csv"].replace("2027-03", "2025-03")
     done, written = assigned("list.csv", text)
-    assert "remark: clock 12 s late" in written and "2 clock offsets are remarks" in done.err
+    assert "remark: clock 12 s late" in written and "clock offsets of 2 of " in done.err
 
 
 def test_a_workbook_is_read_like_csv(assigned, folder):
@@ -212,7 +213,7 @@ def test_the_label_of_a_part_is_enough(assigned):
     ("name,colour\nMicroCAT,red\n", "no column for serial numbers or nominal depths"),
     ("name,serial,depth[m]\nMicroCAT,3222,deep\n", "`deep`"),
     ("name,serial,depth[kg]\nMicroCAT,3222,12\n", "kg"),
-    ("name,serial,depth[m]\nMicroCAT,3222,168.4\n", "may be `upper` or `middle`"),
+    ("name,serial,depth[m]\nMicroCAT,3222,168.4\n", "could be `upper` or `middle`"),
     ("name,serial,clock checked\nMicroCAT,3222,2.3.2027\n", "`2.3.2027` is not a time"),
     ("name,serial,clock checked [CET]\nMicroCAT,3222,2027-03-02\n", "times must be in UTC"),
 ])  # fmt: skip

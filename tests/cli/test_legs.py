@@ -180,7 +180,7 @@ def test_a_net_goes_to_moordyn_and_back(
     )
     assert found.anchors[0].tension == pytest.approx(given.anchors[0].tension, rel=2e-3)
     assert run("export", net, "--to", "csv", "-o", tmp_path / "out.csv") == 2
-    assert "`--to moordyn` takes it" in capsys.readouterr().err
+    assert "does not support; use `--to moordyn`" in capsys.readouterr().err
     assert not (tmp_path / "out.csv").exists()
 
 
@@ -356,7 +356,7 @@ MISTAKES = {
     "bottom: {join: A}\n  second": ("bottom: {join: B}\n  second", "no other leg joins at `B`"),
     "top: {join: A}\n    bottom: free": ("bottom: free", "both ends are free"),
     "bottom: free": ("bottom: fre", "must be `free`, or one of"),
-    "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "give one of"),
+    "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "exactly one"),
     "      - {use: anchor-wheels-4}\n": ("", "`bottom` is missing"),
     "      - {use: release-ar861}\n": (
         "      - {use: anchor-wheels-1}\n", "is not the last item of its leg"),
@@ -494,7 +494,7 @@ legs:
     assert run("run", file) == 3
     told = capsys.readouterr().err
     assert "no-equilibrium: Legs" in told
-    assert "140.00 m long in all, but its ends are held 200.00 m apart" in told
+    assert "140.00 m long in all, but the ends are held 200.00 m apart" in told
 
 
 SLOPE = """\
@@ -775,7 +775,7 @@ def test_a_grid_is_read_in_its_unit_and_its_sign(tmp_path: Path) -> None:
     assert abs(east - west) == pytest.approx(0.1 * abs(away), rel=0.01)
     assert not any("m deep" in each for each in metres.warnings)
     (-grid).to_netcdf(file, engine="h5netcdf")
-    with pytest.raises(InputError, match=r"has land, .* m high, .* say `down`"):
+    with pytest.raises(InputError, match=r"has land, .* m high, .* to `down`"):
         load(tmp_path / "grid.yaml", text=GRIDDED)
     turned = -grid
     turned["elevation"].attrs |= {"units": "ft", "positive": "down"}
@@ -854,7 +854,7 @@ def test_an_export_says_that_its_seabed_is_level(
     file.write_text(SLOPE)
     assert run("export", file, "--to", "moordyn", "-o", tmp_path / "slope.txt") == 0
     told = capsys.readouterr().err
-    assert "lost: the slope of the seabed: it is level there" in told
+    assert "not exported: the slope of the seabed: it is level" in told
     depths = [anchor.depth for anchor in load(file).solve().anchors]
     written = (tmp_path / "slope.txt").read_text()
     deepest = next(line for line in written.splitlines() if "WtrDpth" in line)

@@ -271,9 +271,12 @@ def test_the_plot(calm, ranges, folder):
     assert calm("locate", ranges(), "--plot", "circles.svg").code == 0
     svg = (folder / "circles.svg").read_text(encoding="utf-8")
     words = words_of(svg)
-    assert {"all ranges, numbered by line of the file", "2", "7", "north of the anchor [m]"} <= set(
-        words
-    )
+    assert {
+        "all ranges, numbered by their lines in the file",
+        "2",
+        "7",
+        "north of the anchor [m]",
+    } <= set(words)
     assert_none_overlap(svg)
     circles = curves_of(svg, "#2b7bba") + curves_of(svg, "#999999")
     assert [dashed for _, dashed in circles] == [False] * 10 + [True] * 2  # the last is left out
@@ -299,11 +302,11 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "position 0, 0 is a fill value",
             "is a fill value; leave the cell blank",
             "the row has 2 values, 3 are needed",
-            "has 60 minutes or seconds, or more",
+            "has minutes or seconds of 60 or more",
             "is no number",
             "must be above 0",
             "km from the others",
-            "farther than a transponder replies",
+            "beyond the reach of a transponder",
         ],
         strict=True,
     ):

@@ -1,6 +1,7 @@
 """`calm motion` as a user runs it: a small mooring whose motion is known."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -200,13 +201,13 @@ def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, trut
     later = [time.replace("2026", "2027") for time in stamps()]
     cases = {
         "needs a unit": given("a.csv", unit=""),
-        "no instrument is a part of the line": given("b.csv", labels=("x", "y", "z")),
+        "no instrument matches a part of the line": given("b.csv", labels=("x", "y", "z")),
         "no time has both": given("c2.csv", times=later),
         "its unit (bar, kPa?)": given("d.csv", factor=0.1),
         "is a speed; a pressure": given("e.csv", unit="knot"),
         "two sensors are called": given("f.csv", labels=("upper", "upper", "lower")),
         "two sensors are called `upper`": given("h.csv", labels=("upper", "UPPER", "lower")),
-        "no sensor is left": given("g.csv", values=0.0 * depth + 100.0),
+        "no usable sensor remains": given("g.csv", values=0.0 * depth + 100.0),
         "no such file": "missing.csv",
     }
     for reason, file in cases.items():
@@ -223,10 +224,9 @@ def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given,
     given("air.csv", values=values)
     done = calm(*COMMAND, "--pressures", "air.csv", "-o", "d.nc", "--json", "-")
     assert done.code == 0, done.err
-    lines = [line for line in done.err.splitlines() if " of its readings" in line]
-    said = [line.partition(" of its readings")[0] for line in lines]
-    assert said == ["upper: 5", "middle: 6", "lower: 5"]
-    assert "these pressures look absolute, 10.13 dbar being the air's" in done.err
+    said = re.findall(r"(\w+): readings that are impossible .* excluded: (\d+)", done.err)
+    assert said == [("upper", "5"), ("middle", "6"), ("lower", "5")]
+    assert "Their pressures appear to be absolute: `--correct air` subtracts" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         off = result["clamp_depth"].values - truth[1]
         assert off.mean() == pytest.approx(9.7, abs=0.3) and off.std() < 0.3
@@ -234,8 +234,10 @@ def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given,
     values[:5] = 10.1
     for file, more in (("air.csv", ("--correct", "air")), (given("deck.csv", values=values), ())):
         done = calm(*COMMAND, "--pressures", file, *more, "-o", "e.nc")
-        assert done.code == 0 and "look absolute" not in done.err
-        assert ("its pressures are absolute, and 10.13 dbar" in done.err) == (not more)
+        assert done.code == 0 and "appear to be absolute" not in done.err
+        assert (
+            "so its pressures are absolute; the pressure of the air, 10.13 dbar" in done.err
+        ) == (not more)
         with xarray.open_dataset(folder / "e.nc", engine="h5netcdf") as result:
             assert (result["clamp_depth"].values - truth[1]).mean() == pytest.approx(0.0, abs=0.5)
         (folder / "e.nc").unlink()
@@ -259,8 +261,8 @@ def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):
     [
         (("--hold-out", "upper,middle", "--cross-validate"), "at least two sensors are needed"),
         (("--hold-out", "uper"), "did you mean `upper`"),
-        (("--hold-out", "upper,middle,lower"), "no sensor is left"),
-        (("--flags", "1,8"), "never a measurement"),
+        (("--hold-out", "upper,middle,lower"), "no sensor remains"),
+        (("--flags", "1,8"), "not measurements"),
         (("--gap", "2"), "--gap: `2` needs a unit: `2 h`?"),
         (("--gap", "2 km"), "is a length; a time (s, ms, min, h, d) is needed"),
         (("--gap", "1300 d"), "is not between 0 and three years"),
@@ -330,7 +332,7 @@ def test_a_clock_that_is_late_is_taken_off_and_the_history_says_so(calm, given, 
     assert (found["label"], found["kind"], found["corrected"]) == ("middle", "clock", True)
     assert found["low"] < 3600.0 < found["high"]
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
-        assert "taken off: middle: its clock is 1.0" in result.attrs["history"]
+        assert "corrected for: middle: its clock is 1.0" in result.attrs["history"]
     done = calm(*COMMAND, "--pressures", "s.csv", "-o", "e.nc", "--correct", "clocks")
     assert done.code == 2 and "did you mean `clock`?" in done.err
 
@@ -388,7 +390,7 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, own, truth, fold
     words = (*COMMAND, "--pressures", "p.csv", "--hold-out", "middle", "--report", "report")
     done = calm(*words, "--onto", "own.nc", "-o", "copy.nc")
     assert done.code == 0, done.err
-    assert "`elsewhere` is not a part of the line" in done.err
+    assert "`elsewhere` matches no part of the line" in done.err
     with xarray.open_dataset(folder / "copy.nc", engine="h5netcdf") as copy:
         assert (copy["temperature"].values == 4.5).all()
         off = copy["depth"].values[:, 0] - truth[1][:, 1]
@@ -418,7 +420,7 @@ def test_a_folder_in_is_a_folder_out(calm, given, truth, folder):
     done = calm(*words, "-o", "out")
     assert done.code == 0, done.err
     assert [one.name for one in (folder / "out").iterdir()] == ["a.nc"]
-    assert "b.nc: it belongs to no part of the line and is not written" in done.err
+    assert "b.nc matches no part of the line and was not written" in done.err
     with xarray.open_dataset(folder / "out" / "a.nc", engine="h5netcdf") as copy:
         assert np.abs(copy["depth"].values[:, 0] - truth[1][:, 2]).max() < 2.0
         assert copy.attrs["history"].count("sha256:") == 3
@@ -453,8 +455,8 @@ def test_currents_that_cannot_be_are_left_out_and_named(calm, given, folder):
     (folder / "c.csv").write_text("\n".join(rows) + "\n")
     done = calm(*COMMAND, "--pressures", "p.csv", "--gap", "0 h", "-o", "d.nc")
     assert done.code == 0, done.err
-    assert "4 currents left out as implausible" in done.err
-    assert "the first at 2026-03-01T05:00, 0 m: 32.768 m/s" in done.err
+    assert "implausible currents were excluded" in done.err and ": 4 of " in done.err
+    assert "the first 32.768 m/s at 0 m, 2026-03-01T05:00" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert (result["status"].values == 0).all()  # the hours before and after say enough
 
@@ -471,7 +473,7 @@ def test_sensors_are_found_by_nominal_depth_in_order_down_the_line(calm, given, 
     middle = xarray.open_dataset(folder / "os.nc", engine="h5netcdf").isel(DEPTH=[1])
     middle.assign_coords(DEPTH=("DEPTH", [105.0], place)).to_netcdf(folder / "one.nc")
     apart = calm(*COMMAND, "--pressures", "one.nc", "--match", "depth", "-o", "e.nc")
-    assert apart.code == 2 and "may be `middle` or `upper`" in apart.err
+    assert apart.code == 2 and "could be `middle` or `upper`" in apart.err
 
 
 def test_two_pressures_place_the_third_without_any_current(calm, given, truth, folder):
@@ -506,7 +508,7 @@ def test_one_sensor_that_is_wrong_is_left_out_and_so_is_what_is_asked_for(calm, 
     given("w.csv", values=values)
     done = calm(*COMMAND, "--pressures", "w.csv", "-o", "d.nc", "--json", "-")
     assert done.code == 0, done.err
-    assert "middle is at 6.0 m at its least" in done.err and "it is left out" in done.err
+    assert "middle is at 6.0 m at its shallowest" in done.err and "it was excluded" in done.err
     assert [one["label"] for one in json.loads(done.out)["sensors"]] == ["upper", "lower"]
     done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--json", "-", "--without", "lower")
     assert [one["label"] for one in json.loads(done.out)["sensors"]] == ["upper", "middle"]
@@ -519,7 +521,7 @@ def test_a_sensor_that_sticks_is_left_out_there(calm, given, truth, folder):
     values[HOURS // 2 :, 2] = values[HOURS // 2, 2]
     given("s.csv", values=values)
     done = calm(*COMMAND, "--pressures", "s.csv", "-o", "d.nc")
-    assert done.code == 0 and "lower: has the same value at 24 of its 48 times" in done.err
+    assert done.code == 0 and "lower has the same value at 24 of its 48 times" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert np.isnan(result["residual"].values[HOURS // 2 :, 2]).all()
 
@@ -544,7 +546,7 @@ def test_records_that_share_no_time_are_refused(calm, given, truth, folder):
     given("a.csv", labels=NAMES[:1], values=dbar(truth[1][:, :1]))
     given("b.csv", labels=NAMES[2:], values=dbar(truth[1][:, 2:]), times=later)
     done = calm("motion", "m.yaml", "--pressures", "a.csv", "b.csv", "-o", "d.nc")
-    assert done.code == 2 and "0 of 96 times have the pressures of two sensors" in done.err
+    assert done.code == 2 and "0 of 96 times have pressures of two or more sensors" in done.err
     assert "upper 2026-03-01 to 2026-03-02; lower 2028-03-01" in done.err
 
 
@@ -586,7 +588,7 @@ def test_currents_of_instruments_on_the_line_move_with_it_by_their_serial_number
     xarray.Dataset(values, coordinates).to_netcdf(folder / "c.nc", engine="h5netcdf")
     done = calm("motion", "s.yaml", "--currents", "c.nc", "--pressures", "p.csv", "-o", "d.nc")
     assert done.code == 0, done.err
-    assert "the currents of upper, middle, lower move with the line" in done.err
+    assert "upper, middle, lower move with the line, and so do their currents" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert result["level_label"].values.tolist() == [*NAMES]
 

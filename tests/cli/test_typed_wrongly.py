@@ -21,7 +21,7 @@ def named(write_mooring, folder):
         ("run -", "the standard input is not read; give a file"),
         ("help run", "the help of a command is `calm run --help`"),
         ("new x.yaml", "For a file: -o x.yaml"),
-        ("import m.yaml -o n.yaml", "is a mooring file of CALM already; solve it with: calm run m"),
+        ("import m.yaml -o n.yaml", "is already a mooring file of CALM; solve it with: calm run m"),
     ],
 )
 def test_a_command_line(calm, named, words, says):

@@ -110,8 +110,8 @@ def test_no_anchor_of_the_catalogue_may_hold():
     heavy = MOORING.replace("2000 N", "60 kN").replace("diameter: 1 m", "diameter: 3 m")
     view = fully(heavy.replace("  - {use: weight}\n", ""))
     (offer,) = offers(view, CATALOGUE)
-    assert "none of the catalogue holds" in offer.title
-    with pytest.raises(UsageError, match="Add one"):
+    assert "none in the catalogue is heavy enough" in offer.title
+    with pytest.raises(UsageError, match="Define one"):
         offer.make(Draft(view.text))
 
 

@@ -233,7 +233,7 @@ def test_recovery_says_that_the_file_is_newer(drive, small, of_another):
     shown = time.strftime("%Y-%m-%d at %H:%M", time.localtime(1e9))
 
     async def story(driver):
-        assert f"was changed, {shown}" in " ".join(driver.screen.split())
+        assert f"was changed, {shown}" in " ".join(driver.screen.replace("▌", " ").split())
         await driver.press("r")
         await driver.settle()
         await driver.press("ctrl+s")
@@ -251,7 +251,9 @@ def test_recovery_says_that_the_file_is_gone(drive, small, of_another):
     small.unlink()
 
     async def story(driver):
-        assert "was deleted after that work began" in " ".join(driver.screen.split())
+        assert "was deleted after that work began" in " ".join(
+            driver.screen.replace("▌", " ").split()
+        )
         await driver.press("r", "ctrl+s")
         assert small.read_text() == text
 
@@ -289,7 +291,9 @@ def test_a_machine_that_cannot_be_asked_is_named(drive, small, of_another):
     of_another(small, small.read_text() + "# more\n", host="ship")
 
     async def story(driver):
-        assert "on ship, where the file may still be open" in " ".join(driver.screen.split())
+        assert "on ship, where the file may still be open" in " ".join(
+            driver.screen.replace("▌", " ").split()
+        )
 
     drive(story, small)
 

@@ -145,7 +145,7 @@ def _censored(statuses: Mapping[str, int]) -> str:
             ended[ending_of(status)] += count
     outcomes = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
     return outcomes and (
-        f"of the profiles with a current {outcomes}: the largest values may be among these, and "
+        f"of the profiles with a current, {outcomes}; the largest values may be among these, and "
         "levels from the remaining profiles would be too low"
     )
 
@@ -154,7 +154,7 @@ def _unfit(time: Times, values: Column) -> str:
     """Return the reason why no distribution can be fitted, or an empty string."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
-        return f"there are {count} values"
+        return f"there are too few values ({count})"
     if not bool((time[1:] > time[:-1]).all()):
         return "the times do not increase"
     if np.fmax.reduce(values) == np.fmin.reduce(values):
@@ -201,7 +201,7 @@ def _by_peaks(
     return LevelsRefused(
         "pot",
         f"{LEAST_PEAKS} independent peaks are needed; no threshold from the {THRESHOLDS[0]:.0f} % "
-        f"to the {THRESHOLDS[-1]:.0f} % percentile leaves more than {most}",
+        f"to the {THRESHOLDS[-1]:.0f} % quantile leaves more than {most}",
     )
 
 
@@ -212,9 +212,9 @@ def _over(
         return LevelsRefused("pot", f"the {len(peaks)} peaks are all equal")
     tail, rate = tails.fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
-        f"{len(peaks)} peaks over the {percentile:.0f} % percentile, the highest from "
+        f"{len(peaks)} peaks over the {percentile:.0f} % quantile, the highest quantile from "
         f"{THRESHOLDS[0]:.0f} % to {THRESHOLDS[-1]:.0f} % that leaves {LEAST_PEAKS} clusters; "
-        f"clusters by the intervals between exceedances (Ferro and Segers 2003){gaps}"
+        f"clusters are separated by the intervals between exceedances (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
     return _fit("pot", tail, rate, rules, growths)

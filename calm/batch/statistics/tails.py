@@ -159,8 +159,8 @@ def _inside(shape: float) -> float:
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
-                f"the fitted shape is {shape:.2f}, a bound of the search: the maximum of the "
-                "likelihood lies there or beyond"
+                f"the fitted shape is {shape:.2f}, at the limit of the search; the likelihood may "
+                "be larger beyond it"
             )
     return float(shape)
 

@@ -227,6 +227,7 @@ class TextLine(NamedTuple):
 
     @property
     def width(self) -> float:
+        """Width of the line of text."""
         side_text = self.at + text_width(self.side_text, FONT) if self.side_text else 0.0
         return max(text_width(self.text, FONT, bold=self.bold), side_text)
 

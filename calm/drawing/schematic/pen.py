@@ -55,6 +55,7 @@ class Pen:
         self.draw("rect", x=left, y=top, width=width, height=height, **attributes)
 
     def path(self, d: str, **attributes: float | str) -> None:
+        """Draw a path."""
         self.draw("path", d=d, **attributes)
 
     def write(

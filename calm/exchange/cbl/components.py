@@ -73,8 +73,9 @@ class ComponentMaker:
             and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
         ):
             component.guesses["diameter"] = (
-                f"unchanged: one metre displaces {CATALOGUE_DENSITY * area:.3g} kg of water, but "
-                f"has a mass of {mass:.3g} kg and a weight in water of {weight:.3g} N"
+                "as in the file, but inconsistent: one metre displaces "
+                f"{CATALOGUE_DENSITY * area:.3g} kg of water, but has a mass of {mass:.3g} kg and "
+                f"a weight in water of {weight:.3g} N"
             )
         self._stretch(component, definition, area - bore)
         self._drop(definition)
@@ -88,7 +89,9 @@ class ComponentMaker:
         tension = values.get("t")
         if not stiffness and tension is not None:
             stiffness = tension.at(0.01) / 0.01
-            component.guesses["stiffness"] = "its tension at a strain of 0.01; the file has a curve"
+            component.guesses["stiffness"] = (
+                "the file has a curve; this is its tension at a strain of 0.01, over 0.01"
+            )
         if stiffness > 0.0:
             component.figures["stiffness"] = stiffness
         working, breaking = values.number("swl"), values.number("yield")
@@ -140,7 +143,7 @@ class ComponentMaker:
             figures["friction"] = mu
         component = ImportedComponent(name, "anchor", figures)
         if "mass" in figures and "weight" not in figures:
-            component.guesses["mass"] = "assumed steel: no weight in water in the file"
+            component.guesses["mass"] = "the file has no weight in water; steel is assumed"
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
@@ -153,7 +156,7 @@ class ComponentMaker:
         shape = values["type"].text.lower() if "type" in values else "sphere"
         if shape in ("ship", "platform"):
             raise definition.token.refuse(
-                f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
+                f"`{name}` is a {shape}; in CALM a line ends at a float or at a towing ship"
             )
         hull = _displacement(definition, shape)
         height, volume, area = hull[-1]
@@ -176,7 +179,9 @@ class ComponentMaker:
         component = ImportedComponent(name, kind, figures)
         if not afloat:
             figures["length"] = 0.0
-            component.comment = "WHOI Cable treats it as a point: the line ends at its depth."
+            component.comment = (
+                "WHOI Cable treats this body as a point, so the line ends at its depth."
+            )
         elif kind == "body":
             component.hull = hull
         figures |= {"mass": mass, "volume": whole}
@@ -247,7 +252,7 @@ def _displacement(
     if shape == "cylinder":
         return ((height, math.pi / 4.0 * across**2 * height, across * height),)
     if shape not in ("sphere", "capsule"):
-        raise definition.token.refuse(f"buoy `{definition.name}` is of an unknown type")
+        raise definition.token.refuse(f"buoy `{definition.name}` has an unknown type")
     radius, beside = across / 2.0, max(height - across, 0.0) if shape == "capsule" else 0.0
     rows = []
     for step in range(2 * _STEPS + 1):
@@ -264,7 +269,9 @@ def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ..
     """Return the displacement table of a hull from its diameters at heights above the keel."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
-        raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")
+        raise definition.token.refuse(
+            f"buoy `{definition.name}` needs `diameters` at two levels or more"
+        )
     levels = [(row[0].at(), row[1].at()) for row in value.rows]
     if any(b[0] <= a[0] or a[1] < 0.0 for a, b in pairwise(levels)):
         raise value.token.refuse("the levels of `diameters` must increase")

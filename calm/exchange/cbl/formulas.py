@@ -129,7 +129,7 @@ def constant(text: str) -> float:
     words = TokenStream(list(tokens_of([SourceLine(text, "", 1)])))
     value = read_expression(words).at()
     if words.next.kind != "end":
-        raise words.next.refuse(f"`{words.next.text}` is left over")
+        raise words.next.refuse(f"`{words.next.text}` after the formula is not understood")
     return value
 
 

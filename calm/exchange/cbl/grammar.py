@@ -194,7 +194,7 @@ def read_problem(path: Path, options: ImportOptions) -> CableProblem:
 def _section(words: TokenStream, problem: CableProblem) -> None:
     name = _section_name(words)
     if name is None:
-        raise words.next.refuse(f"`{words.next.text}` is where a section should begin")
+        raise words.next.refuse(f"a section must begin here, not `{words.next.text}`")
     words.take()
     if name in _LONG_SECTIONS:
         words.take()

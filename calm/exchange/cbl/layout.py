@@ -59,7 +59,7 @@ class CableLayout:
         items = self._pieces_of(self.problem.segments)
         lower, upper = self.problem.terminals
         if "anchor" in upper.values:
-            raise upper.token.refuse("the layout must lead from the anchor up")
+            raise upper.token.refuse("the layout must begin at the anchor and end at the buoy")
         depth, anchor = self.depth, self._anchor(lower)
         if upper.buoy is None:
             raise upper.token.refuse("the upper end is not a buoy")
@@ -76,7 +76,9 @@ class CableLayout:
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals
         if body.buoy is None or "anchor" in ship.values:
-            raise body.token.refuse("a tow leads from a towed body up to a ship")
+            raise body.token.refuse(
+                "the layout of a tow must begin at the towed body and end at the ship"
+            )
         speeds = (ship.values.get(key) for key in ("x-speed", "y-speed"))
         east, north = (0.0 if value is None else value.at(0.0) for value in speeds)
         if not east and not north and self.water.current:
@@ -166,14 +168,18 @@ class CableLayout:
             for height, clamped in clamps:
                 if start <= height < end or (item is made[-1] and height >= end):
                     item.clamp(clamped, min(max(end - height, 0.0), item.extent))
-            item.guess = "drag at its depth in the upright line" if len(made) > 1 else ""
+            item.guess = (
+                "its drag is that at its depth in the upright line" if len(made) > 1 else ""
+            )
             start = end
         for key in ("cdn", "cdt"):
             value = material.values.get(key)
             if value is not None and value.rows and not counts_on_depth(value):
                 speed = f"{self._speed(lower - length / 2.0):.3g} m/s"
                 for item in made:
-                    item.guess = item.guess or f"{key} is a table by speed: its value at {speed}"
+                    item.guess = (
+                        item.guess or f"{key} is a table over speed; this is its value at {speed}"
+                    )
         return made
 
     def _speed(self, depth: float) -> float:
@@ -192,7 +198,9 @@ class CableLayout:
             component = self._connector(token)
             for node in nodes:
                 if not 1 <= node <= len(heights):
-                    raise token.refuse(f"node {node}: the segment has nodes 1 to {len(heights)}")
+                    raise token.refuse(
+                        f"there is no node {node}; the segment has nodes 1 to {len(heights)}"
+                    )
                 found.append((heights[node - 1], component))
         return found
 
@@ -239,7 +247,7 @@ class CableLayout:
         if not segments or (low and high):
             where = start if isinstance(end, str) else end
             assert not isinstance(where, str)
-            raise where.token.refuse("there is nothing between its two ends, which both lead down")
+            raise where.token.refuse("this line has no segment, or both of its ends are lower ends")
         if high:
             items = [_turned(each) for each in items[::-1]]
             first, lower, last, upper = last, upper, first, lower
@@ -254,7 +262,7 @@ class CableLayout:
             return [], model.joined_at(at), False
         values, token = at.values, at.token
         if "node" in values:
-            raise token.refuse("a loop: its end is tied to a node of the line")
+            raise token.refuse("the layout has a loop: this end is attached to a node of the line")
         x, y, z = (values.number(key) for key in ("x", "y", "z"))
         if "anchor" not in values:
             buoy = self._buoy(at, afloat=self.problem.kind == "surface")
@@ -284,10 +292,12 @@ def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
     for count, share in nodes.rows:
         whole, part, start = round(count.at()), share.at() * length, heights[-1]
         if not 2 <= whole <= _MOST_NODES:
-            raise nodes.token.refuse("a segment needs two nodes at least")
+            raise nodes.token.refuse(f"a segment needs 2 to {_MOST_NODES} nodes")
         heights += [start + part * k / (whole - 1) for k in range(1, whole)]
     if abs(heights[-1] - length) > 1e-3 * length:
-        raise nodes.token.refuse(f"the nodes reach over {heights[-1]:g} m of {length:g} m")
+        raise nodes.token.refuse(
+            f"the nodes cover {heights[-1]:g} m of the segment, which is {length:g} m long"
+        )
     return heights
 
 
@@ -298,7 +308,7 @@ def _defined(
 ) -> grammar.CableDefinition:
     """Return the definition with the name in `value`; errors refer to the value, or to `token`."""
     if value is None or not value.text:
-        raise token.refuse("a name is missing: a material, or a buoy")
+        raise token.refuse("the name of a material or a buoy is missing")
     found = definitions.get(value.text)
     if found is None:
         raise value.token.refuse(f"`{value.text}` is not defined")

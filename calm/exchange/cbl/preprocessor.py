@@ -118,7 +118,7 @@ class Preprocessor:
         try:
             return bool(constant(words))
         except InputError:
-            raise ValueError(f"`#if {rest}` cannot be decided") from None
+            raise ValueError(f"`#if {rest}` cannot be evaluated") from None
 
     def _directive(
         self, word: str, rest: str, path: Path, root: Path, within: tuple[Path, ...]
@@ -146,15 +146,15 @@ class Preprocessor:
     def _include(self, rest: str, path: Path, root: Path, within: tuple[Path, ...]) -> None:
         found = re.match(r"[\"<']([^\">']+)[\">']", self._expanded(rest).strip() or rest)
         if found is None:
-            raise ValueError(f"`#include {rest[:60]}` names no file")
+            raise ValueError(f"`#include {rest[:60]}` does not name a file")
         target = path.parent / found[1]
         real = Path(os.path.realpath(target))
         if not self.options.allow_include and not real.is_relative_to(root):
             raise ValueError(
-                f"`{found[1]}` lies outside the folder of the file; --allow-include reads it"
+                f"`{found[1]}` lies outside the folder of the file; use --allow-include to read it"
             )
         if not target.is_file():
-            raise ValueError(f"`{found[1]}`, which is included, is missing")
+            raise ValueError(f"the included file `{found[1]}` is missing")
         if len(within) >= _DEEPEST or real in within:
             raise ValueError(f"`{found[1]}` includes itself, or files are nested too deeply")
         self._file(target, root, (*within, real))
@@ -163,7 +163,7 @@ class Preprocessor:
         expanded = self._expanded(line)
         self._size += len(expanded) + 1
         if self._size > _MOST_TEXT:
-            raise ValueError("macros and includes make the text too long")
+            raise ValueError("the text is too long after macros and includes are expanded")
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
@@ -217,7 +217,7 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
             start = i + 1
         if depth == 0:
             return found if found != [""] else [], i + 1
-    raise ValueError("a macro's arguments have no end")
+    raise ValueError("the arguments of a macro are not closed by `)`")
 
 
 def _without_comments(text: str, path: str) -> list[str]:
@@ -235,7 +235,7 @@ def _without_comments(text: str, path: str) -> list[str]:
             end = text.find("*/", at)
             if end < 0:
                 start = text.count("\n", 0, found.start()) + 1
-                raise refused(path, "a comment has no end", line=start)
+                raise refused(path, "a comment is not closed by `*/`", line=start)
             pieces.append(" " + "\n" * text.count("\n", at, end))
             at = end + 2
         elif found[0] == "//":

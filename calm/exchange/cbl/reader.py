@@ -47,9 +47,8 @@ _HEADS = re.compile(
 )
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
 _NOTE = (
-    "cn and ct are its Cdn and Cdt, with the same definitions: on the diameter, and on the "
-    "surface. "
-    "See `calm docs import-cable`."
+    "cn and ct are Cdn and Cdt of WHOI Cable: both programs refer Cdn to the diameter, and Cdt to "
+    "the surface area. See `calm docs import-cable`."
 )
 _FINEST = 1e-4  # tolerance of the levels, as a share of the fastest current
 _HALVINGS = 8
@@ -127,7 +126,7 @@ def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
         layout.lay_mooring()
     friction = problem.environment.number("bottom-friction")
     if friction > 0.0 and problem.kind != "towing":
-        design.solver["seabed_friction"] = friction, "its bottom-friction"
+        design.solver["seabed_friction"] = friction, "bottom-friction of the file"
     known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
     for end in problem.terminals:
         found = [key for key in end.values if key not in known]
@@ -148,25 +147,31 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
     kind, layout, ends = problem.kind, problem.layout, problem.terminals
     if kind in _REFUSED and not (kind in _MOORED and _is_net(problem)):
         raise problem.description["type"].token.refuse(
-            f"`type = {kind}` is {_REFUSED[kind]}; CALM has single moorings and tows"
+            f"`type = {kind}` is {_REFUSED[kind]}; CALM reads moorings, nets of legs and tows"
         )
     if kind not in (*_MOORED, "towing"):
-        raise problem.description["type"].token.refuse(f"`type = {kind}` is not known")
+        raise problem.description["type"].token.refuse(f"`type = {kind}` is unknown")
     segments = problem.segments
     if len(ends) != 2 or not segments:
         counts = f"{len(ends)} terminals and {len(segments)} segments"
-        raise refused(problem.path, f"the layout has {counts}")
+        raise refused(
+            problem.path, f"the layout has {counts}; it needs two terminals and a segment"
+        )
     if not all(isinstance(layout[end], CableTerminal) for end in (0, -1)):
-        raise refused(problem.path, "the layout must lead from one terminal to the other")
+        raise refused(problem.path, "the layout must begin and end with a terminal")
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
-        raise ends[1].token.refuse("a loop: its end is tied to a node of the line")
+        raise ends[1].token.refuse(
+            "the layout has a loop: this end is attached to a node of the line"
+        )
     if kind != "towing" and not any(anchored):
-        raise ends[0].token.refuse("no end is an anchor: a drifting line")
+        raise ends[0].token.refuse("neither end is an anchor, so the line drifts")
     for values in (*(end.values for end in ends), *(segment.joint for segment in segments)):
         for key in _FORCES:
             if key in values and values[key].at(0.0) != 0.0:
-                raise values[key].token.refuse(f"`{key}` pulls at the line from outside")
+                raise values[key].token.refuse(
+                    f"`{key}` is an external force, which CALM does not support"
+                )
 
 
 def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.ImportedWater:
@@ -180,12 +185,12 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
     water.density = environment.number("rho", "density") or None
     water.gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     if "gravity" not in environment:
-        water.guesses["gravity"] = "not in the file; the usual value of such files"
+        water.guesses["gravity"] = "the file has no gravity; this is the usual value in WHOI Cable"
     grid = None
     if (value := environment.get("current-file")) is not None:
         grid = _gridded_current(value, problem, dropped)
         if grid is None:
-            what = f"still water: its current-file `{value.text}` is missing"
+            what = f"the current-file `{value.text}` is missing; still water is assumed"
             water.guesses["current"] = what
     axes = [_profile(environment, axis, grid) for axis in "xyz"]
     angle = 0.0 if grid else environment.number("current-rotation")
@@ -277,7 +282,7 @@ def _gridded_current(
     path, outside = folder / value.text, problem.options.allow_include
     if not outside and not path.resolve().is_relative_to(folder.resolve()):
         raise value.token.refuse(
-            f"`{value.text}` lies outside the folder of the file; --allow-include reads it"
+            f"`{value.text}` lies outside the folder of the file; use --allow-include to read it"
         )
     if not path.is_file():
         return None
@@ -301,7 +306,7 @@ def _gridded_current(
     if times > 1:
         dropped.append(model.Remark("current-file", "times after the first"))
     if np.ptp(speeds, axis=(1, 2)).any():
-        what = "horizontal variation: the profile at the anchor is used"
+        what = "variation in the horizontal; the profile at the anchor is used"
         dropped.append(model.Remark("current-file", what))
     order = np.argsort(depth)
     return depth[order], here[order]
@@ -311,9 +316,9 @@ def _numbers(path: Path) -> NDArray[np.float64]:
     try:
         numbers = np.array(read_text(path, largest=_LARGEST).split(), np.float64)
     except ValueError:
-        raise refused(path, "holds something other than numbers") from None
+        raise refused(path, "contains text; only numbers are allowed") from None
     if not np.all(np.isfinite(numbers)):
-        raise refused(path, "holds numbers without a value")
+        raise refused(path, "contains NaN or infinite numbers")
     return numbers
 
 

@@ -85,7 +85,9 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     density = design.mean_density
     problem = _Problem(density)
     if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
-        lost.append("the density profile: weights and drags are those of the upright line")
+        lost.append(
+            "the density profile: weights and drags are those at the depths of the upright line"
+        )
     parts = list(design.parts)
     if design.tow is None:
         buoy, parts = parts[0], parts[1:]
@@ -99,22 +101,27 @@ def write_cbl(exported: ExportedDesign) -> Exported:
             problem.at_a_point(clamp)
     floating = design.afloat
     if floating and not design.has_draft:
-        lost.append("a float without draft or with full drag: in WHOI Cable it floats at its draft")
+        lost.append(
+            "the full drag of the float, or its unknown draft: WHOI Cable computes the draft"
+        )
     if design.tow is not None and design.tow.height:
         lost.append("the height of the sheave: in WHOI Cable the line begins at the surface")
     if floating:
-        lost.append("the increase of its drag with draft: Cdn gives the drag at the present draft")
+        lost.append(
+            "the increase of the drag of the float with its draft: Cdn gives the drag at the "
+            "present draft"
+        )
     elif design.tow is None:
         lost.append(AS_A_POINT)
     if buoy.flexible:
-        lost.append("the free end of the line: replaced by a small sphere without weight")
+        lost.append("the free end of the line, which is replaced by a small weightless sphere")
     elif not floating and design.tow is None and buoy.length > 0.0:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
     text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density)
     losses = design.losses(lost)
-    head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
+    head = [f"{design.name}, exported by CALM without:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
     return Exported(f"/* {comment} */\n{text}".encode(), losses)
 
@@ -161,7 +168,10 @@ def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
     for clamp, at in part.clamps:
         problem.at_a_point(clamp)
         if abs(at - part.length / 2.0) > 0.05:
-            lost.append("where on a rigid piece a clamp sits: it acts at its middle")
+            lost.append(
+                "the positions of clamps on rigid pieces: their loads act at the middle of the "
+                "piece"
+            )
     if link:
         problem.segment(link, part.length / 2.0)
 
@@ -279,7 +289,7 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
         drag = seen / hull.area * _drag_share(design, hull, mass, part.net, most)
         return f"{size}  Cdn = {drag:.9g}{wind}"
     if floating and not isinstance(part.component, Sphere):
-        lost.append("the hull of the float: replaced by a sphere with the same drag")
+        lost.append("the hull of the float, which is replaced by a sphere with the same drag")
     across = part.diameter if isinstance(part.component, Sphere) else sqrt(4.0 * seen / pi)
     hull = spherical_hull(max(across, _LEAST))
     drag = seen / hull.area

@@ -62,11 +62,11 @@ def rigid(element: MddElement) -> model.ImportedComponent:
         figures["buoyancy"] = (CATALOGUE_DENSITY * volume - element.mass) * KILOGRAM_FORCE
     component = model.ImportedComponent(element.name, kind, {**figures, "role": role})
     if kind == "body":
-        component.comment = "The file gives it no size, so it has no drag."
+        component.comment = "The file has no size for this piece, so it has no drag."
     elif _is_too_small(element):
         component.guesses["diameter"] = (
-            f"kept, but a placeholder: nothing of this size lifts {element.lift:g} kgf, "
-            "so its drag is missing"
+            f"as in the file, but a placeholder: a float of this size cannot lift {element.lift:g} "
+            "kgf, so its drag is too small"
         )
     return component
 
@@ -114,8 +114,8 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
         component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
         if _HARD.search(element.name) and modulus < _SOFT:
             component.guesses["stiffness"] = (
-                f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; is it a remnant "
-                "of an edit?"
+                f"from the modulus in the file, {modulus / 1e9:g} GPa, which is that of a rope; is "
+                "it left from another material?"
             )
     if component.kind == "chain":
         component.comment = (
@@ -123,7 +123,9 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
             "not the diameter of the bar."
         )
     if element.width > 0.0 and element.diameter > 0.0:
-        component.guesses["diameter"] = "the file gives a width and a diameter of a sphere"
+        component.guesses["diameter"] = (
+            "the file has a width and also the diameter of a sphere; the width is used"
+        )
     return component
 
 
@@ -242,7 +244,9 @@ def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArra
             size = size.T
         if size.size and (size.ndim != 2 or size.shape[0] not in (3, 4)):
             shape = "×".join(str(length) for length in size.shape)
-            raise ValueError(f"`{name}` is {shape}; it must have 4 rows, one column an element")
+            raise ValueError(
+                f"`{name}` has the size {shape}; it must have 4 rows and a column for each element"
+            )
     except ValueError as error:
         problems.append(str(error))
         return np.zeros((4, 0))

@@ -27,8 +27,8 @@ _WANTED = frozenset(
 _STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
-    "cn and cx are its Cd. In that program drag along a line or cylinder is negligible, so ct is "
-    "0. See `calm docs import-mdd`."
+    "cn and cx are Cd of that program, which neglects drag along lines and cylinders, so ct is 0. "
+    "See `calm docs import-mdd`."
 )
 
 
@@ -46,11 +46,11 @@ def read_mdd(path: Path) -> model.ImportedDesign:
     if not sized and any(group in variables for group in GROUPS):
         raise refused(
             path,
-            "is the element library of that program, not a mooring; a list takes its "
-            "figures: --elements FILE",
+            "is the element library of that program, not a mooring; use it with --elements FILE "
+            "when you import a list",
         )
     if not sized:
-        raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
+        raise refused(path, "contains neither a mooring (`H`) nor a tow (`Ht`) of that program")
     towed = sized[0] == "Ht"
     elements, problems = read_elements(variables, "t" if towed else "")
     clamped, more = read_elements(variables, "CO")
@@ -76,7 +76,9 @@ def read_mdd(path: Path) -> model.ImportedDesign:
 def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path: Path) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
-        raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
+        raise refused(
+            path, f"the last element, {last.name} ({last.number}), is not an anchor with a weight"
+        )
     design.items = [piece_of(element) for element in elements[:-1]]
     design.items.append(model.ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
@@ -101,7 +103,7 @@ def _lay_tow(
     design.tow = model.ImportedTow(speed, bearing_of(east, north))
     height = variables.first("afh")
     if height > 0.0:
-        what = f"an A-frame of {height:g} m is only drawn; the wire begins at the water"
+        what = f"the A-frame of {height:g} m, which that program only draws"
         design.dropped.append(model.Remark("afh", what))
 
 
@@ -113,19 +115,25 @@ def _clamp(
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
     if not by_share and not by_height:
-        counts = f"`Jobj` {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
-        raise refused(path, f"{len(clamped)} clamps without their places: {counts}")
+        counts = f"`Jobj` has {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
+        raise refused(path, f"{len(clamped)} clamps need as many positions: {counts}")
     for i, element in enumerate(clamped):
         above = _by_height(design.items, height[i]) if by_height else None
-        place, guess = above, "from its height alone"
+        place, guess = above, "the position follows from the height `ZCO` alone"
         if by_share:
             place, guess = _by_share(design, host[i], share[i]), ""
             if place is None:
-                raise refused(path, f"{element.name} is clamped on element {host[i]:g}: none")
+                raise refused(
+                    path, f"{element.name} is clamped on element {host[i]:g}, which does not exist"
+                )
             if above is not None and not _agree(place, above):
-                guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
+                guess = f"the position is from `Jobj` and `Pobj`; `ZCO` disagrees ({height[i]:g} m)"
         if place is None:
-            raise refused(path, f"{element.name} is clamped at {height[i]:g} m, off the line")
+            raise refused(
+                path,
+                f"{element.name} is clamped at a height of {height[i]:g} m, which is not on the "
+                "line",
+            )
         design.items[place[0]].clamp(rigid(element), place[1], guess)
 
 

@@ -33,7 +33,7 @@ def read_water(
     if not np.any(levels > 0.0):
         return None, None
     if not np.all(np.isfinite(levels)) or np.any(levels < 0.0):
-        raise ValueError("`z` must be heights of 0 and more")
+        raise ValueError("the heights in `z` must be numbers of at least 0")
     seabed = float(levels.max())
     profiles = [_profiles(variables, name, levels.size) for name in "UVW"]
     if profiles[0] is None and profiles[1] is None:
@@ -47,7 +47,7 @@ def read_water(
     if densities is not None and densities.shape[1] > 1:
         if not np.all(np.isfinite(density)):
             raise ValueError("`rho` has gaps in its first profile")
-        what = f"the first of {densities.shape[1]} profiles; a mooring has one density"
+        what = f"the first of {densities.shape[1]} profiles, because a mooring has only one"
         guessed.append(model.Remark("environment.density", what))
     order = np.arange(levels.size) if towed else np.argsort(seabed - levels, kind="stable")
     depth = np.sort(levels) if towed else (seabed - levels)[order]
@@ -78,7 +78,9 @@ def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | No
     if values.ndim == 2 and values.shape[1] == levels:
         return values.T
     shape = "×".join(str(length) for length in values.shape)
-    raise ValueError(f"`{name}` is {shape} for {levels} values of `z`")
+    raise ValueError(
+        f"`{name}` has the size {shape}, which does not match the {levels} values of `z`"
+    )
 
 
 def _filled(values: RealArray | None, name: str, levels: int, times: int) -> RealArray:
@@ -94,9 +96,14 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
 def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
     """Return the times as days, and the date from which they are counted."""
     if time.size != times:
-        guessed.append(model.Remark("record.time", "an hour between profiles, from 2000-01-01"))
+        guessed.append(
+            model.Remark(
+                "record.time",
+                "the file has no time for each profile; hourly from 2000-01-01 is assumed",
+            )
+        )
         return np.arange(times) / 24.0, "2000-01-01"
     if np.all((time > _EARLIEST) & (time < _LATEST)):
         return time - _MATLAB_EPOCH, "1970-01-01"
-    guessed.append(model.Remark("record.time", "days from 2000-01-01"))
+    guessed.append(model.Remark("record.time", "not dates; taken as days from 2000-01-01"))
     return time - time[0], "2000-01-01"

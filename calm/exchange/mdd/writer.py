@@ -66,7 +66,7 @@ def write_mdd(exported: ExportedDesign) -> Exported:
             "buoyancy; its Cd gives the same drag as in CALM in this current"
         )
     losses = design.losses(lost)
-    variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *losses])
+    variables["lost"] = _texts([f"{design.name}, exported by CALM without:", *losses])
     content = io.BytesIO()
     savemat(content, variables, format="5", oned_as="row")
     return Exported(content.getvalue(), losses)
@@ -106,7 +106,9 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
             return across, 0.0, part.kn / (_HALF_DENSITY * across * part.length)
         return part.area() / part.length, 0.0, 1.0
     if not isinstance(component, Cylinder):
-        lost.append("bodies: each is written as a sphere or cylinder of equal drag with Cd 1")
+        lost.append(
+            "shapes of bodies: each is written as a sphere or cylinder of equal drag with Cd 1"
+        )
     return 0.0, math.sqrt(4.0 * part.area() / math.pi), 1.0
 
 

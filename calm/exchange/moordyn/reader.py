@@ -25,7 +25,7 @@ depth, and in metres if that is more.
 
 _ABOVE = 0.01  # m: a point higher than this is held above the water
 
-_NOTE = "cn and ct are its Cd and CdAx, with the same definitions. See `calm docs import-moordyn`."
+_NOTE = "cn and ct are Cd and CdAx of MoorDyn, without conversion. See `calm docs import-moordyn`."
 
 _SECTIONS = (
     ("types", r"line (types|dictionary)"),
@@ -130,19 +130,19 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     points = {row.words.get("id", ""): row for row in tables["points"]}
     lines = tables["lines"]
     if not points or not lines:
-        raise refused(path, f"has {len(points)} points and {len(lines)} lines")
+        raise refused(path, f"has {len(points)} points and {len(lines)} lines; it needs both")
     if len(lines) > model.MOST_PIECES:
         raise refused(path, f"has {len(lines)} lines; more than {model.MOST_PIECES} cannot be read")
     at: dict[str, list[_Row]] = {}
     for line in lines:
         for name in line.ends:
             if name not in points:
-                raise line.refuse(f"its end `{name}` is not a point of the file")
+                raise line.refuse(f"the end `{name}` of this line is not a point of the file")
             at.setdefault(name, []).append(line)
     lowest = min(point.number("z") for point in points.values())
     depth = _option(options, "wtrdpth", "depth", default=-lowest)
     if depth <= 0.0:
-        raise refused(path, "has no depth of the water (`WtrDpth`)")
+        raise refused(path, "has no water depth (`WtrDpth`)")
     density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
     gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # MoorDyn's default
     kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
@@ -152,7 +152,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     if kind not in ("0", "none") and not current:
         lacks = f"without {_CURRENTS} in its folder" if kind in _STEADY else "which vary in time"
         design.dropped.append(
-            model.Remark("current", f"`Currents` {kind}, {lacks}: the water is still")
+            model.Remark("current", f"`Currents` {kind}, {lacks}; still water is assumed")
         )
     if options.get("wavekin", "0") not in ("0", "none"):
         design.dropped.append(model.Remark("waves", f"`WaveKin` {options['wavekin']}"))
@@ -248,7 +248,7 @@ def _point_of(point: _Row) -> model.ImportedPiece | None:
 def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
     for key in ("fx", "fy", "fz"):
         if point.number(key, 0.0) != 0.0:
-            raise point.refuse(f"`{key}` pulls at the line from outside")
+            raise point.refuse(f"`{key}` is an external force, which CALM does not support")
     return {
         "length": 0.0, "drag_area": point.number("cda", 0.0), "cd": 1.0,
         "mass": point.number("mass", 0.0), "volume": point.number("volume", 0.0),
@@ -262,8 +262,8 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
     """
     figures = _figures(top)
     if _lift(figures) <= 0.0:
-        raise top.refuse("the upper end is free, and does not float")
-    reason = "the file holds the upper end; here a float of its point, free to move"
+        raise top.refuse("the upper end is free but not buoyant")
+    reason = "the file holds the upper end in place; here it is a float that is free to move"
     guess = {"volume": reason} if _is_held(top) else {}
     name = f"point {top.words['id']}"
     return model.ImportedPiece(
@@ -304,7 +304,7 @@ class _Row:
         try:
             value = float((text or "").split("|")[0])
         except ValueError:
-            raise self.refuse(f"`{key}` is `{text or ''}`, no number") from None
+            raise self.refuse(f"`{key}` is `{text or ''}`, which is not a number") from None
         if abs(value) > 1e15 or value != value:
             raise self.refuse(f"`{key}` is {value:g}")
         return value
@@ -342,7 +342,7 @@ def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
         else:
             words = line.split()
             if len(words) < min(len(headings), 4):
-                raise refused(path, f"the row has {len(words)} words", line=number)
+                raise refused(path, f"the row has only {len(words)} values", line=number)
             kept = dict(zip(headings, words, strict=False))
             tables[current].append(_Row(str(path), number, kept))
     return tables, options
@@ -385,7 +385,9 @@ def _lay_net(file: _File, path: Path) -> None:
             rise = file.points[names[-1]].number("z") - file.points[names[0]].number("z")
             if all(anchored):
                 if len(lines) == 1:
-                    raise lines[0].refuse("both ends are anchors: a leg has one, at its lower end")
+                    raise lines[0].refuse(
+                        "both ends are anchors, but a leg has only one, at its lower end"
+                    )
                 top = max(names[1:-1], key=lambda name: file.points[name].number("z"))
                 k = names.index(top)
                 halves = [(names[k::-1], lines[:k][::-1]), (names[k:], lines[k:])]

@@ -97,6 +97,7 @@ class _System:
         self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
+        """Return the rows of the point table and of the line table."""
         points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
         for number, point in enumerate(self.points, 1):
             load, (x, y, depth) = point.load, point.place
@@ -135,17 +136,17 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
     deepest = max(lines, key=lambda line: line.depth)
     first = replace(lines[0], name=exported.name, depth=deepest.depth)
     if first.tow is not None:
-        raise UsageError("a tow has no anchor; only moorings are written for MoorDyn")
+        raise UsageError("tows cannot be written for MoorDyn, only moorings")
     system = _System(first.mean_density, first.gravity)
-    lost = ["rigid pieces in a row: each row is one stiff length"]
+    lost = ["joints between adjacent rigid pieces, which become one stiff length"]
     for design in lines:
         _lay_line(system, design)
     if any(first.wind):
         lost.append("wind")
     if any(design.afloat for design in lines):
         lost.append(
-            "the hull of the float: the upper end is fixed; its point keeps the float's "
-            "mass, volume and drag as it floats here"
+            "the hull of the float: the upper end is fixed, and its point has the mass, volume and "
+            "drag of the float at its present draft"
         )
     else:
         lost.append(AS_A_POINT)
@@ -255,7 +256,7 @@ def _word(text: str) -> str:
 
 def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
     points, rows = system.rows()
-    title = f"{design.name}, by CALM; the current is in {_CURRENTS}; lost:"
+    title = f"{design.name}, exported by CALM, current in {_CURRENTS}, without:"
     options = (
         ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
         ("3.0e4", "cBot"), (f"{system.density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),

@@ -122,7 +122,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
         return None
     if what not in _DIMENSIONS:
         raise ValueError(f"`{text}` is not understood")
-    hint = ": of 907, 1000 or 1016 kg" if plain.lower() in _AMBIGUOUS else ""
+    hint = " (it may mean 907, 1000 or 1016 kg)" if plain.lower() in _AMBIGUOUS else ""
     raise ValueError(f"`{plain}` is not a unit of {_DIMENSIONS[what]} that CALM knows{hint}")
 
 
@@ -224,13 +224,13 @@ def number(cell: str, decimal: str = "") -> CellNumber:
         bare[found.start("digits") + len(digits) :] if not found["power"] else bare[found.end() :]
     )
     if _MULTIPLIED.match(rest):
-        wrong = f"`{cell}` is a count and a figure; give the count a column of its own"
+        wrong = f"`{cell}` contains a count and a value; put the count in a separate column"
         return CellNumber(None, wrong=wrong)
     if isinstance(cell, WorkbookNumber):
         decimal = "."
     sure, doubtful = _signs(digits)
     if doubtful and not decimal:
-        return CellNumber(None, wrong=f"`{cell}` is {_either(digits)}")
+        return CellNumber(None, wrong=f"`{cell}` may be {_either(digits)}")
     decimal = decimal or sure or "."
     groups = re.split(f"[{re.escape(',' if decimal == '.' else '.')}'’ \u00a0\u202f]", digits)
     whole, _, part = groups[-1].partition(decimal)

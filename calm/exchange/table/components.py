@@ -35,7 +35,7 @@ def _anchor(row: ListRow) -> _Definition:
         kept["weight"] = abs(row.figure("buoyancy"))
     elif row.figure("mass"):
         kept["mass"] = row.figure("mass")
-        row.guesses["mass"] = "assumed to be of steel: the list has no weight in water"
+        row.guesses["mass"] = "the list has no weight in water; steel is assumed"
     return "anchor", kept | {"length": row.figure("length")}
 
 
@@ -56,10 +56,10 @@ def _rigid(row: ListRow) -> _Definition:
         kind, guesses["drag_area"] = "body", guesses.get(of, "")
         kept |= {"drag_area": figures[of], "cd": coefficient}
         if of == "area" and "cd" not in figures:
-            guesses["cd"] = "the list gives an area and no coefficient"
+            guesses["cd"] = "the list has an area but no drag coefficient; 1 is assumed"
     elif kind == "body":
         kept |= {"drag_area": 0.0, "cd": 1.0}
-        guesses["drag_area"] = "the list has no size: the drag is 0"
+        guesses["drag_area"] = "the list has no size, so the drag is 0"
     else:
         kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
     kept["buoyancy"] = lift
@@ -77,11 +77,13 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
     lift, most = row.figure("buoyancy"), volume * REFERENCE_DENSITY * STANDARD_GRAVITY
     if lift <= most:
         return
-    kilograms = f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces {most / KILOGRAM_FORCE:.4g} kg"
+    kilograms = (
+        f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces only {most / KILOGRAM_FORCE:.4g} kg"
+    )
     if row.count > 1 and lift <= row.count * most:
-        row.refuse(f"one {kilograms}; is that of all {row.count}? Head the column `total`")
+        row.refuse(f"one {kilograms}; if the value is for all {row.count}, name the column `total`")
     else:
-        row.guesses["buoyancy"] = f"as in the list: it {kilograms}"
+        row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
@@ -103,7 +105,7 @@ def _shape(row: ListRow) -> tuple[str, float]:
 
 def _line(row: ListRow) -> _Definition:
     if row.figure("length") <= 0.0:
-        row.refuse("a line needs its length")
+        row.refuse("the length of the line is missing")
     if "buoyancy" not in row.figures:
         row.refuse(f"its weight in water is missing{row.hint}")
     across, lift = row.figure("diameter") or row.figure("width"), row.figure("buoyancy")
@@ -113,7 +115,7 @@ def _line(row: ListRow) -> _Definition:
         if across <= 0.0:
             row.refuse("its diameter is missing")
             across = 0.01
-        row.guesses["diameter"] = "from its name"
+        row.guesses["diameter"] = "read from the name of the piece"
     kept: dict[str, model.FigureOrWord] = {"diameter": across}
     if "drag_area" in row.figures:
         kept["cn"] = row.figure("drag_area") / across
@@ -136,7 +138,8 @@ def _line(row: ListRow) -> _Definition:
 
 def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
     """Return the drag coefficient in the list, else guess a typical value for the kind."""
-    key, guess = "cx" if kind == "sphere" else "cn", f"the usual value for a {kind}"
+    key = "cx" if kind == "sphere" else "cn"
+    guess = f"not in the list; the usual value for a {kind}"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 

@@ -131,8 +131,8 @@ class ListHeadings:
     @property
     def problems(self) -> list[str]:
         """Messages about headings with mistakes, and about unknown ones that cannot be ignored."""
-        beside = "has lines beside other pieces; a line needs a row of its own"
-        from_an_end = "counts lengths from an end of the line; give each piece its own length"
+        beside = "lists lines in the same rows as other pieces; each line needs its own row"
+        from_an_end = "has distances from an end of the line; each piece needs its own length"
         return [
             *(
                 f"row {self.row + 1}, column {column.index + 1}, `{column.heading}`: {column.wrong}"
@@ -192,7 +192,9 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
         A name or a heading is unknown.
     """
     for what in (each for each in given if each not in COLUMNS):
-        raise refused(path, unknown(f"--columns: `{what}` is nothing of a piece", what, COLUMNS))
+        raise refused(
+            path, unknown(f"--columns: `{what}` is not a property of a piece", what, COLUMNS)
+        )
     cells = {_plain(cell) for rows in sheets.values() for row in rows[:_SEARCHED] for cell in row}
     for what, heading in given.items():
         if not any(cell.startswith(_plain(heading)) for cell in cells):

@@ -104,7 +104,9 @@ def _of_matrices(path: Path) -> list[ListRow]:
         if (entry := _entry(text, group, _width(variables))) is not None
     ]
     if not entries:
-        raise refused(path, "holds no element library of that program (`floats`, `wires` …)")
+        raise refused(
+            path, "contains no element library of Mooring Design & Dynamics (`floats`, `wires` …)"
+        )
     return entries
 
 
@@ -156,7 +158,7 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
             row.figures = {k: one for k, one in row.figures.items() if k not in _NOT_THEIRS}
             yield row
     if not found:
-        raise refused(path, "holds no elements: no sheet has headings that CALM knows")
+        raise refused(path, "contains no elements: no sheet has headings that CALM knows")
 
 
 def _is_line(row: ListRow, title: str) -> bool:

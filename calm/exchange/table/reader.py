@@ -28,7 +28,7 @@ from calm.exchange.table.rows import (
 )
 from calm.files.components import FLEXIBLE_KINDS
 
-_NOTE = "A list has no data on the water, and few on drag. See `calm docs import-table`."
+_NOTE = "A list has no data on the water and little data on drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
 _NAMES = 3  # least number of names in a list that has only names
 
@@ -47,8 +47,8 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     if elements is None and not columns and options.sheet is None and is_library(sheets):
         raise refused(
             path,
-            "is a library of elements, not a mooring; a list takes its figures: --elements FILE. "
-            "If a sheet is a list of pieces, name it: --sheet NAME",
+            "is a library of elements, not a mooring; use it with --elements FILE when you import "
+            "a list. If one of its sheets is a list of pieces, select it with --sheet NAME",
         )
     lists = _named(sheets, options.sheet, path)
     library = read_library(elements) if elements is not None else {}
@@ -82,7 +82,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     if headings and "depth" in headings.columns and not _go_down(rows):
         heading = headings.columns["depth"].heading
         remarks.append(
-            model.Remark(f"column {heading}", ("does not grow down the line and was ignored"))
+            model.Remark(f"column {heading}", ("does not increase down the line and was ignored"))
         )
         for row in rows:
             row.figures.pop("depth", None)
@@ -131,15 +131,15 @@ def _headed(
         return None
     if len(shown) > 1:
         names = ", ".join(f"`{name}` ({len(cells) - 1} rows)" for name, cells, _ in shown)
-        raise refused(path, f"has {len(shown)} sheets with headings: {names}; --sheet NAME")
+        raise refused(
+            path, f"has {len(shown)} sheets with headings: {names}; select one with --sheet NAME"
+        )
     taken = shown[0][0]
     if others := [name for name, *_ in found if name != taken]:
-        what = f"taken; hidden and not read: {', '.join(f'`{name}`' for name in others)}"
+        what = f"used; hidden sheets were ignored: {', '.join(f'`{name}`' for name in others)}"
         remarks.append(model.Remark(f"sheet `{taken}`", what))
     if taken in hidden:
-        remarks.append(
-            model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same")
-        )
+        remarks.append(model.Remark(f"sheet `{taken}`", f"hidden but read: {hidden[taken]}"))
     return shown[0]
 
 
@@ -153,14 +153,14 @@ def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
         if column.heading
     )
     of = f" of sheet `{sheet}`" if sheet else ""
-    return f"{sum(row.count for row in rows)} pieces{of}, {length:.5g} m long together; {columns}"
+    return f"{sum(row.count for row in rows)} pieces{of}, total length {length:.5g} m; {columns}"
 
 
 def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
     """Return remarks about assumed force units, for headings without a unit."""
     usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
     return [
-        model.Remark(f"column {column.heading}", f"has no unit: read as {usual[what]}")
+        model.Remark(f"column {column.heading}", f"has no unit; {usual[what]} is assumed")
         for what, column in headings.columns.items()
         if what in usual and not column.known
     ]
@@ -179,13 +179,14 @@ def _names(
     filled = sum(bool(cell) for row in longest for cell in row)
     if len(rows) < _NAMES or 2 * len(rows) < filled:
         raise refused(
-            path, "has no headings that CALM knows; name them: --columns name=…,length=…,weight=…"
+            path,
+            "has no headings that CALM knows; name them with --columns name=…,length=…,weight=…",
         )
     if not library:
         raise refused(
             path,
-            f"holds names and no figures (`{rows[0].name}`, `{rows[1].name}` …); "
-            "give the library of these elements: --elements FILE",
+            f"has names but no values (`{rows[0].name}`, `{rows[1].name}` …); "
+            "add the library of these elements with --elements FILE",
         )
     if key_of(rows[0].name) not in library:
         if key_of(rows[0].name) != "name":
@@ -242,7 +243,7 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
     """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
-        raise refused(path, f"has {len(pieces)} pieces")
+        raise refused(path, f"has {len(pieces)} pieces; at least two are needed")
     anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
     if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
         design.notes.append(
@@ -256,14 +257,14 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
         raise refused(
             path,
             "neither end of the list is a float or an anchor; a list of a tow cannot be read, "
-            "since it has neither ship nor speed",
+            "because it has no speed of the ship",
         )
     if lifts[0] < lifts[1]:
         design.notes.append(
             "The list runs from the lower end up; the mooring file has the reverse order."
         )
         rows = _turned(rows)
-    design.guessed.append(model.Remark("line.anchor", "the list has none"))
+    design.guessed.append(model.Remark("line.anchor", "the list has no anchor; one is added"))
     return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 

@@ -74,6 +74,7 @@ class ListRow:
 
     @property
     def is_anchor(self) -> bool:
+        """Whether the component of the row is an anchor."""
         anchor = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
         return anchor is not None or is_called(self.name, "anchor")
 
@@ -125,7 +126,7 @@ def rows_of(
         if not name:
             held = [cell_of(each, column) for what, column in known.items() if what in _ENOUGH]
             if any(re.search(r"\d", cell) for cell in held):
-                dropped.append(model.Remark(f"row {place}", "it has figures and no name"))
+                dropped.append(model.Remark(f"row {place}", "it has values but no name"))
             continue
         if TOTAL.match(name):
             dropped.append(model.Remark(f"row {place}", f"`{name}`, a sum"))
@@ -141,7 +142,7 @@ def rows_of(
             guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
-            remark = f"read as one piece with the figures of its row, not as {several[1]} pieces"
+            remark = f"read as one piece with the values of its row, not as {several[1]} pieces"
             guessed.append(model.Remark(row.where, remark))
         _divide(row, known, guessed)
         rows.append(row)
@@ -179,14 +180,14 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
             several = _METRES.search(f"{column.heading} {found.rest}")
             if several and not row.is_line:
                 figure *= int(several[1])
-                row.guesses[what] = "read as that of the whole piece, since it is not a line"
+                row.guesses[what] = "taken for the whole piece, because it is not a line"
         row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
     count = row.figures.pop("count", 1.0)
     row.count = round(count)
     if not 1 <= row.count <= _MOST:
-        row.refuse(f"{count:.12g} of them")
+        row.refuse(f"its count is {count:.12g}; it must be from 1 to {_MOST}")
         row.count = 1
     return row
 
@@ -216,9 +217,9 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
         grow = any(all(a <= b for a, b in pairwise(each)) for each in (lengths, lengths[::-1]))
         if grow and not longest.is_line:
             return [
-                f"the lengths grow from one piece to the next, {min(lengths):g} m to "
-                f"{max(lengths):g} m, {longest.name}: they are counted from an end of the line; "
-                "give each piece its own length"
+                f"the lengths increase from piece to piece, from {min(lengths):g} m to "
+                f"{max(lengths):g} m ({longest.name}), so they are distances from an end of the "
+                "line; give each piece its own length"
             ]
     return [
         f"{row.where}: is {row.figures['length']:g} m long; is its unit correct?"
@@ -280,9 +281,9 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
             if what == "buoyancy" and not column.whole:
                 row.guesses.setdefault(
                     what,
-                    "read as that of a metre: it is the same at different lengths"
+                    "taken per metre, because lines of different lengths have the same value"
                     if per_metre
-                    else "the weight in the list is read as that of the whole length",
+                    else "taken for the whole length of the line",
                 )
 
 

@@ -13,9 +13,9 @@ _HEADER = (
 def write_list(exported: ExportedDesign) -> Exported:
     """Write a line as a list in CSV."""
     (design,) = exported.legs
-    lost = ["the water", "hulls and wind: floats drag in full at the surface"]
+    lost = ["the water", "hulls and wind: floats at the surface have their full drag"]
     if design.tow is not None:
-        lost.append("the speed of the ship: a list is a mooring's")
+        lost.append("the speed of the ship, for which a list has no column")
     losses = design.losses(lost)
     rows = [
         row
@@ -26,7 +26,7 @@ def write_list(exported: ExportedDesign) -> Exported:
         anchor, weight = design.anchor
         figures = [None, anchor.length, None, anchor.mass, -weight, None, None, None]
         rows.append([*["anchor"] * 4, *figures])
-    comments = (f"{design.name}, by CALM; lost:", *losses)
+    comments = (f"{design.name}, exported by CALM without:", *losses)
     above = "".join(f"# {' '.join(line.split())}\n" for line in comments)
     return Exported((above + table_csv(_HEADER, rows)).encode(), losses)
 

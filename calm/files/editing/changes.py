@@ -118,7 +118,7 @@ class Page:
         for index in known:
             if not 0 <= index < count:
                 what = "clamp" if location[-1] == "clamps" else "item"
-                raise EditError(f"there is no {what} {index} among {count}")
+                raise EditError(f"{what} {index} does not exist; the list has {count}")
         return known
 
     def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:

@@ -203,6 +203,7 @@ class Items:
         return text
 
     def insert(self, index: int, text: str) -> None:
+        """Insert an item."""
         self.texts.insert(index, text)
         self.gaps.insert(index, "")
         if index == 0 and len(self.gaps) > 1:

@@ -230,7 +230,7 @@ class WorkingFile:
                 reasons.append(f"{place}: {getattr(error, 'strerror', None) or error}")
             else:
                 return place
-        raise NotWritten("the work cannot be kept: " + "; ".join(reasons))
+        raise NotWritten("the unsaved work cannot be stored: " + "; ".join(reasons))
 
     def _drop(self, *places: Path) -> None:
         for place in places:
@@ -256,7 +256,7 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
         return ""
     losses = []
     if (before.st_uid, before.st_gid) != (after.st_uid, after.st_gid):
-        losses.append("its owner or group could not be kept")
+        losses.append("its owner or group could not be preserved")
     if before.st_nlink > 1:
         losses.append("its other hard links keep the old text")
     return "; ".join(losses)

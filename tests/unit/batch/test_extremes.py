@@ -177,7 +177,7 @@ def test_gaps_do_not_count_as_record():
     ("time", "values", "reason"),
     [
         (times(5), np.ones(5), "all values are equal"),
-        (times(5), np.full(5, np.nan), "there are 0 values"),
+        (times(5), np.full(5, np.nan), "there are too few values (0)"),
         (times(5)[::-1], np.arange(5.0), "do not increase"),
     ],
 )
@@ -204,7 +204,7 @@ def test_a_fit_at_the_bound_of_the_search_is_refused():
     values = np.random.default_rng(13).uniform(size=len(time))
     _, pot = return_levels(time, values, {})
     assert isinstance(pot, LevelsRefused)
-    assert "a bound of the search" in pot.reason
+    assert "at the limit of the search" in pot.reason
 
 
 @pytest.mark.parametrize("searches", [0, 1])
@@ -238,7 +238,7 @@ def test_no_level_where_the_strongest_currents_have_no_solution():
     assert return_levels(time, kept, {})[0].levels[-1].high < 0.8 * true
     for refusal in return_levels(time, kept, ended):
         assert isinstance(refusal, LevelsRefused)
-        assert "of the profiles with a current 19 without equilibrium" in refusal.reason
+        assert "of the profiles with a current, 19 without equilibrium" in refusal.reason
 
 
 def test_no_level_where_a_profile_did_not_converge():

@@ -45,5 +45,5 @@ def test_places() -> None:
 
 @pytest.mark.parametrize("text", ["48.3", "48.3 -5.2", "48.3,-5.2,0", "95,0", "nan,0", "0,400"])
 def test_no_places(text: str) -> None:
-    with pytest.raises(UsageError, match="is not a place"):
+    with pytest.raises(UsageError, match="is not a position"):
         parse_place(text)

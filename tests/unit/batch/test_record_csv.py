@@ -85,7 +85,7 @@ def test_mistakes_are_all_told_with_their_place(csv: Path) -> None:
     )
     assert problems(csv, text) == [
         (2, 18, "`v: x` is not a speed (m/s, cm/s, mm/s, knot, km/h, ft/s)"),
-        (3, 12, "the depths count upwards; depth is positive down, so leave the sign out"),
+        (3, 12, "the depths are negative; depth is positive down, so remove the signs"),
         (4, 1, "the row has 2 values, 3 are needed"),
         (6, 12, "depth 9 m repeats 9 m; depths must increase"),
         (7, 1, "`noon` is not a time; write 2026-03-01T06:00"),
@@ -104,7 +104,7 @@ def test_thousands_of_the_same_mistake_are_cut_short(csv: Path) -> None:
 
 def test_a_negative_speed_is_a_mistake(csv: Path) -> None:
     [place] = problems(csv, "time,depth[m],speed[m/s],toward[deg]\n2026-03-01,0,-1,90\n")
-    assert place == (2, 14, "`speed` -1 m/s is negative; turn `toward`")
+    assert place == (2, 14, "`speed` -1 m/s is negative; reverse `toward` instead")
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_a_negative_speed_is_a_mistake(csv: Path) -> None:
         ("time\n", (1, 1, "`time` is not a header such as `time,depth[m],u[m/s],v[m/s]`")),
         (
             HEAD + "2026-03-01,0,1,1\n2026-03-02,0,1,1\n2026-03-01,5,1,1\n",
-            (0, 0, "has two profiles of 2026-03-01T00:00; leave one of them out"),
+            (0, 0, "has two profiles of 2026-03-01T00:00; remove one of them"),
         ),
     ],
 )

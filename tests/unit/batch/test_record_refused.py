@@ -100,7 +100,7 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (
             lambda: adcp().expand_dims(member=3),
-            "`u` is not a single profile, but spreads over member (3), time (7), bin (5)",
+            "`u` is not a single profile; it has the dimensions member (3), time (7), bin (5)",
         ),
         (lambda: adcp().isel(time=0).drop_vars("time"), "has no times: it is one profile, for"),
         (lambda: glorys().assign_coords(latitude=glorys()["latitude"] + 9), "outside its grid"),
@@ -123,7 +123,7 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (
             lambda: adcp().assign_coords(time=adcp()["time"] // 2000),
-            "has two profiles of 2026-03-01T00:00, and 4 more times; leave one of them out",
+            "has two profiles of 2026-03-01T00:00, and 4 more times; remove one of them",
         ),
     ],
 )
@@ -133,8 +133,9 @@ def test_reasons(tmp_path: Path, make: Callable[[], xr.Dataset], reason: str) ->
 
 def test_several_columns_and_no_place(tmp_path: Path) -> None:
     assert refusal(glorys(), tmp_path, None).startswith(
-        "it has 12 columns, 48.22° N 5.29° W to 48.38° N 5.04° W: say which by `--at LAT,LON`, or "
-        "by the `position` of the mooring file; it holds uo (time 7, depth 5, latitude 3, "
+        "it has 12 columns of water, 48.22° N 5.29° W to 48.38° N 5.04° W; select one with `--at "
+        "LAT,LON` or the `position` of the mooring file; it holds uo (time 7, depth 5, latitude "
+        "3, "
     )
 
 
@@ -144,7 +145,9 @@ def test_x_is_east_along_latitudes(tmp_path: Path) -> None:
     dataset["uo"].attrs["standard_name"] = "sea_water_x_velocity"
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
-        note = "`uo`, sea_water_x_velocity, is eastward: the grid runs along latitudes"
+        note = (
+            "`uo`, sea_water_x_velocity, is used as eastward, because the grid runs along latitudes"
+        )
         assert note in record.notes
 
 
@@ -154,7 +157,7 @@ def test_a_single_place_far_away_is_told(tmp_path: Path) -> None:
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
         # 0.7 degrees of 111.2 km
-        assert record.notes[0] == "its only place, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
+        assert record.notes[0] == "its only position, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
 
 
 def test_land_of_zeros_is_land(tmp_path: Path) -> None:

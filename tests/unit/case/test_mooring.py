@@ -216,7 +216,7 @@ def test_several_floats_at_the_surface_are_told_to_have_no_draft(solve):
     two = two.replace("{use: thin, length: 20 m", "{use: thin, weight: 20 N/m, length: 20 m")
     result = solve(two.replace("clamps: [{use: logger, at: 30 m}]", "clamps: []"))
     assert result.top.draft is None
-    assert any("several floats at the surface" in warning for warning in result.warnings)
+    assert any("are at the surface together" in warning for warning in result.warnings)
 
 
 def test_a_slack_line_at_rest_tells_its_watch_circle(solve):

@@ -239,7 +239,7 @@ def test_the_document_is_plain_json(mooring):
         ("tilt(glass 1) <= 2 deg", "glass.count", None, "set the target for another part"),
         ("tilt(thread) = 2 deg", "glass.count", None, "glass.count changes in steps"),
         ("tilt <= 2 deg", "float.buoyancy", ("1 m", "2 N"), "`1 m` is a length; a force"),
-        ("tilt <= 2 deg", "float.buoyancy", ("3 N", "2 N"), "3 N is not below 2 N"),
+        ("tilt <= 2 deg", "float.buoyancy", ("3 N", "2 N"), "3 N must be below 2 N"),
         ("tilt <= 2 deg", "thread.length", ("20 m", "90 m"), "`20 m` must be at least 30 m"),
         ("tilt <= 2 deg", "glass.count", ("1", "2.5"), "a count is a whole number"),
     ],

@@ -111,7 +111,10 @@ def test_an_anchor_without_holding_is_described_without_a_negative_limit(load):
     findings = assessment.in_environments[0].findings
     (slides,) = (one for one in findings if one.rule == "anchor-sliding")
     assert slides.limit is not None and slides.limit < 0.0
-    assert "the vertical load lifts the anchor, with its factor: no holding" in slides.message
+    assert (
+        "the vertical load times the factor exceeds the weight of the anchor, so nothing holds it"
+        in slides.message
+    )
     assert limit_text(slides) == "none left"
     (item,) = (one for one in open_items(assessment) if one.head.startswith("Anchor sliding"))
-    assert "no holding" in item.text and "−" not in item.text
+    assert "nothing holds it" in item.text and "−" not in item.text

@@ -652,7 +652,7 @@ FLAWS = (
         "swivel",
         "wire",
         "warn",
-        "without a swivel between them",
+        "there is no swivel between them",
     ),
     Flaw(
         "a wire that is not torque-balanced, as its material says",
@@ -664,7 +664,7 @@ FLAWS = (
         "swivel",
         "wire",
         "warn",
-        "without a swivel between them",
+        "there is no swivel between them",
     ),
     Flaw(
         "a wire that is not torque-balanced, whatever its name says",

@@ -67,15 +67,15 @@ def test_good_components_pass(good):
     ("good", "change", "told"),
     [
         (GOOD_SPHERE, {"source": None}, "source"),
-        (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source of `mass`"),
+        (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source for `mass`"),
         (GOOD_SPHERE, {"searched": ["buoyancy"]}, "lists `buoyancy` under `searched`"),
         (GOOD_SPHERE, {"searched": ["stiffness"]}, "a sphere does not have"),
-        (GOOD_SPHERE, {"depth_rating": "11500 m"}, "the deepest sea has"),
+        (GOOD_SPHERE, {"depth_rating": "11500 m"}, "the deepest sea is"),
         (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "above its `max_tilt`"),
         (
             GOOD_SPHERE,
             {"buoyancy": "5300 N"},
-            "has a buoyancy of 5.30 kN; water of its size weighs 5.26 kN",
+            "has a buoyancy of 5.30 kN; water of the same volume weighs only 5.26 kN",
         ),
         (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "300 kg"}, "together they exceed"),
         (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "110 kg"}, "denser than lead"),
@@ -100,7 +100,7 @@ def test_good_components_pass(good):
         (
             GOOD_ROPE,
             {"weight": "0.2 N/m", "mass": "0.19 kg/m"},
-            "near 0.7895 N/m, the weight of water of its diameter",
+            "near 0.7895 N/m, the weight of the water that it displaces",
         ),
         (GOOD_ROPE, {"stiffness": "18 MN"}, "stiffness"),
         (GOOD_ROPE, {"breaking_load": "320 kN"}, "a cable of its diameter has at most"),
@@ -113,8 +113,8 @@ def test_good_components_pass(good):
             {"breaking_load": "205 kN"},
             "its diameter has at most 204.20 kN",
         ),
-        (GOOD_ANCHOR, {"kt": "200 kN/(m/s)^2"}, "sinks at 0.22 m/s"),
-        (GOOD_ANCHOR, {"kt": "4 N/(m/s)^2"}, "sinks at 48 m/s"),
+        (GOOD_ANCHOR, {"kt": "200 kN/(m/s)^2"}, "would sink at 0.22 m/s"),
+        (GOOD_ANCHOR, {"kt": "4 N/(m/s)^2"}, "would sink at 48 m/s"),
         # 1025 π/6 · 10³ kg of water, 5.263 MN
         (GOOD_SPHERE, {"diameter": "10 m"}, "diameter of 10 m has at least 526.31 kN"),
         # 85 mm in place of 8.5 mm; 0.16 N/m in place of 1.6 N/m
@@ -159,8 +159,8 @@ def test_good_components_pass(good):
             {"breaking_load": "15 MN"},
             "a body of its mass and length has at most",
         ),
-        (GOOD_SHACKLE, {"buoyancy": "-0.7 N"}, "its material would weigh 6.82 N there"),
-        (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "of its volume of 0.068 m³ has 0.0033 m²"),
+        (GOOD_SHACKLE, {"buoyancy": "-0.7 N"}, "of its material would weigh 6.82 N in water"),
+        (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "with the same volume, 0.068 m³, has 0.0033 m²"),
     ],
 )
 def test_impossible_figures_are_found(good, change, told):

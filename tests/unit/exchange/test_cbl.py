@@ -248,7 +248,7 @@ def test_a_drag_that_changes_with_depth_cuts_the_segment(tmp_path):
         middle += piece.length
     assert len(ropes) == 12
     assert all(
-        "guessed: drag at its depth" in each
+        "guessed: its drag is that at its depth" in each
         for each in made.text.splitlines()
         if "use: rope" in each
     )
@@ -284,7 +284,7 @@ def test_an_anchor_that_would_be_lifted_holds(anchor, tmp_path):
 
 def test_a_rope_in_inches_is_pointed_out(tmp_path):
     made = imported(tmp_path, SMALL.replace("d = 0.01", "d = 0.375"))
-    assert "unchanged: one metre" in made.guessed[0].what
+    assert "as in the file, but inconsistent: one metre" in made.guessed[0].what
     short = SMALL.replace("length = 50", "length = 5").replace("d = 0.01", "d = 0.375")
     assert imported(tmp_path, short).guessed == ()
 
@@ -303,14 +303,18 @@ REFUSED = {
         "branch = { segment = { length = 5 } } segment = { length = 50",
         "the layout has no `terminal` at the end of a line",
     ),
-    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "there is nothing between"),
+    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "this line has no segment"),
     "horizontal": ("subsurface", "horizontal", "`type = horizontal`"),
     "drifter": ("subsurface", "drifter", "`type = drifter`"),
     "horizontal drifter": ("subsurface", "horizontal-drifter", "`type = horizontal-drifter`"),
     "deployment": ("subsurface", "deployment", "being laid"),
     "riser": ("subsurface", "riser", "`type = riser`"),
     "platform": ("type = sphere", "type = platform", "platform"),
-    "thrust": ("{ buoy = ball }", "{ buoy = ball x-thrust = 100 }", "`x-thrust` pulls"),
+    "thrust": (
+        "{ buoy = ball }",
+        "{ buoy = ball x-thrust = 100 }",
+        "`x-thrust` is an external force",
+    ),
     "loop": ("{ buoy = ball }", "{ buoy = ball node = 5 }", "a loop"),
     "no material": ("material = rope", "material = hemp", "`hemp` is not defined"),
     "no such node": ("(51, 1.0)", "(51, 1.0) attachments = meter : (99)", "nodes 1 to 51"),
@@ -321,7 +325,7 @@ REFUSED = {
     "no end of a block": ("{ buoy = ball }", "{ buoy = ball", "missing before `End`"),
     "no gravity": ("gravity = 9.81", "gravity = 0", "its gravity is 0"),
     "a light sea": ("rho = 1025", "rho = -1", "its density is -1"),
-    "no end of a comment": ("Layout", "/* Layout", "a comment has no end"),
+    "no end of a comment": ("Layout", "/* Layout", "a comment is not closed"),
 }
 
 
@@ -411,7 +415,7 @@ def test_currents_of_a_file_are_those_at_the_anchor_now(tmp_path):
     ]
     told = "\n".join(str(each) for each in made.dropped)
     assert "times after the first" in told
-    assert "horizontal variation" in told
+    assert "variation in the horizontal" in told
     assert made.guessed == ()
 
 
@@ -429,8 +433,8 @@ def test_currents_of_a_file_that_is_missing_are_guessed(tmp_path):
         ({"count": 40}, "has 120 speeds, not 144"),
         ({"head": "0 0 2 " + GRID[6:]}, "step, start and count"),
         ({"head": GRID.replace("6", "900000000")}, "more than 2000000 speeds"),
-        ({"head": "a b c"}, "something other than numbers"),
-        ({"head": GRID + "nan "}, "without a value"),
+        ({"head": "a b c"}, "contains text"),
+        ({"head": GRID + "nan "}, "contains NaN"),
     ],
 )
 def test_a_file_of_currents_that_makes_no_sense_is_refused(change, message, tmp_path):

@@ -45,10 +45,10 @@ def test_what_a_reader_finds_is_handed_over(capfd):
 @pytest.mark.parametrize(
     ("reader", "message"),
     [
-        (crash, "its reader ended with -9"),
+        (crash, "ended with exit code -9"),
         (panic, "called `Option::unwrap()` on a `None` value"),
-        (devour, "it needs more than 0.5 GB"),
-        (sleep, "its reader takes longer than 0.5 s"),
+        (devour, "reading needs more than 0.5 GB"),
+        (sleep, "reading takes longer than 0.5 s"),
     ],
 )
 def test_a_reader_that_fails_is_told(reader, message, tmp_path, monkeypatch, capfd):

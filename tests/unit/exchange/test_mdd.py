@@ -224,7 +224,7 @@ def test_a_placeholder_size_is_kept_and_pointed_out(tmp_path):
     size = np.array(HEIGHT)
     size[:, 0] = (1.5, 0.01, 0.01, 2.0)
     made = imported(tmp_path, mooring(H=size))
-    assert "diameter: 10 mm  # guessed: kept, but a placeholder" in made.text
+    assert "diameter: 10 mm  # guessed: as in the file, but a placeholder" in made.text
     assert len(made.guessed) == 1
 
 
@@ -245,13 +245,15 @@ def test_clamps_sit_on_rigid_pieces_too(tmp_path):
 
 def test_a_clamp_known_by_its_height_alone_is_guessed(tmp_path):
     made = imported(tmp_path, mooring(Jobj=None, Pobj=None))
-    assert [each.what for each in made.guessed] == ["from its height alone"]
+    assert [each.what for each in made.guessed] == [
+        "the position follows from the height `ZCO` alone"
+    ]
     assert "at: 24 m" in made.text
 
 
 def test_a_clamp_in_two_places_is_pointed_out(tmp_path):
     made = imported(tmp_path, mooring(ZCO=np.array([[20.0]])))
-    assert "`ZCO` has it at 20 m" in made.guessed[0].what
+    assert "`ZCO` disagrees (20 m)" in made.guessed[0].what
 
 
 def test_a_chain_that_floats_is_a_cable(tmp_path):
@@ -281,17 +283,23 @@ def test_names_that_are_missing_are_numbers(tmp_path):
 
 
 REFUSED = {
-    "no mooring": (mooring(H=None), "holds no mooring"),
+    "no mooring": (mooring(H=None), "contains neither a mooring"),
     "no water": (mooring(U=None, V=None, z=None, rho=None), "--environment FILE"),
     "all at the seabed": (mooring(z=np.zeros((1, 3))), "--environment FILE"),
     "too few buoyancies": (mooring(B=np.array([[1.0, 2.0]])), "`B` has 2 values for 7 elements"),
-    "current of other levels": (mooring(U=np.ones((1, 2))), "`U` is 1×2 for 3 values of `z`"),
+    "current of other levels": (
+        mooring(U=np.ones((1, 2))),
+        "`U` has the size 1×2, which does not match the 3 values of `z`",
+    ),
     "a line for an anchor": (
         mooring(H=np.array(HEIGHT)[:, [0, 1, 2, 3, 4, 6, 5]]),
         "not an anchor",
     ),
     "a negative length": (mooring(H=-np.array(HEIGHT)), "its length is -0.94"),
-    "a clamp off the line": (mooring(Jobj=np.array([[40]])), "clamped on element 40: none"),
+    "a clamp off the line": (
+        mooring(Jobj=np.array([[40]])),
+        "clamped on element 40, which does not exist",
+    ),
     "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "does not move"),
 }
 
@@ -350,7 +358,7 @@ def test_a_file_that_links_to_another_is_refused(tmp_path):
     with h5py.File(path, "r+") as file:
         del file["H"]
         file["H"] = h5py.ExternalLink(str(tmp_path / "other.mat"), "/H")
-    with pytest.raises(InputError, match="no mooring"):
+    with pytest.raises(InputError, match="neither a mooring"):
         read_mdd(path)
 
 

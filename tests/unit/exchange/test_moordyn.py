@@ -138,13 +138,13 @@ def test_a_held_upper_end_at_the_surface_is_the_float_of_its_point(read, tmp_pat
 
 
 REFUSED = {
-    "a sinking end": ("100    0.6", "1000   0.6", "does not float"),
+    "a sinking end": ("100    0.6", "1000   0.6", "not buoyant"),
     "a loose lower end": ("1     Fixed ", "1     Free  ", "both ends are free"),
     "a ring": (
         "1    rope       1        2 ", "1    rope       3        2 ", "a ring without a fixed point"
     ),
     "an unknown type": ("2    rope", "2    hemp", "`hemp` is not defined"),
-    "an unknown point": ("2        3        40", "2        7        40", "`7` is not a point"),
+    "an unknown point": ("2        3        40", "2        7        40", "line is not a point"),
     "no number": ("0.02    0.6", "wide    0.6", "`diameter` is `wide`"),
     "a body": (
         "---------------------- POINTS",
@@ -184,7 +184,7 @@ def test_other_lines_are_nets(case, read, tmp_path):
 
 
 def test_steady_forces_are_refused(read):
-    with pytest.raises(InputError, match="pulls at the line from outside"):
+    with pytest.raises(InputError, match="is an external force"):
         read(V1.replace("30   0.01  0   0", "30   0.01  5   0"))
 
 

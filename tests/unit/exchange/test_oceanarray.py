@@ -117,14 +117,14 @@ def test_figures_of_an_institutes_table(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (HEAD + CLAMPS, "lists 5 instruments and no line"),
+        (HEAD + CLAMPS, "lists 5 instruments but no line"),
         (HEAD.replace("745", "deep") + LINE, "waterdepth: `deep` is not a number"),
         (HEAD.replace("waterdepth: 745", "waterdepth:") + LINE, "needs `waterdepth`"),
-        (HEAD + LINE.replace("hab: 15", "hab: 15, repeat: 1e9"), "repeat: 1 to 2000 are read"),
+        (HEAD + LINE.replace("hab: 15", "hab: 15, repeat: 1e9"), "`repeat` must be from 1 to 2000"),
         (HEAD + LINE + "- 7\n", "an item with keys is needed"),
         (HEAD + LINE + "- {hab: 3}\n", "needs a name"),
         (HEAD + LINE + "clamp:\n- {instrument: aquadopp}\n", "needs `hab`"),
-        (HEAD.replace("43.913", "63.913") + LINE, "latitude: `65 63.913` has 60 minutes"),
+        (HEAD.replace("43.913", "63.913") + LINE, "latitude: `65 63.913` has minutes or seconds"),
         (HEAD + LINE.replace("hab: 660", "hab: 66o"), "hab: `o` is not a unit of length"),
     ],
 )

@@ -133,7 +133,7 @@ def test_a_format_that_cannot_be_had_is_told_with_its_module(
 
 def test_a_name_is_registered_once(formats):
     formats.register_format("x", lambda content: False)
-    with pytest.raises(ValueError, match="a format `x` already"):
+    with pytest.raises(ValueError, match="the format `x` already exists"):
         formats.register_format("x")
 
 

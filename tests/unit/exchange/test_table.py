@@ -139,8 +139,8 @@ def test_names_without_a_heading_units_below_and_no_anchor(read, tmp_path):
     )
     made = read(text)
     told = [str(each) for each in made.guessed]
-    assert "line.anchor: the list has none" in told
-    assert any("from its name" in each for each in told)
+    assert "line.anchor: the list has no anchor; one is added" in told
+    assert any("read from the name" in each for each in told)
     assert any("has no size" in each for each in told)
     assert any("without length and weight" in str(each) for each in made.dropped)
     tenex = pieces(made, tmp_path)[2].component
@@ -201,7 +201,7 @@ def test_diameters_of_zero_are_none(read, tmp_path):
     """A line has that of its name, a rigid piece no drag; each is told."""
     made = read(ENGLISH.replace("100,8,24", "100,0,24").replace("1.0,130,22", "1.0,0,22"))
     told = {each.where: each.what for each in made.guessed}
-    assert told["components.8-mm-wire.diameter"] == "from its name"
+    assert told["components.8-mm-wire.diameter"] == "read from the name of the piece"
     assert "the drag is 0" in told["components.ar861-release.drag_area"]
     assert pieces(made, tmp_path)[3].component.diameter == 0.008
 
@@ -277,12 +277,12 @@ LIBRARY_REFUSED = {
     "names without a library": (
         NAMES_ALONE.replace("\n", ";\n"),
         False,
-        "holds names and no figures",
+        "has names but no values",
     ),
     "a name it lacks": (NAMES_ALONE.replace("41in ORE", "42in ORE"), True, "has `41in ore`"),
     "a line without length": (NAMES_ALONE.replace("1/2 shackle", "3/8 wire rope"), True, "length"),
     "a library for a mooring": (LIBRARY, False, "is a library of elements, not a mooring"),
-    "a library for another program": ("MATLAB 5.0 MAT-file", True, "--elements is for lists"),
+    "a library for another program": ("MATLAB 5.0 MAT-file", True, "--elements is only for lists"),
 }
 
 
@@ -344,7 +344,7 @@ def test_a_number_with_words_is_told(read):
 
 REFUSED = {
     "words for a number": (ENGLISH.replace(",22,1.2", ",heavy,1.2"), "`heavy` is not a number"),
-    "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "needs its length"),
+    "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "the length of the"),
     "no weight": (ENGLISH.replace(",-433,", ",,"), "its buoyancy is missing"),
     "nothing floats": (
         "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "neither end of the list is a float"
@@ -358,7 +358,7 @@ REFUSED = {
     "more than a line has": (ENGLISH.replace(",1.3,2", ",1.3,990" ).replace(
         "AR861", "8 mm wire,1,8,1,1.3,990\n8 mm wire,1,8,1,1.3,990\nAR861"
     ), "has more than 2000 pieces"),
-    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "1000000 of them"),
+    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "its count is 1000000"),
 }  # fmt: skip
 
 
@@ -468,7 +468,7 @@ def test_the_weight_of_a_piece_is_that_of_the_whole_whatever_that_of_lines_is(re
     made = read(with_cell("Weight in water (kg/100 m)", "30"))
     ball = pieces(made, tmp_path)[0].component
     assert ball.net_buoyancy == pytest.approx(4330 * 9.80665)
-    assert "read as that of the whole piece" in " ".join(map(str, made.guessed))
+    assert "taken for the whole piece" in " ".join(map(str, made.guessed))
 
 
 @pytest.mark.parametrize(
@@ -517,7 +517,7 @@ NOT_UNDERSTOOD = {
         ENGLISH.replace(",22,1.2", ",22 Stein,1.2"),
         "row 5, AR861 release: Wet weight (kg): `22 Stein`: `Stein` is not a unit of force",
     ),
-    "a ton": (with_cell("Weight in water (tons)", "0.3"), "of 907, 1000 or 1016 kg"),
+    "a ton": (with_cell("Weight in water (tons)", "0.3"), "it may mean 907, 1000 or 1016 kg"),
     "a length for a weight": (with_cell("Weight in water (mm)", "3"), "not a unit of force"),
     "two units": (ENGLISH.replace("Length (m)", "Length (m) (ft)"), "names two units"),
     "a diameter of 8 m": (ENGLISH.replace("(mm)", ""), "is 8 m; is its unit correct?"),
@@ -527,7 +527,7 @@ NOT_UNDERSTOOD = {
     ),
     "thousands or decimals": (DOUBTFUL, "`1.250` (row 3) may be 1250 or 1.250; write one of these"),
     "ropes beside pieces": (
-        ENGLISH.replace("Cd,", "Length of rope below (m),"), "a line needs a row of its own"
+        ENGLISH.replace("Cd,", "Length of rope below (m),"), "each line needs its own row"
     ),
 }  # fmt: skip
 
@@ -578,7 +578,7 @@ def test_no_piece_is_lost_without_a_word(read, tmp_path):
     labels = [piece.component.name for piece in pieces(made, tmp_path)]
     assert labels.count("17 in glass") == 3
     guessed, dropped = ([str(each) for each in side] for side in (made.guessed, made.dropped))
-    assert any("row 6" in each and "figures and no name" in each for each in dropped)
+    assert any("row 6" in each and "values but no name" in each for each in dropped)
     assert any("`TOTALS`, a sum" in each for each in dropped)
     assert any("row 7: `ditto` read as `17 in glass`" in each for each in guessed)
     assert made.text.count("kind: cable") == read(ENGLISH).text.count("kind: cable")
@@ -628,7 +628,7 @@ def test_lengths_that_are_counted_from_an_end_are_refused(upward, read):
         words = rows[i].split(",")
         rows[i] = ",".join([*words[:2], length, *words[3:]])
     rows = rows[::-1] if upward else rows
-    with pytest.raises(InputError, match="counted from an end of the line"):
+    with pytest.raises(InputError, match="distances from an end of the line"):
         read("\n".join([heading, *rows]))
 
 
@@ -645,17 +645,19 @@ def test_totals_are_divided_by_their_count(read, tmp_path):
 
 
 def test_a_weight_of_all_that_is_given_as_of_one_is_refused(read):
-    with pytest.raises(InputError, match=r"Glass ball: one lifts 300 kg.*is that of all 12"):
+    with pytest.raises(
+        InputError, match=r"Glass ball: one lifts 300 kg.*if the value is for all 12"
+    ):
         read(SHORT.replace("-25", "-300"))
 
 
 def test_a_float_that_lifts_more_than_it_displaces_is_reported(read):
     made = read(SHORT.replace("-350", "-900"))
-    assert any("lifts 900 kg but displaces 80" in str(each) for each in made.guessed)
+    assert any("lifts 900 kg but displaces only 80" in str(each) for each in made.guessed)
 
 
 def test_a_count_times_a_length(read):
-    with pytest.raises(InputError, match="`2 x 200 m` is a count and a figure"):
+    with pytest.raises(InputError, match="`2 x 200 m` contains a count and a value"):
         read(SHORT.replace("1,100,8", "1,2 x 200 m,8"))
     made = read(SHORT.replace("Wire rope", "2 x 50 m wire rope"))
     assert any("not as 2 pieces" in str(each) for each in made.guessed)
@@ -671,7 +673,7 @@ Anker\t0,8\t900\t900
 """
     made = read(text.encode("cp1252"))
     assert len(pieces(made, tmp_path)) == 4
-    assert "4 pieces, 102.7 m long together" in made.understood
+    assert "4 pieces, total length 102.7 m" in made.understood
     assert "length = `Lengde [m]`" in made.understood
 
 
@@ -689,8 +691,8 @@ def test_other_sheets_and_what_is_hidden_are_reported(read):
     book.save(content)
     made = read(content.getvalue(), "list.xlsx")
     said = [str(each) for each in made.guessed]
-    assert "sheet `rev C & D`: taken; hidden and not read: `old`" in said
-    assert "sheet `rev C & D`: row 3 hidden, read all the same" in said
+    assert "sheet `rev C & D`: used; hidden sheets were ignored: `old`" in said
+    assert "sheet `rev C & D`: hidden but read: row 3" in said
     assert "16 pieces of sheet `rev C & D`" in made.understood
 
 
@@ -705,7 +707,7 @@ def test_one_of_several_sheets_must_be_named(read):
     second.append(["Shackle", 1, 0.1, 20, 0.3])
     content = io.BytesIO()
     book.save(content)
-    said = r"2 sheets with headings: `option A` \(\d+ rows\), `option B` \(.*; --sheet NAME"
+    said = r"2 sheets with headings: `option A` \(\d+ rows\), `option B` \(.*; select one"
     with pytest.raises(InputError, match=said):
         read(content.getvalue(), "list.xlsx")
     for name in ("option A", "option B"):
@@ -780,12 +782,12 @@ def test_depths_that_are_no_places_plan_nothing(old, new, read, tmp_path):
     assert all(part.planned_depth is None for part in parts_of(pieces(made, tmp_path)))
     told = [str(each) for each in made.guessed]
     assert (new == ",6000,") == (
-        "column Depth (m): does not grow down the line and was ignored" in told
+        "column Depth (m): does not increase down the line and was ignored" in told
     )
 
 
 @pytest.mark.parametrize("heading", ["Länge kumuliert [m]", "Distance from anchor (m)"])
 def test_lengths_from_an_end_are_refused_by_their_heading(heading, read):
     text = ENGLISH.replace("Length (m)", heading)
-    with pytest.raises(InputError, match="counts lengths from an end of the line"):
+    with pytest.raises(InputError, match="has distances from an end of the line"):
         read(text)

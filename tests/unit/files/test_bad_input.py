@@ -114,7 +114,7 @@ ONE_MISTAKE = {
     ),
     "fit without a depth": (
         changed("480 m", "fit"),
-        (11, 5, "`top_depth` is missing: `length: fit` needs it"),
+        (11, 5, "`top_depth` is missing: `length: fit` needs a depth"),
     ),
     "depth without fit": (
         changed("480 m", "480 m, top_depth: 90 m"),
@@ -159,7 +159,7 @@ ONE_MISTAKE = {
     ),
     "negative speed": (
         changed("0.35", "-0.35"),
-        (8, 15, "`speed` -0.35 m/s is negative; turn `toward`"),
+        (8, 15, "`speed` -0.35 m/s is negative; reverse `toward` instead"),
     ),
     "row too short": (
         changed("[200, 0.35, 80]", "[200, 0.35]"),
@@ -190,11 +190,11 @@ ONE_MISTAKE = {
     ),
     "cable without a length": (
         changed("length: 480 m, ", ""),
-        (11, 5, "`length` is missing: a cable or chain needs it"),
+        (11, 5, "`length` is missing: every cable or chain needs a length"),
     ),
     "clamp beyond its piece": (
         changed("at: 20 m", "at: 481 m"),
-        (11, 61, "`at: 481 m` is beyond the piece, 480 m long"),
+        (11, 61, "`at: 481 m` is beyond the end of the piece, which is 480 m long"),
     ),
     "clamp above its piece": (
         changed("at: 20 m", "at: -1 m"),
@@ -210,7 +210,7 @@ ONE_MISTAKE = {
     ),
     "clamp below the anchor": (
         changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: 9 m}]}"),
-        (13, 49, "`at: 9 m` is beyond the piece, 0.4 m long"),
+        (13, 49, "`at: 9 m` is beyond the end of the piece, which is 0.4 m long"),
     ),
     "clamp above the anchor": (
         changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: -1 m}]}"),
@@ -304,7 +304,12 @@ ONE_MISTAKE = {
     "elongation without breaking load": (
         GOOD + "components:\n  own: {kind: cable, diameter: 8 mm, weight: 1 N/m, "
         "elongation: [[0.1, 0.02]]}\n",
-        (15, 8, "`elongation` needs `breaking_load`: its loads are shares of that"),
+        (
+            15,
+            8,
+            "`elongation` needs `breaking_load`, because its loads are fractions of the breaking "
+            "load",
+        ),
     ),
     "elongation beside stiffness": (
         changed("length: 480 m", "length: 480 m, stiffness: 2 MN, elongation: [[0.1, 0.02]]"),
@@ -320,18 +325,19 @@ ONE_MISTAKE = {
     ),
     "elongation that falls": (
         changed("length: 480 m", "length: 480 m, elongation: [[0.1, 0.02], [0.2, 0.01]]"),
-        (11, 47, "`elongation`: point 2: the strain 0.01 falls"),
+        (11, 47, "`elongation`: point 2: the strain 0.01 is below that of the point before"),
     ),
     "elongation of loads that do not grow": (
         changed("length: 480 m", "length: 480 m, elongation: [[0.2, 0.02], [10 %, 0.03]]"),
-        (11, 47, "`elongation`: point 2: the load 0.1 does not grow"),
+        (11, 47, "`elongation`: point 2: the load 0.1 is not above that of the point before"),
     ),
     "elongation at no load": (
         changed("length: 480 m", "length: 480 m, elongation: [[0, 0.02], [0.2, 0.04]]"),
         (
             11,
             47,
-            "`elongation`: the strain at no load must be 0; it is a `permanent_elongation`",
+            "`elongation`: the strain at no load must be 0; set a lasting strain as "
+            "`permanent_elongation`",
         ),
     ),
     "elongation of no points": (
@@ -620,7 +626,7 @@ def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "large.yaml"
     with path.open("wb") as file:
         file.truncate(100_000_000)
-    with pytest.raises(InputError, match=r"large.yaml: is 100.0 MB; more than 1 MB is not read"):
+    with pytest.raises(InputError, match=r"large.yaml: has a size of 100.0 MB; the limit is 1 MB"):
         read_mooring(path)
 
 

@@ -69,7 +69,7 @@ def test_mass_volume_and_buoyancy_agree_within_one_percent(buoyancy: str, agrees
     if not agrees:
         assert problems == [
             "`buoyancy` is 4087 N but `mass` and `volume` give 4045.2 N, more than 1 % apart; "
-            "leave one of the three out"
+            "remove one of the three"
         ]
 
 

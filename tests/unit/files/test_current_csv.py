@@ -170,7 +170,7 @@ def test_names_of_columns_in_capitals(csv: Path) -> None:
 
 
 def test_a_comma_at_every_lines_end_is_named_for_what_it_is(csv: Path) -> None:
-    place = (1, 23, "the line ends in a comma; take it off every line")
+    place = (1, 23, "the line ends in a comma; remove it from every line")
     assert problems(csv, "depth[m],u[m/s],v[m/s],\n0,1,1,\n10,1,1,\n") == [place]
 
 

@@ -205,7 +205,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     attributes = {"units": "m", "positive": "down"}
     wide = profile().expand_dims(member=2)
     assert problem(wide, tmp_path).startswith(
-        "`uo` is not a single profile, but spreads over member (2), depth (3); it holds "
+        "`uo` is not a single profile; it has the dimensions member (2), depth (3); it holds "
     )
     unit = profile()
     unit["uo"].attrs["units"] = "kg"
@@ -244,7 +244,9 @@ def test_column_of_a_place(tmp_path: Path) -> None:
     table, notices = read_current_file(path, None, Terms(220.0, (48.28, -5.31)))
     assert table.u == pytest.approx([1.1 * u for u in U])
     assert notices == ["the column nearest to 48.28° N 5.31° W is at 48.3° N 5.3° W, 2.3 km away"]
-    assert problem(grid(), tmp_path).startswith("it has 4 columns, 48.2° N 5.3° W to 48.3° N 5.2°")
+    assert problem(grid(), tmp_path).startswith(
+        "it has 4 columns of water, 48.2° N 5.3° W to 48.3° N 5.2°"
+    )
 
 
 def test_a_grid_is_read_at_the_position_of_the_mooring(
@@ -255,7 +257,9 @@ def test_a_grid_is_read_at_the_position_of_the_mooring(
     text = GOOD[:start] + "  current: {file: grid.nc}\n" + GOOD[end:]
     place = "position: {latitude: 48.19 deg, longitude: -5.2 deg}\n"
     assert read(place + text).environment.current.u == pytest.approx([1.1 * u for u in U])
-    with pytest.raises(InputError, match=r"it has 4 columns, .* by the `position` of the mooring"):
+    with pytest.raises(
+        InputError, match=r"it has 4 columns of water, .* or the `position` of the mooring"
+    ):
         read(text)
 
 
@@ -265,7 +269,7 @@ def test_a_zarr_folder_is_a_file_too(read: Callable[..., MooringFile], tmp_path:
     text = GOOD[:start] + "  current: {file: current.zarr}\n" + GOOD[end:]
     assert read(text).environment.current.u == tuple(U)
     (tmp_path / "folder").mkdir()
-    with pytest.raises(InputError, match="folder: is a folder, and not a zarr store"):
+    with pytest.raises(InputError, match="folder: is a folder but not a zarr store"):
         read(text.replace("current.zarr", "folder"))
 
 

@@ -48,14 +48,14 @@ def test_headings_give_columns_units_and_the_way() -> None:
         ("depth m,speed m/s,toward deg,from deg\n0,1,90,270\n", "give `toward`, where the curre"),
         (
             "depth m,speed m/s,toward deg magnetic\n0,1,90\n",
-            "is relative to magnetic north; give the",
+            "is relative to magnetic north; set the",
         ),
         (
             "depth m,u m/s magnetic,v m/s\n0,1,1\n",
             "`u` is relative to magnetic north, `v` is not",
         ),
         ("depth m,speed m/s,toward deg\n0,1,400\n", "`toward: 400` must be at most 360 deg"),
-        ("depth m,speed m/s,toward deg\n-5,1,4\n-9,1,4\n", "the depths count upwards; depth is po"),
+        ("depth m,speed m/s,toward deg\n-5,1,4\n-9,1,4\n", "the depths are negative; depth is po"),
         ("depth m,speed m/s,toward deg\n5,1,4\n12000,1,4\n", "depth 12000 m is deeper than any se"),
         (
             "depth m,speed m/s,toward deg\n5,99.99,4\n",
@@ -77,7 +77,7 @@ def test_columns_from_magnetic_north_are_turned() -> None:
     assert table is not None
     assert (table.u[0], table.v[0]) == pytest.approx((1.0, 0.0), abs=1e-15)
     _, found = read("depth m,u m/s,v m/s\n0,0,1\n", Terms(declination=90.0))
-    assert "so no `declination` is applied; leave it out" in found[0]
+    assert "so no `declination` is applied; remove it" in found[0]
 
 
 @pytest.mark.parametrize(

@@ -54,9 +54,9 @@ def refusal(dataset: xr.Dataset, folder: Path, terms: Terms = Terms(300.0)) -> s
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    ({"cell_methods": "time: mean within years time: mean over years"}, "no value of one time"),
-    ({"cell_methods": "depth: mean"}, "is `cell_methods: depth: mean`, no value of one time and"),
-    ({"cell_methods": "time: mean (interval: 1 h) z: mean"}, "no value of one time and depth"),
+    ({"cell_methods": "time: mean within years time: mean over years"}, "not a value at one time"),
+    ({"cell_methods": "depth: mean"}, "has `cell_methods: depth: mean`, so it is not a value at"),
+    ({"cell_methods": "time: mean (interval: 1 h) z: mean"}, "not a value at one time and depth"),
     ({"scale_factor": 0.0}, "has `scale_factor: 0`, which makes every value the same"),
 ])  # fmt: skip
 def test_what_the_attributes_of_a_variable_betray(tmp_path, words, said):
@@ -102,7 +102,9 @@ MAGNETIC = [
 
 @pytest.mark.parametrize("make", MAGNETIC)
 def test_magnetic_north_needs_a_declination(tmp_path: Path, make: Callable[[], xr.Dataset]) -> None:
-    assert "relative to magnetic north; give the `declination` there" in refusal(make(), tmp_path)
+    assert "relative to magnetic north; set the `declination` of the site" in refusal(
+        make(), tmp_path
+    )
     table, notices = read(make(), tmp_path, Terms(300.0, declination=30.0))
     true = read(make().drop_attrs().pipe(_as_true), tmp_path)[0]
     # turned clockwise by 30° by the law of a rotation
@@ -110,7 +112,7 @@ def test_magnetic_north_needs_a_declination(tmp_path: Path, make: Callable[[], x
         east = true.u[i] * cos(radians(30)) + true.v[i] * sin(radians(30))
         north = true.v[i] * cos(radians(30)) - true.u[i] * sin(radians(30))
         assert (table.u[i], table.v[i]) == pytest.approx((east, north), abs=1e-15)
-    assert any("were relative to magnetic north, turned by 30°" in one for one in notices)
+    assert any("were relative to magnetic north, and were rotated by 30°" in one for one in notices)
 
 
 def _as_true(dataset: xr.Dataset) -> xr.Dataset:
@@ -140,7 +142,7 @@ def test_a_declination_is_applied_to_what_does_not_name_its_north(tmp_path: Path
     assert table.u == pytest.approx(V) and table.card.declination == 90.0
     assert notices[:1] == [
         "`u` and `v` were relative to magnetic north, as specified by the user, not by the file, "
-        "turned by 90°"
+        "and were rotated by 90°"
     ]
 
 
@@ -154,8 +156,11 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        ({"cell_methods": "time: standard_deviation"}, "no value of one time and depth"),
-        ({"cell_methods": "time: maximum"}, "no value of one time and depth"),
+        (
+            {"cell_methods": "time: standard_deviation"},
+            "not a value at one time and depth",
+        ),
+        ({"cell_methods": "time: maximum"}, "not a value at one time and depth"),
         ({"coord_sys": "beam"}, "is in other coordinates, `coord_sys: beam`"),
         ({"coordinate_system": "instrument XYZ"}, "is in other coordinates, `coordinate_system:"),
         (
@@ -179,8 +184,8 @@ def test_other_frames_and_quantities_are_refused(
 def test_the_coordinates_of_the_file_count(tmp_path: Path, frame: str) -> None:
     message = refusal(currents().assign_attrs(coord_sys=frame), tmp_path)
     assert message == (
-        f"its current is in other coordinates, `coord_sys: {frame}`, not to the east and north; "
-        "rotate it to the earth's first"
+        f"its current is in other coordinates, `coord_sys: {frame}`, not east and north; "
+        "rotate it to earth coordinates first"
     )
     assert read(currents().assign_attrs(coord_sys="earth"), tmp_path)[0].u == tuple(U)
     for name in ("coord_system", "coordinates_frame", "coordinate_transformation", "transform"):
@@ -203,7 +208,7 @@ def test_speeds_and_directions_that_cannot_be(tmp_path: Path, name: str, value: 
 def test_a_share_of_the_depth_in_metres_is_no_depth(tmp_path: Path) -> None:
     words = {"standard_name": "ocean_sigma_coordinate"} | DEPTH[2]
     sigma = currents().assign_coords(depth=("depth", [0.1, 0.5, 0.9], words))
-    assert "is ocean_sigma_coordinate, a share of the water depth" in refusal(sigma, tmp_path)
+    assert "is ocean_sigma_coordinate, a fraction of the water depth" in refusal(sigma, tmp_path)
 
 
 def test_the_way_of_a_direction_is_in_its_words(tmp_path: Path) -> None:
@@ -250,10 +255,13 @@ def test_velocities_with_a_dimension_of_directions(tmp_path: Path) -> None:
             mhkit(coord_sys="").assign_coords(dir=["X", "Y", "Z1", "Z2"]),
             "`vel` has the directions X, Y, Z1, Z2, not E and N",
         ),
-        (mhkit(source_program="VMDAS"), "its current is of an ADCP on a ship (`source_program: VM"),
+        (
+            mhkit(source_program="VMDAS"),
+            "its current is from an ADCP on a ship (`source_program: VM",
+        ),
         (
             mhkit().assign(vel_bt=("dir", np.ones(4))),
-            "its current is of a platform that moves over the ground (`vel_bt`: 1 m/s)",
+            "its current is from a platform that moves over the ground (`vel_bt`: 1 m/s)",
         ),
         (mhkit(orientation="AHRS"), "does not say whether that looks up or down"),
         (
@@ -262,7 +270,7 @@ def test_velocities_with_a_dimension_of_directions(tmp_path: Path) -> None:
         ),
         (
             mhkit().assign(depth=((), 40.0, {"units": "m", "long_name": "Water Depth"})),
-            "whose depth is not in the file; `depth` is that of the water",
+            "whose depth is not in the file; `depth` is the water depth",
         ),
     ],
 )

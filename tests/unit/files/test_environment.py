@@ -78,7 +78,7 @@ def test_sea_water(read: Read, schema: Validator, lines: list[str], sea: SeaWate
     mooring = read(text)
     assert mooring.environment.density == sea
     [notice] = mooring.notices
-    assert notice.startswith("Density from temperature and salinity without a `position`")
+    assert notice.startswith("Without a `position`, the density is computed")
     schema.validate(loaded(text))
 
 
@@ -274,7 +274,7 @@ def test_a_tow_may_be_in_air(towed: Towed) -> None:
         ),
         (
             "{fluid: air, wind: {speed: 5 m/s, toward: 0}}",
-            "`wind` blows over water; in air the wind is the `current`",
+            "a tow in air has no `wind`; its wind is the `current`",
         ),
         (
             "wind: {speed: 5 m/s, toward: 0, surface_drift: 2 %}",
@@ -291,8 +291,8 @@ def test_mistakes_of_a_tow(towed: Towed, text: str, message: str) -> None:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("depth_range: 1104 m", "is two depths, of low and of high water: [98 m, 104 m]"),
-        ("depth_range: [1098 m, 1100 m, 1104 m]", "is two depths"),
+        ("depth_range: 1104 m", "must be two depths, at low and at high water: [98 m, 104 m]"),
+        ("depth_range: [1098 m, 1100 m, 1104 m]", "must be two depths"),
         (
             "depth_range: [1098, 1104 m]",
             "`depth_range: 1098` needs a unit; did you mean `depth_range: 1098 m`?",
@@ -348,7 +348,7 @@ def test_density_that_falls_with_depth_is_a_warning(
                 8,
                 13,
                 "0.8 m/s is faster than `maximum_speed`, 0.5 m/s: a fill value, or another unit? "
-                "(`maximum_speed` of the environment allows it if it is true)",
+                "(if it is true, raise `maximum_speed` of the environment)",
             ),
         ),
         (

@@ -104,7 +104,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
         ),
         (
             with_rope("  - {use: rope-12, length_at: 480 m}\n"),
-            (11, 31, "`length_at` must be as `{load: 2 kN, length: 480 m}`"),
+            (11, 31, "`length_at` must have the form `{load: 2 kN, length: 480 m}`"),
         ),
         (
             with_rope("  - {use: rope-12, length_at: {length: 480 m}}\n"),

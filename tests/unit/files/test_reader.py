@@ -220,7 +220,7 @@ def test_mass_overridden_alone_is_noticed(read: Read) -> None:
         # 1000 kg of steel weigh 9807 N in air and 8526 N in water
         ("{use: block}", "{use: block, weight: 9807 N}", "equals its weight in air"),
         ("{use: block}", "{use: block, weight: 9000 N}", ""),
-        ("use: rope-12", "use: rope-12, material: steel", "steel` of rope-12, which is nylon"),
+        ("use: rope-12", "use: rope-12, material: steel", "steel` replaces the nylon of rope-12"),
         ("use: rope-12", "use: rope-12, material: polyester", ""),
     ],
 )  # fmt: skip
@@ -245,7 +245,8 @@ def test_a_nearer_definition_wins_and_says_so(read: Read, tmp_path: Path) -> Non
     assert mooring.pieces[0].length == 2.0
     [notice] = mooring.notices
     assert notice == (
-        f"ball: defined in {tmp_path}/mooring.yaml:15, which hides that of {tmp_path}/mine.yaml:2"
+        f"ball: the definition in {tmp_path}/mooring.yaml:15 overrides that in "
+        f"{tmp_path}/mine.yaml:2"
     )
 
 
@@ -358,8 +359,8 @@ def test_a_component_without_a_kind_completes_that_of_the_catalogue(tmp_path):
 def test_a_figure_in_place_of_that_of_the_catalogue_is_noticed(tmp_path):
     text = COMPLETED.replace("KEYS", "depth_rating: 9 km")
     (notice,) = read_mooring(tmp_path / "m.yaml", text=text).notices
-    assert notice.startswith("sbe37: `depth_rating` of ")
-    assert "replaces that of" in notice
+    assert notice.startswith("sbe37: ")
+    assert "overrides `depth_rating` of the definition in " in notice
 
 
 @pytest.mark.parametrize(

@@ -138,15 +138,15 @@ ONE_MISTAKE = {
     ),
     "an anchor": (
         TOW + "  - {use: deadweight}\n",
-        (6, 5, "anchor `deadweight` in a tow; its line ends in the towed body"),
+        (6, 5, "`deadweight` is an anchor, but the line of a tow ends at the towed body"),
     ),
     "an anchor in between": (
         changed("{use: plate, label: fish}", "{use: deadweight}\n  - {use: plate}"),
-        (5, 5, "anchor `deadweight` in a tow; its line ends in the towed body"),
+        (5, 5, "`deadweight` is an anchor, but the line of a tow ends at the towed body"),
     ),
     "a mooring towed": (
         GOOD + "tow: {speed: 1 m/s, toward: 0}\n",
-        (13, 5, "anchor `deadweight` in a tow; its line ends in the towed body"),
+        (13, 5, "`deadweight` is an anchor, but the line of a tow ends at the towed body"),
     ),
     "no line": (
         TOW[: TOW.index("line:")],
@@ -158,23 +158,23 @@ ONE_MISTAKE = {
     ),
     "fit without a depth": (
         changed("100 m", "fit"),
-        (4, 5, "`body_depth` is missing: `length: fit` needs it"),
+        (4, 5, "`body_depth` is missing: `length: fit` needs a depth"),
     ),
     "fit to the depth of a top": (
         changed("100 m", "fit, top_depth: 70 m"),
-        (4, 33, "`top_depth` belongs to moorings; here it is `body_depth`"),
+        (4, 33, "`top_depth` is only for moorings; use `body_depth` here"),
     ),
     "fit to both": (
         changed("100 m", "fit, body_depth: 70 m, top_depth: 1 m"),
-        (4, 51, "`top_depth` belongs to moorings; here it is `body_depth`"),
+        (4, 51, "`top_depth` is only for moorings; use `body_depth` here"),
     ),
     "fit of a top in a mooring": (
         GOOD.replace("480 m", "fit, body_depth: 70 m"),
-        (11, 33, "`body_depth` belongs to tows; here it is `top_depth`"),
+        (11, 33, "`body_depth` is only for tows; use `top_depth` here"),
     ),
     "depth of a body in a mooring": (
         GOOD.replace("{use: plate}", "{use: plate, body_depth: 70 m}"),
-        (12, 18, "`body_depth` belongs to tows; here it is `top_depth`"),
+        (12, 18, "`body_depth` is only for tows; use `top_depth` here"),
     ),
     "depth without fit": (
         changed("100 m", "100 m, body_depth: 70 m"),
@@ -206,7 +206,7 @@ ONE_MISTAKE = {
     ),
     "clamp beyond its piece": (
         changed("at: 90 m", "at: 101 m"),
-        (4, 61, "`at: 101 m` is beyond the piece, 100 m long"),
+        (4, 61, "`at: 101 m` is beyond the end of the piece, which is 100 m long"),
     ),
     "environment empty": (
         TOW + "environment:\n",

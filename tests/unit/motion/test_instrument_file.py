@@ -98,7 +98,7 @@ def test_text_of_an_instrument_becomes_a_dataset(tmp_path):
 
 
 MOORING = {
-    "title": "M 1: where its parts were", "keywords": "of the motion", "creator_name": "A. Martin",
+    "title": "M 1: motion of its parts", "keywords": "of the motion", "creator_name": "A. Martin",
     "creator_email": "a.martin@example.org", "license": "CC-BY-4.0",
     "geospatial_lat_min": 48.0, "geospatial_lon_min": -10.0,
 }  # fmt: skip
@@ -176,12 +176,12 @@ def text(path):
         (lambda path: path, "no such file"),
         (text, "is not NetCDF, RODB, .cnv or RBR's table"),
         (without_times, "has no times"),
-        (without_labels, "has no labels of instruments"),
-        (grouped, "has groups, which a copy would lack: extra"),
+        (without_labels, "has neither labels (`instrument` or `label`)"),
+        (grouped, "has groups (extra), which would be missing from a copy"),
         (counted, "`depth` is a dimension of"),
-        (lambda path: own(path, there=("depth",)), "has `depth` already"),
-        (lambda path: own(path, there=("depth_sd",)), "has `depth_sd` already"),
-        (lambda path: own(path, labels=("a", "b")), "no instrument of"),
+        (lambda path: own(path, there=("depth",)), "already has `depth`"),
+        (lambda path: own(path, there=("depth_sd",)), "already has `depth_sd`"),
+        (lambda path: own(path, labels=("a", "b")), "no instrument matches a part"),
     ],
 )
 def test_what_no_depths_can_be_added_to_is_refused(tmp_path, file, said):
@@ -256,7 +256,7 @@ def test_a_file_of_imos_says_who_it_is_and_keeps_its_own_depth(tmp_path):
     own_depth = {"DEPTH": ("TIME", [1.0, 2.0, 3.0]), "NOMINAL_DEPTH": ((), 61.0, {"units": "m"}),
                  "DEPTH_quality_control": ("TIME", np.array([1, 1, 1], "i1"))}  # fmt: skip
     path = single(tmp_path / "IMOS.nc", attrs={"instrument_serial_number": "21"}, **own_depth)
-    with pytest.raises(UsageError, match="has `DEPTH` already"):
+    with pytest.raises(UsageError, match="already has `DEPTH`"):
         read_instruments(path, LINE)
 
 
@@ -265,9 +265,11 @@ def test_a_folder_is_matched_as_a_whole(tmp_path):
         single(tmp_path / f"{name}.nc", NOMINAL_DEPTH=((), place, {"units": "m"}))
     read, said = read_instruments(tmp_path, LINE)
     assert [one.point for one in read] == [(0,), (1,)]
-    assert said == ["by nominal depths, in their order: a.nc is `upper`; b.nc is `middle`"]
+    assert said == [
+        "matched by nominal depth, from the top down: a.nc to `upper`; b.nc to `middle`"
+    ]
 
 
 @pytest.mark.parametrize("name", ["North", "Strait: north", ""])
 def test_a_name_may_hold_a_colon(name):
-    assert mooring_in(f"{name}: where its parts were" if name else "record") == (name or "record")
+    assert mooring_in(f"{name}: motion of its parts" if name else "record") == (name or "record")

@@ -30,7 +30,7 @@ def sensors(*nominal, label="", serial=""):
 def test_sensors_keep_their_order_down_the_line_and_lie_nearest():
     found, said = matched_by_place(sensors(318.0, 75.0, 470.0), line(), [0, 1, 2, 4])
     assert found == {1: 1, 0: 2, 2: 4}
-    assert said[0] == "the sensor at 75.0 m of p.nc is `meter`"
+    assert said[0] == "the sensor at 75.0 m in p.nc matches `meter`"
 
 
 def test_the_way_is_the_best_of_all_and_refused_where_another_is_as_good():
@@ -46,7 +46,7 @@ def test_the_way_is_the_best_of_all_and_refused_where_another_is_as_good():
         places = line("abcdef", still)
         if ways[1][0] - ways[0][0] < CERTAIN:
             refused += 1
-            with pytest.raises(UsageError, match="may be"):
+            with pytest.raises(UsageError, match="could be"):
                 matched_by_place(sensors(*nominal), places, range(6))
         else:
             found, _ = matched_by_place(sensors(*nominal), places, range(6))
@@ -65,14 +65,14 @@ def test_labels_are_matched_and_others_listed_with_the_nearest():
     given = [*sensors(np.nan, label="adcp"), *sensors(np.nan, label="metre")]
     points, lost = points_of(given, line())
     assert points == {0: 2}
-    assert lost == ["`metre` of p.nc is not in m.yaml; did you mean `meter`?"]
+    assert lost == ["`metre` of p.nc matches no part of m.yaml; did you mean `meter`?"]
 
 
 @pytest.mark.parametrize(
-    ("label", "reason"), [("", "neither label, serial number nor nominal depth"), ("x", "`x` of")]
+    ("label", "reason"), [("", "has no label, serial number or nominal depth"), ("x", "`x` of")]
 )
 def test_sensors_that_match_nothing_are_refused(label, reason):
-    with pytest.raises(UsageError, match=f"no instrument is a part of the line: .*{reason}"):
+    with pytest.raises(UsageError, match=f"no instrument matches a part of the line: .*{reason}"):
         points_of(sensors(np.nan, label=label), line())
 
 
@@ -80,7 +80,7 @@ def test_sensors_without_a_label_are_matched_by_nominal_depth_beside_labelled_on
     given = [*sensors(310.0), *sensors(np.nan, label="meter"), *sensors(125.0)]
     points, notes = points_of(given, line())
     assert points == {0: 2, 1: 1, 2: 0}
-    assert notes[0].startswith("by nominal depths, in their order: ")
+    assert notes[0].startswith("matched by nominal depth, from the top down: ")
 
 
 def test_a_sensor_without_a_label_is_that_of_its_serial_number():

@@ -105,11 +105,11 @@ def out_of_time():
 @pytest.mark.parametrize(("dataset", "said"), [
     (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
-    (with_ids, "2 instruments one after the other (`sensor_id` says whose"),
+    (with_ids, "2 instruments one after the other (`sensor_id` gives the instrument"),
     (out_of_time, "-712224.4 among its times"),
     (lambda: instrument(units=""), "unit"),
     (lambda: instrument(units="degC"), "unit"),
-    (lambda: instrument("TEMP", "sea_water_temperature"), "holds no pressures"),
+    (lambda: instrument("TEMP", "sea_water_temperature"), "has no pressures"),
 ])  # fmt: skip
 def test_what_is_no_pressure_of_one_instrument_is_refused(tmp_path, dataset, said):
     with pytest.raises(InputError) as refused:
@@ -221,7 +221,7 @@ def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["x=two.nc"], "holds 2 sensors; `x=` names only one"),
+        (["x=two.nc"], "holds 2 sensors; `x=` is for one"),
         (["a=one.nc", "two.nc"], "two sensors are called `a`"),
         (["wide.nc"], "is not of times and instruments"),
     ],
@@ -248,7 +248,7 @@ def test_a_comment_that_merging_left_condemns_no_instrument_whose_flags_are_good
     invented.to_netcdf(tmp_path / "stack.nc", engine="h5netcdf")
     a, b = read_sensors([str(tmp_path / "stack.nc")], frozenset({1, 2}), -32.0, 300.0)
     assert (a.label, b.label, a.dropped, b.dropped) == ("a", "b", 1, 2)
-    assert "by its flags" in a.note and a.note == b.note
+    assert "its flags decide" in a.note and a.note == b.note
     invented.drop_vars("p_qc").to_netcdf(tmp_path / "bare.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="is not a measurement"):
         read_sensors([str(tmp_path / "bare.nc")], frozenset({1, 2}), -32.0, 300.0)

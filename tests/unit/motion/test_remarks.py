@@ -56,13 +56,13 @@ def test_all_sensors_off_alike_are_named(datum, named):
         (lambda flow: flow, None),
         (
             lambda flow: flow * np.exp(-1j * np.radians(15.0)),
-            "turned 16° (± 4°) clockwise: its compass",
+            "rotated 16° (± 4°) clockwise; its compass",
         ),
-        (lambda flow: flow * np.exp(1j * np.radians(15.0)), "turned 14° (± 4°) anticlockwise"),
+        (lambda flow: flow * np.exp(1j * np.radians(15.0)), "rotated 14° (± 4°) anticlockwise"),
         (lambda flow: flow * np.exp(1j * np.radians(8.0)), None),
-        (lambda flow: -flow, "it gives the direction from which the current comes"),
+        (lambda flow: -flow, "it gives the direction the current comes from"),
         (lambda flow: 1j * flow.conj(), "its east and north components are exchanged"),
-        (lambda flow: 0.1 * flow, "its speeds are 0.11 of theirs: its unit"),
+        (lambda flow: 0.1 * flow, "its speeds are 0.11 times theirs; its unit is wrong"),
     ],
 )
 def test_a_meter_that_the_two_nearest_do_not_agree_with_is_named(change, said):
@@ -77,7 +77,7 @@ def test_a_meter_that_the_two_nearest_do_not_agree_with_is_named(change, said):
     found = meter_remarks(measured, ("a", "b", "c"))
     assert len(found) == (said is not None)
     for one in found:
-        assert one.startswith("current at b: against a and c, ") and said in one
+        assert one.startswith("current at b, compared with a and c: ") and said in one
     measured.flag = 4 * flags
     assert not meter_remarks(measured, ("a", "b", "c"))
 
@@ -103,6 +103,7 @@ def test_a_line_that_misses_pressures_alone_is_named():
     assert alone_remarks(known) == []
     (said,) = alone_remarks(replace(known, factors={"length": 0.98}))
     assert said.startswith(
-        "the line: it is inconsistent with the pressures (its cables would be 2.0 % shorter"
+        "the line: it is inconsistent with the pressures; a length, a float or the water depth "
+        "is wrong (in the best fit, the cables are 2.0 % shorter than in the file"
     )
     assert len(alone_remarks(replace(known, worst=0.3))) == 1

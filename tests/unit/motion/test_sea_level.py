@@ -60,7 +60,7 @@ FAR = "time,level[m]\n" + "".join(
             "3:18: `level: x` is not a length",
         ),
         ("e.csv", None, "no such file"),
-        ("f.csv", FAR, "is 9999 m at 2026-03-01T02:00:00: no height"),
+        ("f.csv", FAR, "is 9999 m at 2026-03-01T02:00:00, more than 20 m"),
     ],
 )
 def test_what_is_no_sea_level_is_refused(tmp_path, name, text, said):
@@ -76,5 +76,5 @@ def test_arrays_without_a_height_are_refused(tmp_path):
     xarray.Dataset({"temp": ("time", [4.0, 4.1, 4.2])}, {"time": TIME}).to_netcdf(
         path, engine="h5netcdf"
     )
-    with pytest.raises(InputError, match="no height of the sea surface"):
+    with pytest.raises(InputError, match="has no sea-surface height"):
         read_sea_level(path)

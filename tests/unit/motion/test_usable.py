@@ -25,8 +25,8 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
     found, said = plausible(sensor(*good, least - 0.1, least, 330.0, 330.1), place, SEABED)
     assert np.isnan(found.value).tolist() == [False] * 7 + [True, False, False, True]
     assert said == [
-        f"a: 2 of its readings cannot be from its place, {place:.1f} m, and are left out: the "
-        f"first is {least - 0.1:.1f} m, at 2026-03-01T07:00:00"
+        f"a: readings that are impossible at its depth of {place:.1f} m were excluded: 2, the "
+        f"first {least - 0.1:.1f} m at 2026-03-01T07:00:00"
     ]
     shallow, _ = plausible(
         sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
@@ -89,7 +89,7 @@ def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refus
     given = ("a",), depth[:, None], np.array([place])
     if refused:
         with pytest.raises(
-            UsageError, match=rf"`a` is at {least:.1f} m at its least.* {place:.1f}"
+            UsageError, match=rf"`a` is at {least:.1f} m at its shallowest.* {place:.1f}"
         ):
             unusable(*given)
     else:

@@ -68,10 +68,10 @@ def test_a_table_is_linear_between_its_rows_and_from_the_keel():
     ("rows", "message"),
     [
         ([], "no rows"),
-        ([(0.2, 1, 1), (0.2, 2, 2)], "draft must grow"),
-        ([(0.2, 1, 1), (0.4, 1, 2)], "volume must grow"),
-        ([(0.2, 1, 1), (0.4, 2, 0.9)], "area must not fall"),
-        ([(0.0, 0.0, 0.0)], "one row is not enough"),
+        ([(0.2, 1, 1), (0.2, 2, 2)], "draft must increase"),
+        ([(0.2, 1, 1), (0.4, 1, 2)], "volume must increase"),
+        ([(0.2, 1, 1), (0.4, 2, 0.9)], "area must not decrease"),
+        ([(0.0, 0.0, 0.0)], "at least two rows are needed"),
     ],
 )
 def test_tables_that_are_no_hulls(rows, message):

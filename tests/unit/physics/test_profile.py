@@ -80,7 +80,7 @@ def test_a_thin_layer_is_met_where_the_flow_changes_in_it():
 
 
 def test_arrays_are_refused_when_they_cannot_be():
-    with pytest.raises(ValueError, match="levels must rise"):
+    with pytest.raises(ValueError, match="levels must increase"):
         Water(depth=50, level=[0, 0], u=[0, 0], v=[0, 0], w=[0, 0], density=[1025, 1025])
     with pytest.raises(ValueError, match="finite"):
         Water(depth=50, level=[0], u=[np.nan], v=[0], w=[0], density=[1025])

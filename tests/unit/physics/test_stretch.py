@@ -92,12 +92,12 @@ def test_mean_strain_is_that_of_all_tensions_between(points, tension, half):
 @pytest.mark.parametrize(
     ("points", "message"),
     [
-        ([(0.1, 0.01), (0.1, 0.02)], "point 2: the load 0.1 does not grow"),
-        ([(0.2, 0.01), (0.1, 0.02)], "point 2: the load 0.1 does not grow"),
-        ([(0.1, 0.02), (0.2, 0.01)], "point 2: the strain 0.01 falls"),
+        ([(0.1, 0.01), (0.1, 0.02)], "point 2: the load 0.1 is not above that of the point before"),
+        ([(0.2, 0.01), (0.1, 0.02)], "point 2: the load 0.1 is not above that of the point before"),
+        ([(0.1, 0.02), (0.2, 0.01)], "point 2: the strain 0.01 is below that of the point before"),
         ([(0.0, 0.01), (0.2, 0.02)], "permanent_elongation"),
         ([(20, 0.1)], "20 times the breaking load"),
-        ([(-0.1, 0.1)], "does not grow"),
+        ([(-0.1, 0.1)], "is not above that of the point before"),
         ([(0.1, float("nan"))], "not a number"),
         ([(float("inf"), 0.1)], "not a number"),
         ([(0.0, 0.0)], "needs a point"),

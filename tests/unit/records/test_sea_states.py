@@ -52,7 +52,10 @@ def test_a_swell_under_a_sea():
     solved = both.frequencies(64)
     assert solved[0] == pytest.approx(pi / 15.0)
     assert solved[-1] == pytest.approx(min(12.0 * 2.0 * pi / 7.0, 10.0))
-    for height, period, message in ((2.0, 6.0, "the longer"), (40.0, 14.0, "no sea is higher")):
+    for height, period, message in (
+        (2.0, 6.0, "a longer period"),
+        (40.0, 14.0, "no sea is higher"),
+    ):
         with pytest.raises(UsageError, match=message):
             sea_states.with_swell(sea, height, period)
 
@@ -101,13 +104,16 @@ def test_a_measured_spectrum(tmp_path):
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ("0.1,2\n0.05,1\n0.2,-1", "sea.csv:3:1: frequencies are not negative, and grow"),
-        ("0.1,2\n0.05,1\n0.2,-1", "sea.csv:4:2: a density is not negative"),
+        (
+            "0.1,2\n0.05,1\n0.2,-1",
+            "sea.csv:3:1: frequencies must increase and must not be negative",
+        ),
+        ("0.1,2\n0.05,1\n0.2,-1", "sea.csv:4:2: a density must not be negative"),
         ("0.1,2\n0.2,nan\n0.3,1", "sea.csv:3:1: not numbers"),
         ("0.1,0\n0.2,0\n0.3,0", "densities that are not all zero"),
         ("0.1,0", "needs three frequencies or more"),
-        ("1,0\n2,0.01\n3,0", "that can be solved is 2 s; look at its units"),
-        ("0.1,0\n0.2,1\n0.3,0\n4,.02\n9,.02", "of its variance is above 1.6 Hz; look at its units"),
+        ("1,0\n2,0.01\n3,0", "that can be solved is 2 s; check its units"),
+        ("0.1,0\n0.2,1\n0.3,0\n4,.02\n9,.02", "of its variance is above 1.6 Hz; check its units"),
         ("0.1,0\n0.3,9\n0.5,0", "would break"),
         ("0,9\n0.1,1\n0.2,0", "no sea is higher than 30 m or longer than 30 s"),
     ],

@@ -45,7 +45,7 @@ def test_two_instruments_in_turn():
     u = tide(12.4206)
     u[1::2, 1] += 0.5
     (said,) = doubts(u)
-    assert said.startswith("1 of 3 series look like two in turn: readings next to each other dif")
+    assert said.startswith("1 of 3 series appear to alternate between two instruments")
 
 
 def test_levels_whose_components_are_exchanged_or_of_the_other_sign():
@@ -89,7 +89,9 @@ def test_levels_that_repeat_and_times_that_repeat():
     assert said.startswith("1 of 3 levels have the same currents at all times as the level above")
     several = np.repeat(TIMES[: COUNT // 2], 2)
     notes = [*series_doubts(np.random.default_rng(2).random((COUNT, 1, 1)), several)]
-    assert notes == ["360 of 720 times repeat the one before: several instruments in one?"]
+    assert notes == [
+        "360 of 720 times repeat the time before: does the file combine several instruments?"
+    ]
 
 
 def test_a_few_impossible_values_of_one_size_are_fill_values():
@@ -176,7 +178,7 @@ def test_shares_of_good_pings_and_times():
     assert said.startswith("720 of 720 times are before 1950 or after ")
     broken = np.concatenate([TIMES[:300], TIMES[300:] + np.timedelta64(9, "D")])
     assert doubts(times=broken) == [
-        "1 gap in time: the longest is of 217 h, from 2026-03-13T11:00 to 2026-03-22T12:00, where "
+        "1 gap in time: the longest is 217 h, from 2026-03-13T11:00 to 2026-03-22T12:00; "
         "the step is 1 h"
     ]
 

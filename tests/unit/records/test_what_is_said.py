@@ -85,7 +85,7 @@ def poor(record: xr.Dataset) -> xr.Dataset:
 
 
 @pytest.mark.parametrize(("make", "expected"), [
-    (every_day, "its 30 profiles are 24 h apart, means or samples: tides and peaks between them"),
+    (every_day, "its 30 profiles are 24 h apart, so tides and peaks between them"),
     (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` were excluded, because they"),
@@ -93,7 +93,7 @@ def poor(record: xr.Dataset) -> xr.Dataset:
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
     (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
     (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m, 81 readings from 2026-0"),
-    (lambda one: one.where(one["time"].values[:, None] % 2 > 0, 0.4 - one), "10 of 10 series loo"),
+    (lambda one: one.where(one["time"].values[:, None] % 2 > 0, 0.4 - one), "10 of 10 series app"),
     (copied, "100 readings from 2026-03-13T12:00 are the same as those from 2026-03-03T02:00"),
     (lambda one: one.sel(time=(one["time"] < 300) | (one["time"] > 500)), "1 gap in time: the lo"),
     (of_attribute("time", "units", "hours since 1949-12-31T20:00"), "4 of 720 times are before 1"),
@@ -198,19 +198,19 @@ def test_a_grid_of_nemo_that_is_turned_is_refused(record, tmp_path) -> None:
     (b"MATLAB 5.0 MAT-file", "is a .mat file of MATLAB"), (b"GRIB\0\0\0\2", "is a GRIB file"),
     (b"MATLAB 7.3 MAT-file" + b"\0" * 493 + b"\x89HDF", "is a .mat file of MATLAB"),
     (b"PK\x03\x04", "a spreadsheet; unpack it"), (b"\x1f\x8b\x08", "is a packed file"),
-    (b"\x7f\x7f\x01", "a raw file of a Teledyne ADCP"), (b"\xa5\x0a", "a raw file of a Nortek"),
+    (b"\x7f\x7f\x01", "a raw Teledyne ADCP file"), (b"\xa5\x0a", "a raw Nortek file"),
     (b"\xd0\xcf\x11\xe0", "is a spreadsheet"), (b"\x0e\x03\x13\x01", "is an HDF 4 file"),
 ])  # fmt: skip
 def test_files_of_other_kinds_are_refused_by_what_they_are(tmp_path, begin, kind) -> None:
     (tmp_path / "r.nc").write_bytes(begin + bytes(600))
     assert kind in refusal(tmp_path / "r.nc")
-    with pytest.raises(InputError, match="NetCDF, zarr or CSV is read"):
+    with pytest.raises(InputError, match="CALM reads NetCDF, zarr and CSV"):
         read_current_file(tmp_path / "r.nc", None, Terms())
 
 
 def test_groups_are_named(record, tmp_path) -> None:
     record.to_netcdf(tmp_path / "r.nc", engine="h5netcdf", group="adcp")
-    assert "and the groups adcp, which are not read: make one a fil" in refusal(tmp_path / "r.nc")
+    assert "and the groups adcp, which are not read; extract one" in refusal(tmp_path / "r.nc")
 
 
 def test_letters_of_comments_may_be_of_any_encoding(tmp_path: Path) -> None:
@@ -256,7 +256,7 @@ def test_more_values_than_are_read_at_once_are_refused_before_reading(record, tm
     with h5py.File(tmp_path / "r.nc", "a") as file:
         file.create_dataset("burst", (2_000_000_000,), "f8", chunks=(1_000_000,))
     assert (tmp_path / "r.nc").stat().st_size < 1_000_000
-    assert "`burst` has 2,000,000,000 values to be read at once" in refusal(tmp_path / "r.nc")
+    assert "`burst` has 2,000,000,000 values, more than" in refusal(tmp_path / "r.nc")
     with h5py.File(tmp_path / "r.nc", "a") as file:
         del file["burst"]
         file.create_dataset("wide", (10**5, 10**5), "f4", chunks=(10**5, 10**3))

@@ -201,5 +201,5 @@ def test_a_solved_mooring_plots_itself():
 
 def test_without_matplotlib_a_plot_says_what_to_type(result, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(UsageError, match="needs matplotlib: in CALM's checkout"):
+    with pytest.raises(UsageError, match="matplotlib is not installed; in the checkout"):
         calm.load("lines/s1000.yaml").solve().plot()

@@ -185,7 +185,7 @@ def test_page_one_holds_what_is_signed(paper):
     for words in (
         "Document M-2026-17", "Rev. B", "52° 18.000′ N, 014° 54.000′ W", "1800 m", "sub-surface",
         "Passes by acceptance: No check fails", "Load cases", "1s Default environment, strumming",
-        "to scale, 1 :", "Open items", "Replace before signing", "Governing checks",
+        "to scale, 1 :", "Open items", "Replace this example before signing", "Governing checks",
         "Drawn: A. Martin", "Checked: B. Li", "Approved", "waves, snap loads, fatigue",
         "wire 20 m longer (A. Martin)", "first issue (A. Martin)",
     ):  # fmt: skip

@@ -74,7 +74,7 @@ def test_totals_by_kind_leave_out_what_is_met_by_construction():
     assert text.rstrip().endswith(
         "Checked 3 figures of 1 source: all within tolerance\n"
         "1 published; 2 property\n"
-        "Not counted: 3 figures met by construction"
+        "Not counted: 3 figures that are met by construction"
     )
     document = verification_document(findings(source))
     assert (document["checked"], document["out"]) == (3, 0)

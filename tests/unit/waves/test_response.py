@@ -542,8 +542,8 @@ def test_a_spectrum_in_netcdf(tmp_path, directions, units):
     ("change", "message"),
     [
         (lambda d: d.rename(spectral_wave_density="waves"), "no spectrum of waves"),
-        (lambda d: d.drop_vars("frequency"), "no dimension of frequencies"),
-        (lambda d: d * -1.0, "not negative"),
+        (lambda d: d.drop_vars("frequency"), "no frequency dimension"),
+        (lambda d: d * -1.0, "must not be negative"),
         (lambda d: d * np.nan, "every spectrum in it has gaps"),
         (lambda d: d * 1e4, "no sea is higher"),
     ],

@@ -132,7 +132,7 @@ def test_put() -> None:
     assert draft.put(0, "label", None).text == edited(", label: 'top'", "")
     assert draft.put(1, "use", None).text == edited("use: rope\n    length", "length")
     assert draft.put(2, "label", None).text == TEXT
-    with pytest.raises(EditError, match="no item 3 among 3"):
+    with pytest.raises(EditError, match="item 3 does not exist; the list has 3"):
         draft.put(3, "label", "x")
 
 
@@ -151,7 +151,7 @@ def test_clamps() -> None:
     assert one.text == edited("      - {use: meter, at: 9 m}\n", "")
     none = one.delete([0], clamps_of(1))
     assert "clamps" not in none.text and "length: 80 m   # cut\n\n  - {use: dead}" in none.text
-    with pytest.raises(EditError, match="no clamp 2 among 2"):
+    with pytest.raises(EditError, match="clamp 2 does not exist; the list has 2"):
         draft.delete([2], clamps_of(1))
 
 
@@ -300,7 +300,7 @@ def test_a_copied_clamp_is_worded_as_the_one_it_was_copied_from() -> None:
     assert twice.text == NESTED.replace(upper + lower, (upper + lower) * 2)
     one_line = draft.paste(0, copied[1:], clamps_of(1))
     assert one_line.text == NESTED.replace("5 m}", '5 m, clamps: [{use: meter, at: "9 m"}]}')
-    with pytest.raises(EditError, match="no clamp 0 among 0"):
+    with pytest.raises(EditError, match="clamp 0 does not exist; the list has 0"):
         draft.copy([0], clamps_of(1))
 
 

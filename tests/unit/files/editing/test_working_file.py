@@ -76,7 +76,7 @@ def test_what_a_new_file_cannot_take_over_is_told(
 
     monkeypatch.setattr(Path, "stat", foreign)
     monkeypatch.setattr(os, "chown", refuse)
-    assert "owner or group could not be kept" in file.save("name: b\n")
+    assert "owner or group could not be preserved" in file.save("name: b\n")
 
 
 def refuse(*_: object) -> None:
@@ -316,7 +316,7 @@ def test_a_folder_that_cannot_be_written_loses_nothing(
     found = WorkingFile(path).recoverable_work()
     assert found is not None and found.text == "name: kept\n"
     refuse_writing_in(path.parents[1], monkeypatch)
-    with pytest.raises(NotWritten, match="cannot be kept"):
+    with pytest.raises(NotWritten, match="cannot be stored"):
         kept(file, "name: kept\n")
 
 
