@@ -132,7 +132,7 @@ def print_batch(found: Numbered) -> None:
 
 def main(cases: str = "", first: str = "1", *families: str) -> None:
     """The sweep, or some cases of every family or of some."""
-    print(describe("calm-mooring", "numba", "numpy", "scipy"))
+    print(describe("calm-mooring", "llvmlite", "numpy", "scipy"))
     chosen = SWEEP if not cases else dict.fromkeys(families or (*FAMILIES, NET), int(cases))
     for family, count in chosen.items():
         measure(family, count, int(first))

@@ -158,7 +158,7 @@ def whole_command(file: Path, path: Path, output: Path, workers: int) -> tuple[f
 
 def main() -> None:
     """Print a table a count."""
-    print(describe("calm-mooring", "numpy", "numba", "h5py"))
+    print(describe("calm-mooring", "numpy", "llvmlite", "h5py"))
     words = sys.argv[1:]
     counts = (SMOKE,) if words == ["--smoke"] else (*COUNTS, *map(int, words))
     with tempfile.TemporaryDirectory() as name:

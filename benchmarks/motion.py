@@ -76,7 +76,7 @@ def processor() -> float:
 
 def main() -> None:
     """Print the seconds of the command."""
-    print(describe("calm-mooring", "numpy", "numba", "h5py"))
+    print(describe("calm-mooring", "numpy", "llvmlite", "h5py"))
     smoke = sys.argv[1:] == ["--smoke"]
     hours, threads_of = (SMOKE, (2,)) if smoke else (HOURS, (1, 2))
     with tempfile.TemporaryDirectory() as name:

@@ -169,7 +169,7 @@ def s1000_with(stretch: str, solver: str, line: str) -> Design:
 
 def main(profiles: str = "8192", checked: str = "24", checkout: str = "") -> None:
     """Measure some moorings."""
-    print(describe("calm-mooring", "numba", "numpy", "scipy"))
+    print(describe("calm-mooring", "llvmlite", "numpy", "scipy"))
     others = rates_of(Path(checkout), profiles) if checkout else {}
     for name in MOORINGS:
         mooring = load(shipped_folder("lines") / f"{name}.yaml")

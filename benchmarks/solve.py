@@ -4,7 +4,7 @@
 
 Every shipped mooring and tow at its own settings, against the same line at an angle step of 0.05°
 (its error is 400 times smaller); then S1000 against scipy alone, both against scipy at 1e-12.
-`plain` is the solver as it stands, `compiled` by numba. `--smoke` does a little of everything in
+`plain` is the solver as it stands, `compiled` by LLVM. `--smoke` does a little of everything in
 seconds. `--package` measures the CALM of another folder with the same script.
 """
 

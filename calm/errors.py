@@ -110,7 +110,7 @@ def or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | 
 
 
 EXTRAS: dict[str, tuple[str, ...]] = {
-    "records": ("numba", "xarray", "pandas", "h5netcdf", "h5py", "cf_xarray", "cftime"),
+    "records": ("llvmlite", "xarray", "pandas", "h5netcdf", "h5py", "cf_xarray", "cftime"),
     "cluster": ("distributed", "dask", "zarr"),
     "plot": ("matplotlib",),
 }

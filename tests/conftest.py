@@ -36,7 +36,7 @@ def without_the_users_catalogue(tmp_path_factory: pytest.TempPathFactory) -> Non
 
 @pytest.fixture(scope="session", autouse=True)
 def solve_compiled() -> None:
-    """Compile the solver where numba is installed: it gives the same digits, sooner.
+    """Compile the solver where LLVM is installed: it gives the same digits, sooner.
 
     `CALM_COMPILED=never` makes the tests use the interpreted solver.
     """

@@ -304,7 +304,7 @@ class Batch:
     def _solve_block(
         self, leg: Leg, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
     ) -> None:
-        # always copies, since read-only arrays have another type in numba
+        # copies, since the currents of implausible profiles are removed
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
         false = self._implausible((depth, u, v, w))
         if false.any():

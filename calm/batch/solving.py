@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from calm.physics.compiled import record_type, set_row
+from calm.physics.compiled import set_row
+from calm.physics.law_kinds import record_type
 from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.passing import NODES as MARCHED

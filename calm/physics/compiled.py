@@ -1,11 +1,13 @@
-"""Compilation of the physics functions ("laws") by numba, from the source that CPython also runs.
+"""Compilation of the physics functions ("laws") to machine code, from the source that CPython runs,
+too.
 
 A *law* is a function of floats, named tuples and sequences of named tuples that CPython can run
-directly. The compiled law is the same function, except that the functions it calls are compiled
-laws, sequences become arrays, and sequences of named tuples become arrays of records. The
-arithmetic is not reordered, so both give the same digits.
+directly. For compiled laws sequences are arrays, and sequences of named tuples arrays of records.
+`calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes machine
+code, which the user's cache keeps. The arithmetic is not reordered, so both give the same digits.
 """
 
+import ctypes
 import hashlib
 import os
 import sys
@@ -13,23 +15,20 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import FunctionType
+from threading import Lock
 from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
+
+from calm.physics.law_kinds import FROM_MATH, NOTHING, Layout, Row, kind_asked, kind_of, record_type
 
 Law = Callable[..., Any]
 
 SOURCES = ("physics", "solve", "batch")
 """Packages that contain functions to compile."""
 
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
-"""Compiler options. Laws allocate nothing, so reference counting of arrays is switched off for
-speed; they never divide by zero or raise an exception.
-"""
-
-NEWEST = (0, 68)
-"""Latest version of numba whose internals are compatible with `calm.physics.law_compiler`."""
+OPTIMISATION = 1
+"""Level of LLVM's optimisation, which never changes a digit."""
 
 Fn = TypeVar("Fn", bound=Law)
 
@@ -48,23 +47,61 @@ def set_row(rows: Any, i: int, row: Any) -> None:
     rows[i] = row
 
 
-_entries: dict[Law, Any] = {}
+class Compiled:
+    """A compiled law.
 
-
-def entry(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of the given arguments.
-
-    The types are checked only in the first call, which saves time in short solves. All later
-    arguments must have the same types.
+    The kinds of the arguments are checked only in the first call, which saves time in short solves.
+    All later arguments must have the same kinds.
     """
-    found = _entries.get(law)
-    if found is None:
-        numba: Any = __import__("numba")
-        dispatcher = kept(numba.njit, clone(law))
-        types = tuple(numba.typeof(argument) for argument in arguments)
-        dispatcher.compile(types)
-        found = _entries[law] = dispatcher.overloads[types].entry_point
-    return found
+
+    def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
+        self._given, self._result = Layout(Row(None, kinds)), Layout(result)
+        self._nothing = result == NOTHING
+        address = _address_of(
+            law, kinds, lambda program: program.add_entry(_ENTRY, law, kinds, result)
+        )
+        self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the law without blocking other threads."""
+        result = ctypes.create_string_buffer(self._result.size)
+        self._call(self._given.written(arguments), result)
+        return None if self._nothing else self._result.read(result.raw)
+
+
+class Addressed:
+    """A compiled law of a named tuple and a number, which returns a number.
+
+    Other laws call it by its `address`, and are compiled without it.
+    """
+
+    def __init__(self, law: Law, task: Any) -> None:
+        self._task = Layout(task)
+        self.address = _address_of(
+            law, task, lambda program: program.add_function(_ENTRY, law, task)
+        )
+        self._call = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p, ctypes.c_double)(
+            self.address
+        )
+
+    def __call__(self, task: Any, x: float) -> float:
+        """Call the law without blocking other threads."""
+        found: float = self._call(self._task.written(task), x)
+        return found
+
+
+_entries: dict[Law, Any] = {}
+_lock = Lock()
+
+
+def entry(law: Law, *arguments: Any) -> Compiled:
+    """Return a law compiled for the kinds of the given arguments."""
+    with _lock:
+        if law not in _entries:
+            result = kind_asked(get_type_hints(law).get("return"))
+            _entries[law] = Compiled(law, tuple(map(kind_of, arguments)), result)
+        found: Compiled = _entries[law]
+        return found
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
@@ -72,106 +109,108 @@ def outcome(law: Law, compiled: bool, *given: Any) -> Any:
     return (entry(law, *given) if compiled else law)(*given)
 
 
-def by_address(law: Law, *arguments: Any) -> Any:
-    """Return a law compiled for the types of the given arguments, to be called by its address.
-
-    The law has a float as an additional last argument, and returns a float. Its callers are
-    compiled without it, which saves its compilation time for each caller. As for `entry`, all later
-    arguments must have the same types.
+def by_address(law: Law, task: Any) -> Addressed:
+    """Return a law of a named tuple like the given one and of a number, to be called by its
+    address.
     """
-    found = _entries.get(law)
-    if found is None:
-        numba: Any = __import__("numba")
-        types = tuple(numba.typeof(argument) for argument in arguments)
-        signature = numba.float64(*types, numba.float64)
-        found = _entries[law] = kept(
-            lambda law, **options: numba.cfunc(signature, **options)(law), clone(law)
-        )
-    return found
+    with _lock:
+        if law not in _entries:
+            _entries[law] = Addressed(law, kind_of(task))
+        found: Addressed = _entries[law]
+        return found
 
 
-@cache
-def called(law: Law) -> Any:
-    """Return a law compiled for inclusion in the compiled code of the laws that call it."""
-    import numba
-
-    if law is set_row:
-        return _record_setter()
-    njit: Any = numba.njit
-    dispatcher = njit(clone(law), forceinline=law in _within, **_linked_options())
-    resolve, plain = dispatcher.get_call_template, numba.types.unliteral
-
-    def once_for_all_numbers(types: Any, named: Any) -> Any:
-        """Compile the law once for all values of an integer, not once per constant."""
-        return resolve(tuple(map(plain, types)), named)
-
-    dispatcher.get_call_template = once_for_all_numbers
-    return dispatcher
+_ENTRY = "calm.entry"
+_engines: list[Any] = []
 
 
-def _linked_options() -> dict[str, Any]:
-    wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return {**OPTIONS, **wrappers, "pipeline_class": _law_compiler()}
+def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
+    """Return the address of a law's machine code for kinds of arguments, from the cache or compiled
+    now.
+    """
+    import llvmlite.binding as llvm
 
-
-@cache
-def _law_compiler() -> Any:
-    """Return the compiler class for laws, or numba's own class if numba is newer than `NEWEST`."""
-    numba: Any = __import__("numba")
-    if numba.version_info.short > NEWEST:
-        return numba.core.compiler.Compiler
-    from calm.physics.law_compiler import LawCompiler
-
-    return LawCompiler
-
-
-@cache
-def _record_setter() -> Law:
-    """Return the compiled form of `set_row`, which copies a record field by field."""
-    numba: Any = __import__("numba.extending")
-
-    def set_record(rows, i, row):  # type: ignore[no-untyped-def]
-        raise NotImplementedError
-
-    @numba.extending.overload(set_record, jit_options=_linked_options())
-    def for_types(rows, i, row):  # type: ignore[no-untyped-def]
-        names: dict[str, Any] = {}
-        fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)
-        exec(f"def by_field(rows, i, row):\n{fields}", names)
-        return names["by_field"]
-
-    return set_record
-
-
-def clone(law: Law) -> Law:
-    """Copy a function for compilation: it calls compiled laws, and its tables are arrays."""
-    assert isinstance(law, FunctionType)
-    names = {**law.__globals__}
-    for name in law.__code__.co_names:
-        value = names.get(name)
-        if isinstance(value, FunctionType) and value.__module__.startswith("calm."):
-            names[name] = called(value)
-        elif type(value) is tuple and value and all(type(x) is float for x in value):
-            names[name] = np.array(value)
-    clone = FunctionType(law.__code__, names, law.__name__, law.__defaults__, law.__closure__)
-    clone.__module__, clone.__qualname__ = law.__module__, law.__qualname__
-    return clone
-
-
-def kept(compiler: Callable[..., Any], law: Law) -> Any:
-    """Compile a law, and cache the result on disk if there is a cache folder."""
-    import numba
-
-    folder, options = cache_folder(), {**OPTIONS, "pipeline_class": _law_compiler()}
-    if folder is None:
-        return compiler(law, **options)
-    settings: Any = numba.config
-    chosen = settings.CACHE_DIR
-    settings.CACHE_DIR = str(folder)  # read as the function is decorated
+    for name in FROM_MATH:
+        llvm.add_symbol(f"calm.{name}", _in_c(name))
+    target = _machine()
+    folder, name = cache_folder(), f"{law.__module__}.{law.__qualname__}"
+    file = folder and folder / f"{name}-{_short_name(kinds)}-{_machine_name()}.o"
     try:
-        return compiler(law, cache=True, **options)
-    finally:
-        settings.CACHE_DIR = chosen
+        code = file.read_bytes() if file else b""
+    except OSError:
+        code = b""
+    if not code:
+        for listener in on_compilation:
+            listener()
+        from calm.physics.law_compiler import Program
+
+        program = Program(_within)
+        add(program)
+        module = llvm.parse_assembly(program.text())
+        module.triple, module.data_layout = target.triple, str(target.target_data)
+        tuning = llvm.create_pipeline_tuning_options(OPTIMISATION)
+        builder = llvm.create_pass_builder(target, tuning)
+        builder.getModulePassManager().run(module, builder)
+        code = target.emit_object(module)
+        if file:
+            _store(file, code)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    _engines.append(engine)
+    address: int = engine.get_function_address(_ENTRY)
+    return address
+
+
+on_compilation: list[Callable[[], None]] = []
+"""Functions to call when a law is compiled that is not in the cache."""
+
+
+def _store(file: Path, code: bytes) -> None:
+    """Write machine code to the cache if possible, completely or not at all."""
+    try:
+        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as whole:
+            whole.write(code)
+        os.replace(whole.name, file)
+    except OSError:
+        return
+
+
+@cache
+def _machine() -> Any:
+    """Return LLVM's description of this machine."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    features = llvm.get_host_cpu_features().flatten()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=features, opt=OPTIMISATION, codemodel="jitdefault",
+        jit=True,
+    )  # fmt: skip
+
+
+@cache
+def _machine_name() -> str:
+    """Return a short name of this machine and of LLVM's version, whose machine code is kept."""
+    import llvmlite.binding as llvm
+
+    features = sorted(llvm.get_host_cpu_features().items())
+    given = (llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvm.llvm_version_info)
+    return _short_name(given)
+
+
+def _short_name(given: Any) -> str:
+    return hashlib.sha256(repr(given).encode()).hexdigest()[:12]
+
+
+def _in_c(name: str) -> int:
+    """Return the address of a function of the C library, which CPython's `math` calls, too."""
+    windows: Any = getattr(ctypes, "cdll", None)
+    library = windows.ucrtbase if sys.platform == "win32" else ctypes.CDLL(None)
+    address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value
+    assert address is not None
+    return address
 
 
 def packed(value: Any) -> Any:
@@ -198,25 +237,13 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
 
 
 @cache
-def record_type(named: type) -> np.dtype[Any]:
-    """Return the numpy record type of a named tuple of numbers."""
-    return np.dtype(
-        [
-            (name, np.intp if kind is int else np.float64)
-            for name, kind in get_type_hints(named).items()
-        ]
-    )
-
-
-@cache
 def cache_folder() -> Path | None:
     """Return the folder for compiled code, or None if no folder can be written.
 
-    The folder is in `NUMBA_CACHE_DIR` if set, else in the user's cache. Every version of the
-    sources has its own subfolder, because numba itself checks for changes in a single source file
-    only.
+    `CALM_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
+    has its own subfolder.
     """
-    given = os.environ.get("NUMBA_CACHE_DIR")
+    given = os.environ.get("CALM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # its old name
     folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -229,7 +256,9 @@ def cache_folder() -> Path | None:
 def is_cached(law: str) -> bool:
     """True if the cache folder contains the compiled code of a law."""
     folder = cache_folder()
-    return folder is not None and next(folder.rglob(f"*.{law}-*.nbi"), None) is not None
+    return (
+        folder is not None and next(folder.glob(f"*.{law}-*-{_machine_name()}.o"), None) is not None
+    )
 
 
 def _user_cache() -> Path:

@@ -1,193 +1,724 @@
-"""Compiler of the physics functions ("laws"): numba's compiler reduced to the necessary steps.
+"""Translation of the physics functions ("laws") to LLVM instructions.
 
-It is much faster than numba's own compiler. Only laws called from Python become machine code. All
-other laws are linked into these and optimised there once; numba itself optimises and translates
-every law again at each level of the calls. The types of an operation are resolved only once. Passes
-for language features that laws do not use are omitted, variables that are assigned once need no
-memory, and arrays are passed as fewer numbers.
+A law uses only numbers, named tuples, sequences of numbers or named tuples, and functions of
+`math`, so that types follow from its arguments. Its operations are translated one by one, in their
+order and with the meaning that they have in Python; LLVM must not rearrange them.
+
+Named tuples are passed by their address, since no law changes one. Indices are not checked.
 """
 
-import copy
-import gc
-import hashlib
-from collections import defaultdict
+import ast
+import builtins
+import math
+import operator
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType, ModuleType
 from typing import Any
 
-import numba
+from calm.physics.law_instructions import (
+    ArrayView,
+    Global,
+    Held,
+    Instructions,
+    Made,
+    Number,
+    number_of,
+    row_of,
+)
+from calm.physics.law_kinds import (
+    FROM_MATH,
+    NOTHING,
+    REAL,
+    TRUTH,
+    WHOLE,
+    Array,
+    Row,
+    common,
+    size_of,
+    wanted_by,
+)
 
-_numba: Any = numba
-core = _numba.core
-_Array: Any = core.datamodel.models.ArrayModel
-_Library: Any = core.codegen.JITCodeLibrary
-_Lower: Any = core.lowering.Lower
-_Lowering: Any = core.typed_passes.NativeLowering
-_Compiler: Any = core.compiler.CompilerBase
+Law = Callable[..., Any]
 
-UNUSED_PASSES = {
-    "WithLift", "InlineClosureLikes", "RewriteSemanticConstants", "DeadBranchPrune",
-    "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables", "FindLiterallyCalls",
-    "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
-    "NoPythonSupportedFeatureValidation", "IRLegalization", "DumpParforDiagnostics",
+INTRINSIC = {"sqrt": "llvm.sqrt.f64", "copysign": "llvm.copysign.f64"}
+ARITHMETIC = {
+    ast.Add: ("add", "fadd", operator.add),
+    ast.Sub: ("sub", "fsub", operator.sub),
+    ast.Mult: ("mul", "fmul", operator.mul),
+    ast.Div: ("", "fdiv", operator.truediv),
+}
+COMPARISON = {
+    ast.Eq: ("eq", "oeq"), ast.NotEq: ("ne", "une"), ast.Lt: ("slt", "olt"),
+    ast.LtE: ("sle", "ole"), ast.Gt: ("sgt", "ogt"), ast.GtE: ("sge", "oge"),
 }  # fmt: skip
-"""Compiler passes for closures, array expressions and other features that laws do not use."""
-
-COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
-"""Indices into numba's representation of an array, after the members for memory management."""
-
-GC_THRESHOLDS = 100_000, 20, 100
-"""Thresholds of garbage collection during compilation, which are high because almost none of the
-millions of objects can be freed.
-"""
-
-_seen: dict[Any, Any] = {}
 
 
-def resolving_once(typing: Any) -> Any:
-    """Return a typing context that remembers the signatures of operations.
+@cache
+def _functions_in(path: str) -> dict[str, ast.FunctionDef]:
+    """Return the functions of a source file by name."""
+    tree = ast.parse(Path(path).read_text("utf-8"))
+    return {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
 
-    numba's own context tries all candidates every time. Only the compiler of laws uses this
-    context.
+
+def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
+    """Return two sets of names: the names that are read, and the names that a single statement sets
+    before all statements that read them.
     """
-    remembering = copy.copy(typing)
+    set_at: dict[str, list[Any]] = {each.arg: [((0, -1),)] for each in tree.args.args}
+    read_at: dict[str, list[Any]] = {}
 
-    def resolve(operation: Any, given: Any, named: Any) -> Any:
-        if named or not isinstance(operation, _numba.types.Function):
-            return typing.resolve_function_type(operation, given, named)
-        if (operation, given) not in _seen:
-            _seen[operation, given] = typing.resolve_function_type(operation, given, named)
-        return _seen[operation, given]
+    def visit(node: ast.AST, place: tuple[Any, ...]) -> None:
+        for field, value in ast.iter_fields(node):
+            if isinstance(value, list):
+                blocks = value and isinstance(value[0], ast.stmt)
+                for i, each in enumerate(value):
+                    if isinstance(each, ast.AST):
+                        visit(each, (*place, (id(value), i)) if blocks else place)
+            elif isinstance(value, ast.AST):
+                visit(value, place)
+            if isinstance(node, ast.Name) and field == "id":
+                stored = isinstance(node.ctx, ast.Store)
+                (set_at if stored else read_at).setdefault(node.id, []).append(place)
+        if isinstance(node, (ast.AugAssign, ast.For)):  # set again and again
+            for each in ast.walk(node.target):
+                if isinstance(each, ast.Name):
+                    set_at.setdefault(each.id, []).append(place)
+                    if isinstance(node, ast.AugAssign):
+                        read_at.setdefault(each.id, []).append(place)
 
-    remembering.resolve_function_type = resolve
-    return remembering
+    for i, statement in enumerate(tree.body):
+        visit(statement, ((0, i),))
+
+    def after(read: tuple[Any, ...], first: tuple[Any, ...]) -> bool:
+        depth = len(first) - 1
+        return (
+            len(read) > depth
+            and read[:depth] == first[:depth]
+            and read[depth][0] == first[depth][0]
+            and read[depth][1] > first[depth][1]
+        )
+
+    once = {
+        name
+        for name, places in set_at.items()
+        if len(places) == 1 and all(after(read, places[0]) for read in read_at.get(name, []))
+    }
+    return set(read_at), once
 
 
-def short_name(name: str, given: Any, **more: Any) -> str:
-    """Return a short symbol for a law.
+class Program:
+    """The instructions of a law and of all laws that it calls, each once for kinds of arguments."""
 
-    numba's own symbols contain all argument types and are pages long.
+    def __init__(self, inlined: set[Law]) -> None:
+        self.inlined = inlined
+        self.laws: dict[Any, tuple[str, Any]] = {}
+        self.texts: list[str] = []
+        self.constants: dict[tuple[float, ...], str] = {}
+        self.declared: dict[str, str] = {}
+
+    def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
+        """Return the symbol of a law for kinds of arguments, and the kind of its result."""
+        if (law, kinds) not in self.laws:
+            symbol = f'@"{law.__module__}.{law.__qualname__}.{len(self.laws)}"'
+            known: dict[str, Any] = {}
+            while True:
+                body = _Body(self, law, kinds, known)
+                if not body.widened:
+                    break
+            self.texts.append(body.text(symbol, law in self.inlined))
+            self.laws[law, kinds] = symbol, body.known.get(RESULT, NOTHING)
+        return self.laws[law, kinds]
+
+    def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
+        """Add a function with two arguments: the address of the law's arguments, and the address to
+        which it writes a result of the wanted kind.
+        """
+        given = Held(Row(None, kinds), "%given")
+        entry = Instructions(self)
+        _, result = entry.call_law(law, [entry.member(given, i) for i in range(len(kinds))])
+        if wanted != NOTHING:
+            entry.write(result, "%result", wanted)
+        body = "\n".join([*entry.reserved, *entry.lines])
+        self.texts.append(
+            f'define void @"{symbol}"(ptr %given, ptr %result) nounwind {{\n{body}\nret void\n}}'
+        )
+
+    def add_function(self, symbol: str, law: Law, task: Any) -> None:
+        """Add a function of the address of a named tuple and of a number, that returns a number."""
+        entry = Instructions(self)
+        _, result = entry.call_law(law, [Held(task, "%task"), Number(REAL, "%x")])
+        value = entry.as_kind(result, REAL).text
+        body = "\n".join([*entry.reserved, *entry.lines])
+        self.texts.append(
+            f'define double @"{symbol}"(ptr %task, double %x) nounwind {{\n{body}\n'
+            f"ret double {value}\n}}"
+        )
+
+    def declare(self, name: str, numbers: int) -> None:
+        """Declare a function of numbers that is defined elsewhere."""
+        self.declared[name] = f'declare double @"{name}"({", ".join(["double"] * numbers)})'
+
+    def constant(self, values: tuple[float, ...]) -> str:
+        """Return the symbol of a table of numbers."""
+        return self.constants.setdefault(values, f"@table.{len(self.constants)}")
+
+    def text(self) -> str:
+        """Return the whole program."""
+        tables = [
+            f"{symbol} = private constant [{len(values)} x double] "
+            f"[{', '.join(f'double {number_of(value).text}' for value in values)}]"
+            for values, symbol in self.constants.items()
+        ]
+        copy = "declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)"
+        absolute = "declare double @llvm.fabs.f64(double)"
+        return "\n".join([*tables, copy, absolute, *self.declared.values(), *self.texts])
+
+
+class Uncompilable(TypeError):
+    """Error of a function that is not a law."""
+
+
+RESULT = "return"
+
+
+class _Body(Instructions):
+    """Translation of the body of a law.
+
+    `known` are the kinds of its variables and of its result. If one is `widened` by a later
+    statement, for example from whole to real numbers, the law is translated again.
     """
-    digest = hashlib.sha256(repr(given).encode()).hexdigest()[:16]
-    return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
 
+    def __init__(
+        self, program: Program, law: Any, kinds: tuple[Any, ...], known: dict[str, Any]
+    ) -> None:
+        super().__init__(program)
+        self.law, self.known, self.widened = law, known, False
+        tree = _functions_in(law.__code__.co_filename)[law.__name__]
+        self.read_names, self.once = _bound_once(tree)
+        self.names: dict[str, Any] = {}
+        self.slots: dict[str, str] = {}
+        self.words: list[str] = []
+        self.labels = 0
+        self.loops: list[tuple[str, str]] = []
+        for i, (argument, kind) in enumerate(zip(tree.args.args, kinds, strict=True)):
+            self.take_argument(argument.arg, f"%a{i}", kind)
+        try:
+            if self.run(tree.body):
+                self.emit("ret void" if RESULT not in self.known else "unreachable")
+        except Uncompilable:
+            raise
+        except (TypeError, KeyError, AttributeError, ValueError) as failure:
+            where = f"{law.__module__}.{law.__name__}, line {self.line}"
+            raise Uncompilable(f"{where} cannot be compiled: {failure!r}") from failure
 
-class LawArray(_Array):  # type: ignore[misc]
-    """Array that is passed as its address and shape; its other properties follow from these.
+    def take_argument(self, name: str, word: str, kind: Any) -> None:
+        """Bind an argument."""
+        if isinstance(kind, Row):
+            self.words.append(f"ptr {word}")
+            value: Any = Held(kind, word)
+        elif isinstance(kind, Array):
+            shape = [f"{word}.{k}" for k in range(kind.dimensions)]
+            self.words += [f"ptr {word}", *(f"i64 {length}" for length in shape)]
+            value = ArrayView(kind, word, tuple(shape))
+        else:
+            self.words.append(f"{kind} {word}")
+            value = Number(kind, word)
+        self.bind(name, value)
 
-    Functions that numba itself compiles for laws, such as `max`, take only numbers.
-    """
+    def text(self, symbol: str, inlined: bool) -> str:
+        """Return the function."""
+        result, words = self.known.get(RESULT, NOTHING), self.words
+        if not isinstance(result, str):
+            words, result = ["ptr %result", *words], "void"
+        how = "alwaysinline nounwind" if inlined else "nounwind"
+        lines: list[str] = []
+        for line in self.lines:
+            lines += line if isinstance(line, list) else [line]
+        body = "\n".join([*self.reserved, *lines])
+        return f"define internal {result} {symbol}({', '.join(words)}) {how} {{\n{body}\n}}"
 
-    def get_argument_type(self) -> Any:
-        assert self._fe_type.layout == "C"
-        parts = self.get_value_type().elements
-        return parts[DATA], (parts[COUNT],) * self._fe_type.ndim
+    def label(self) -> str:
+        self.labels += 1
+        return f"l{self.labels}"
 
-    def as_argument(self, builder: Any, value: Any) -> Any:
-        shape = [builder.extract_value(value, [SHAPE, k]) for k in range(self._fe_type.ndim)]
-        return builder.extract_value(value, [DATA]), tuple(shape)
+    def start(self, label: str) -> None:
+        self.emit(f"{label}:")
 
-    def from_argument(self, builder: Any, value: Any) -> Any:
-        data, shape = value
-        item = self._dmm[self._fe_type.dtype].get_data_type()
-        size = core.cgutils.sizeof(builder, item.as_pointer())
-        count, array = size.type(1), self.get_value_type()(None)
-        for k in reversed(range(len(shape))):
-            array = builder.insert_value(array, builder.mul(count, size), [STRIDES, k])
-            array = builder.insert_value(array, shape[k], [SHAPE, k])
-            count = builder.mul(count, shape[k])
-        for place, part in ((COUNT, count), (SIZE, size), (DATA, data)):
-            array = builder.insert_value(array, part, [place])
-        return array
+    def jump(self, label: str) -> None:
+        self.emit(f"br label %{label}")
 
+    def branch(self, test: Number, yes: str, no: str) -> None:
+        self.emit(f"br i1 {test.text}, label %{yes}, label %{no}")
 
-class LinkedLibrary(_Library):  # type: ignore[misc]
-    """Library of a law that is linked into the laws called from Python."""
+    def widen(self, name: str, kind: Any) -> Any:
+        """Return the kind of a variable after another value was set."""
+        known = self.known.get(name)
+        if known is None:
+            self.known[name] = kind
+        elif known != kind:
+            wider = common(known, kind)
+            self.widened |= wider != known
+            self.known[name] = wider
+        return self.known[name]
 
-    def finalize(self) -> None:
-        """Generate no machine code, because linked laws are compiled with their callers."""
-        self._finalize_dynamic_globals()
-        self._finalized = True
+    def bind(self, name: str, value: Any) -> None:
+        """Set a variable."""
+        if name not in self.read_names:
+            return
+        if name in self.once:
+            self.names[name] = self.kept(value)
+            return
+        value, kind = self.kept(value), self.widen(name, value.kind)
+        if name not in self.slots:
+            self.slots[name] = self.reserve(kind)
+        self.write(value, self.slots[name], kind)
 
+    # statements; each returns whether the next statement can be reached
 
-class LawLower(_Lower):  # type: ignore[misc]
-    """Translation of a law to LLVM instructions."""
-
-    def _find_singly_assigned_variable(self) -> None:
-        """Treat a variable that is assigned once, before all its uses, as a value."""
-        blocks = self.func_ir.blocks
-        before = core.analysis.compute_cfg_from_blocks(blocks).dominators()
-        assigned, used = defaultdict(list), defaultdict(set)
-        for place, block in blocks.items():
-            for statement in block.body:
-                if isinstance(statement, core.ir.Assign):
-                    assigned[statement.target.name].append(place)
-                for variable in statement.list_vars():
-                    used[variable.name].add(place)
-        self._singly_assigned_vars = {
-            name
-            for name, [first, *others] in assigned.items()
-            if not others and all(first in before[use] and first <= use for use in used[name])
-        }
-        self._blk_local_varmap: dict[str, Any] = {}
-
-
-@core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-class LawLowering(_Lowering):  # type: ignore[misc]
-    """Last compiler pass, which generates machine code only for laws that Python calls."""
-
-    _name = "law_lowering"
-    lowering_class = LawLower
-
-    def run_pass(self, state: Any) -> bool:
-        if not (state.flags.no_cpython_wrapper and state.flags.no_cfunc_wrapper):
-            return bool(super().run_pass(state))
-        target, name = state.targetctx, state.func_id.func_qualname
-        state.library = LinkedLibrary(target.codegen(), name)
-        state.flags.no_compile = True
-        super().run_pass(state)
-        lowered = state["cr"]
-        module = lowered.fndesc.lookup_module()
-        libraries = dict.fromkeys([state.library, *state.library._linking_libraries])
-        key = _numba._dynfunc.make_function(module, name, "", 0, lowered.env, (state.library,))
-        target.insert_user_function(key, lowered.fndesc, [*libraries])
-        state["cr"] = lowered._replace(cfunc=key)
+    def run(self, statements: list[Any]) -> bool:
+        """Translate statements."""
+        for statement in statements:
+            self.line = statement.lineno
+            if not getattr(self, f"do_{type(statement).__name__.lower()}")(statement):
+                return False
         return True
 
+    def do_expr(self, node: Any) -> bool:
+        if isinstance(node.value, ast.Call):
+            self.of(node.value)
+        return True
 
-_arrays = core.datamodel.manager.DataModelManager({_numba.types.Array: LawArray})
-core.registry.cpu_target.target_context.refresh()
-OWN_ATTRIBUTES: dict[str, Any] = {
-    "data_model_manager": _arrays.chain(core.datamodel.default_manager),
-    "mangler": short_name,
-    "cached_internal_func": {},
-    "refresh": lambda: None,
-}
-"""Attributes that replace those of numba's own context, which repeatedly searches for new
-operations.
-"""
+    def do_assert(self, node: Any) -> bool:
+        return True
+
+    def do_pass(self, node: Any) -> bool:
+        return True
+
+    def do_assign(self, node: Any) -> bool:
+        value = self.of(node.value)
+        if isinstance(node.targets[0], ast.Tuple):
+            value = self.kept(value)
+        for target in node.targets:
+            self.put(target, value)
+        return True
+
+    def do_annassign(self, node: Any) -> bool:
+        self.put(node.target, self.of(node.value))
+        return True
+
+    def do_augassign(self, node: Any) -> bool:
+        read = ast.copy_location(_reading(node.target), node)
+        value = self.of(ast.BinOp(read, node.op, node.value))
+        self.put(node.target, value)
+        return True
+
+    def put(self, target: Any, value: Any) -> None:
+        """Set a variable, an element of a sequence, or a tuple of both."""
+        if isinstance(target, ast.Name):
+            self.bind(target.id, value)
+        elif isinstance(target, ast.Tuple):
+            for i, each in enumerate(target.elts):
+                self.put(each, self.member(value, i))
+        else:
+            array, address = self.element(target)
+            self.write(value, address, array.item)
+
+    def do_return(self, node: Any) -> bool:
+        if node.value is None:
+            self.emit("ret void")
+            return False
+        value = self.of(node.value)
+        kind = self.widen(RESULT, value.kind)
+        if isinstance(kind, str):
+            self.emit(f"ret {kind} {self.as_kind(value, kind).text}")
+        else:
+            self.write(value, "%result", kind)
+            self.emit("ret void")
+        return False
+
+    def do_if(self, node: Any) -> bool:
+        yes, no, end = self.label(), self.label(), self.label()
+        self.branch(self.test(node.test), yes, no if node.orelse else end)
+        self.start(yes)
+        reached = self.run(node.body)
+        if reached:
+            self.jump(end)
+        if node.orelse:
+            self.start(no)
+            otherwise = self.run(node.orelse)
+            if otherwise:
+                self.jump(end)
+            reached |= otherwise
+        else:
+            reached = True
+        if reached:
+            self.start(end)
+        return reached
+
+    def do_while(self, node: Any) -> bool:
+        again, body, end = self.label(), self.label(), self.label()
+        self.jump(again)
+        self.start(again)
+        forever = isinstance(node.test, ast.Constant)
+        if forever:
+            self.jump(body)
+        else:
+            self.branch(self.test(node.test), body, end)
+        self.start(body)
+        if self.loop(node.body, again, end):
+            self.jump(again)
+        left = not forever or any(isinstance(each, ast.Break) for each in ast.walk(node))
+        if left:
+            self.start(end)
+        return left
+
+    def loop(self, body: list[Any], again: str, end: str) -> bool:
+        """Translate the body of a loop."""
+        self.loops.append((again, end))
+        reached = self.run(body)
+        self.loops.pop()
+        return reached
+
+    def do_for(self, node: Any) -> bool:
+        end = self.label()
+        if isinstance(node.iter, ast.Tuple):
+            for each in node.iter.elts:
+                following = self.label()
+                self.put(node.target, self.of(each))
+                if self.loop(node.body, following, end):
+                    self.jump(following)
+                self.start(following)
+            self.jump(end)
+            self.start(end)
+            return True
+        given = [self.as_kind(self.of(each), WHOLE) for each in node.iter.args]
+        first, last, step = number_of(0), given[-1], number_of(1)
+        if len(given) > 1:
+            first, last = given[:2]
+        if len(given) > 2:
+            step = given[2]
+        test, body, following = self.label(), self.label(), self.label()
+        counter = self.reserve(WHOLE)
+        self.emit(f"store i64 {first.text}, ptr {counter}")
+        self.jump(test)
+        self.start(test)
+        here = self.value(WHOLE, f"load i64, ptr {counter}")
+        order = "slt" if step.known > 0 else "sgt"
+        self.branch(self.value(TRUTH, f"icmp {order} i64 {here.text}, {last.text}"), body, end)
+        self.start(body)
+        self.put(node.target, here)
+        if self.loop(node.body, following, end):
+            self.jump(following)
+        self.start(following)
+        after = self.value(WHOLE, f"add nsw i64 {here.text}, {step.text}")
+        self.emit(f"store i64 {after.text}, ptr {counter}")
+        self.jump(test)
+        self.start(end)
+        return True
+
+    def do_break(self, node: Any) -> bool:
+        self.jump(self.loops[-1][1])
+        return False
+
+    def do_continue(self, node: Any) -> bool:
+        self.jump(self.loops[-1][0])
+        return False
+
+    # expressions
+
+    def of(self, node: Any) -> Any:
+        """Translate an expression."""
+        return getattr(self, f"of_{type(node).__name__.lower()}")(node)
+
+    def number(self, node: Any) -> Number:
+        """Translate an expression whose value is a number."""
+        value = self.of(node)
+        if not isinstance(value, Number):
+            raise TypeError(f"{ast.unparse(node)} is not a number")
+        return value
+
+    def test(self, node: Any) -> Number:
+        """Translate a condition."""
+        return self.truth(self.number(node))
+
+    def truth(self, value: Number) -> Number:
+        """Return whether a number is not zero."""
+        if value.kind == TRUTH:
+            return value
+        if value.known is not None:
+            return number_of(bool(value.known))
+        zero = "icmp ne i64 {}, 0" if value.kind == WHOLE else "fcmp une double {}, 0.0"
+        return self.value(TRUTH, zero.format(value.text))
+
+    def of_constant(self, node: Any) -> Any:
+        return row_of(()) if node.value is None else number_of(node.value)
+
+    def of_name(self, node: Any) -> Any:
+        if node.id in self.names:
+            return self.names[node.id]
+        if node.id in self.slots:
+            return self.read(self.known[node.id], self.slots[node.id], True)
+        found = self.law.__globals__.get(node.id, getattr(builtins, node.id, self))
+        if found is self:
+            raise TypeError(f"{node.id} has no value")
+        return self.given(found)
+
+    def given(self, value: Any) -> Any:
+        """Return a value that is known before the law runs."""
+        if isinstance(value, (bool, int, float)):
+            return number_of(value)
+        if isinstance(value, tuple):
+            if type(value) is tuple and all(isinstance(each, float) for each in value):
+                table = self.program.constant(value)
+                return ArrayView(Array(REAL, 1), table, (str(len(value)),))
+            named = type(value) if hasattr(value, "_fields") else None
+            wanted = wanted_by(named) if named else [None] * len(value)
+            members = [self.given(each) for each in value]
+            pairs = zip(members, wanted, strict=True)
+            return row_of([self.as_kind(a, b) if b else a for a, b in pairs], named)
+        return Global(value)
+
+    def of_attribute(self, node: Any) -> Any:
+        owner = self.of(node.value)
+        if isinstance(owner, Global):
+            if not isinstance(owner.value, ModuleType):
+                raise TypeError(f"{ast.unparse(node)} has no value")
+            return self.given(getattr(owner.value, node.attr))
+        if isinstance(owner.kind, Array):
+            shape = self.viewed(owner).shape
+            if node.attr == "shape":
+                return row_of(Number(WHOLE, length) for length in shape)
+            if node.attr != "size" or len(shape) != 1:
+                raise TypeError(f"a sequence has no {node.attr}")
+            return Number(WHOLE, shape[0])
+        return self.member(owner, owner.kind.named._fields.index(node.attr))
+
+    def of_subscript(self, node: Any) -> Any:
+        owner = self.of(node.value)
+        if isinstance(owner.kind, Row):
+            return self.member(owner, self.number(node.slice).known)
+        if isinstance(node.slice, ast.Slice):
+            return self.part_of(self.viewed(owner), node.slice)
+        array, address = self.element(node, owner)
+        if array.dimensions == 0:
+            return self.read(array.item, address)
+        view = self.viewed(owner)
+        shape = view.shape[len(view.shape) - array.dimensions :]
+        return ArrayView(array, address, shape)
+
+    def element(self, node: Any, owner: Any = None) -> tuple[Array, str]:
+        """Return the kind and the address of an element, or of a row of elements."""
+        view = self.viewed(owner or self.of(node.value))
+        indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        unit, address = size_of(view.kind.item), view.data
+        for k, each in enumerate(indices):
+            index = self.as_kind(self.number(each), WHOLE)
+            place = index.text
+            if index.known is not None and index.known < 0:
+                place = self.value(WHOLE, f"add nsw i64 {view.shape[k]}, {place}").text
+            for length in view.shape[k + 1 :]:
+                if place != "0":
+                    place = self.value(WHOLE, f"mul nsw i64 {place}, {length}").text
+            address = self.at(address, place, unit)
+        left = view.kind.dimensions - len(indices)
+        return Array(view.kind.item, left), address
+
+    def part_of(self, view: ArrayView, bounds: Any) -> ArrayView:
+        """Return a part of a sequence of one dimension."""
+        first = number_of(0) if bounds.lower is None else self.number(bounds.lower)
+        last = Number(WHOLE, view.shape[0])
+        if bounds.upper is not None:
+            last = self.lesser(self.number(bounds.upper), last, "slt")
+        data = self.at(view.data, first.text, size_of(view.kind.item))
+        length = self.value(WHOLE, f"sub nsw i64 {last.text}, {first.text}")
+        return ArrayView(view.kind, data, (length.text, *view.shape[1:]))
+
+    def of_tuple(self, node: Any) -> Made:
+        return row_of(self.of(each) for each in node.elts)
+
+    def of_unaryop(self, node: Any) -> Number:
+        if isinstance(node.op, ast.Not):
+            value = self.test(node.operand)
+            return self.value(TRUTH, f"xor i1 {value.text}, true")
+        value = self.number(node.operand)
+        if value.known is not None:
+            return number_of(-value.known)
+        if value.kind == REAL:
+            return self.value(REAL, f"fneg double {value.text}")
+        return self.value(WHOLE, f"sub nsw i64 0, {self.as_kind(value, WHOLE).text}")
+
+    def of_binop(self, node: Any) -> Number:
+        left, right = self.number(node.left), self.number(node.right)
+        if isinstance(node.op, ast.BitOr) and left.kind == right.kind == TRUTH:
+            return self.value(TRUTH, f"or i1 {left.text}, {right.text}")
+        if isinstance(node.op, ast.FloorDiv) and left.kind == right.kind == WHOLE:
+            if right.known is None or right.known & (right.known - 1):
+                raise TypeError("// is by a power of two only")
+            shift = right.known.bit_length() - 1
+            return self.value(WHOLE, f"ashr i64 {left.text}, {shift}")
+        whole, real, known = ARITHMETIC[type(node.op)]
+        if left.known is not None and right.known is not None:
+            return number_of(known(left.known, right.known))
+        kind = common(common(left.kind, right.kind), WHOLE if whole else REAL)
+        left, right = self.as_kind(left, kind), self.as_kind(right, kind)
+        how = real if kind == REAL else f"{whole} nsw"
+        return self.value(kind, f"{how} {kind} {left.text}, {right.text}")
+
+    def of_boolop(self, node: Any) -> Number:
+        stop = isinstance(node.op, ast.Or)
+        slot, end = self.reserve(TRUTH), self.label()
+        for i, each in enumerate(node.values):
+            value = self.test(each)
+            self.write(value, slot, TRUTH)
+            following = end if i == len(node.values) - 1 else self.label()
+            if following == end:
+                self.jump(end)
+            elif stop:
+                self.branch(value, end, following)
+            else:
+                self.branch(value, following, end)
+            self.start(following)
+        found: Number = self.read(TRUTH, slot)
+        return found
+
+    def of_compare(self, node: Any) -> Number:
+        left, found = self.number(node.left), None
+        for op, each in zip(node.ops, node.comparators, strict=True):
+            if isinstance(op, ast.In):
+                tests = [self.compared(ast.Eq, left, self.number(one)) for one in each.elts]
+                return self.joined("or", tests)
+            right = self.number(each)
+            test = self.compared(type(op), left, right)
+            found = test if found is None else self.joined("and", [found, test])
+            left = right
+        assert found is not None
+        return found
+
+    def joined(self, how: str, tests: list[Number]) -> Number:
+        """Combine conditions."""
+        found, *others = tests
+        for each in others:
+            found = self.value(TRUTH, f"{how} i1 {found.text}, {each.text}")
+        return found
+
+    def compared(self, op: Any, left: Number, right: Number) -> Number:
+        """Compare two numbers."""
+        kind = common(common(left.kind, right.kind), WHOLE)
+        left, right = self.as_kind(left, kind), self.as_kind(right, kind)
+        whole, real = COMPARISON[op]
+        how = f"fcmp {real}" if kind == REAL else f"icmp {whole}"
+        return self.value(TRUTH, f"{how} {kind} {left.text}, {right.text}")
+
+    def of_ifexp(self, node: Any) -> Any:
+        yes, no, end = self.label(), self.label(), self.label()
+        self.branch(self.test(node.test), yes, no)
+        values: list[Any] = []
+        later: list[list[str]] = []
+        for label, branch in ((yes, node.body), (no, node.orelse)):
+            self.start(label)
+            values.append(self.of(branch))
+            later.append([])
+            self.lines.append(later[-1])
+            self.jump(end)
+        self.start(end)
+        kind = common(values[0].kind, values[1].kind)
+        slot, lines = self.reserve(kind), self.lines
+        for value, own in zip(values, later, strict=True):
+            self.lines = own
+            self.write(value, slot, kind)
+        self.lines = lines
+        return self.read(kind, slot)
+
+    def of_call(self, node: Any) -> Any:
+        called = self.of(node.func)
+        given = [self.of(each) for each in node.args]
+        if not isinstance(called, Global):
+            task, x = self.address_of(given[0]), self.as_kind(given[1], REAL)
+            return self.value(REAL, f"call double {called.text}(ptr {task}, double {x.text})")
+        function = called.value
+        if isinstance(function, FunctionType):
+            if function.__name__ == "set_row":
+                array = self.viewed(given[0])
+                address = self.at(array.data, given[1].text, size_of(array.kind.item))
+                self.write(given[2], address, array.kind.item)
+                return row_of(())
+            return self.call_law(function, given)[1]
+        if hasattr(function, "_fields"):
+            pairs = zip(given, wanted_by(function), strict=True)
+            return row_of([self.as_kind(a, b) if b else a for a, b in pairs], function)
+        called_so = getattr(self, f"call_{function.__name__}", self.call_math)
+        return called_so(function, *given)
+
+    def call_math(self, function: Any, *given: Any) -> Number:
+        """Call a function of `math`."""
+        name = function.__name__
+        symbol = INTRINSIC.get(name, f"calm.{name}")
+        if function is not getattr(math, name, None) or name not in (*INTRINSIC, *FROM_MATH):
+            raise TypeError(f"laws do not call {name}")
+        self.program.declare(symbol, len(given))
+        numbers = [f"double {self.as_kind(each, REAL).text}" for each in given]
+        return self.value(REAL, f'call double @"{symbol}"({", ".join(numbers)})')
+
+    def call_len(self, _: Any, array: Any) -> Number:
+        if isinstance(array.kind, Row):
+            return number_of(len(array.kind.members))
+        return Number(WHOLE, self.viewed(array).shape[0])
+
+    def call_abs(self, _: Any, value: Number) -> Number:
+        if value.kind == REAL:
+            return self.value(REAL, f"call double @llvm.fabs.f64(double {value.text})")
+        return self.lesser(self.value(WHOLE, f"sub nsw i64 0, {value.text}"), value, "sgt")
+
+    def lesser(self, one: Number, other: Number, order: str) -> Number:
+        """Return the number that comes first in an order."""
+        test = self.value(TRUTH, f"icmp {order} i64 {one.text}, {other.text}")
+        return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
+
+    def call_max(self, function: Any, *given: Any) -> Number:
+        """Return the greatest or least number; equal numbers and NaN are treated as by CPython."""
+        kind = given[0].kind
+        for each in given:
+            kind = common(kind, each.kind)
+        numbers: list[Number] = [self.as_kind(each, kind) for each in given]
+        best, *others = numbers
+        op = ast.Gt if function is max else ast.Lt
+        for each in others:
+            test = self.compared(op, each, best)
+            best = self.value(
+                kind, f"select i1 {test.text}, {kind} {each.text}, {kind} {best.text}"
+            )
+        return best
+
+    call_min = call_max
+
+    def call_int(self, _: Any, value: Number) -> Number:
+        if value.kind == REAL:
+            return self.value(WHOLE, f"fptosi double {value.text} to i64")
+        found: Number = self.as_kind(value, WHOLE)
+        return found
+
+    def call_float(self, _: Any, value: Number) -> Number:
+        found: Number = self.as_kind(value, REAL)
+        return found
+
+    def call_bool(self, _: Any, value: Number) -> Number:
+        return self.truth(value)
+
+    def call_isnan(self, _: Any, value: Number) -> Number:
+        return self.value(TRUTH, f"fcmp uno double {value.text}, {value.text}")
+
+    def call_isfinite(self, function: Any, value: Number) -> Number:
+        size = self.call_abs(function, value)
+        return self.value(TRUTH, f"fcmp olt double {size.text}, {number_of(math.inf).text}")
+
+    def call_degrees(self, _: Any, value: Number) -> Number:
+        return self.value(REAL, f"fmul double {value.text}, {number_of(180.0 / math.pi).text}")
 
 
-class LawCompiler(_Compiler):  # type: ignore[misc]
-    """Compiler class for laws."""
-
-    def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-        super().__init__(resolving_once(typing), target.subtarget(**OWN_ATTRIBUTES), *others)
-
-    def compile_extra(self, law: Any) -> Any:
-        """Compile a law and its callees."""
-        collected = gc.get_threshold()
-        gc.set_threshold(*GC_THRESHOLDS)
-        try:
-            return super().compile_extra(law)
-        finally:
-            gc.set_threshold(*collected)
-
-    def define_pipelines(self) -> list[Any]:
-        """Return numba's passes, without those that laws do not need."""
-        pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
-        pipeline.passes = [
-            (LawLowering if each is _Lowering else each, about)
-            for each, about in pipeline.passes
-            if each.__name__ not in UNUSED_PASSES
-        ]
-        pipeline.finalize()
-        return [pipeline]
+def _reading(target: Any) -> Any:
+    """Return the expression that reads a variable or an element."""
+    if isinstance(target, ast.Name):
+        return ast.Name(target.id, ast.Load())
+    return ast.Subscript(target.value, target.slice, ast.Load())

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.compiled import record_type
+from calm.physics.law_kinds import record_type
 from calm.physics.line import Floats, Line, Water, once_per_input
 from calm.physics.referee import Moored, RefereeBody, RefereeShape, element_loads, strumming
 from calm.physics.stretch import Knot
@@ -37,7 +37,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
     law = line.strumming
 
     def taken(column: Floats) -> Any:
-        return np.array(column) if compiled else column.tolist()
+        return np.ascontiguousarray(column) if compiled else column.tolist()
 
     records: Any = np.array(knots, record_type(Knot))
     return Moored(

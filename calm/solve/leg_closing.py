@@ -5,7 +5,7 @@ enough; otherwise it is computed anew. A net with a single unknown is closed by 
 bisection of a bracket if these do not converge.
 """
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
@@ -377,8 +377,3 @@ def do_task(job: NetTask, _: float) -> float:
     if job.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
     return float(failure)
-
-
-def do_by_address(ask: Callable[[NetTask, float], float], job: NetTask) -> float:
-    """Call the compiled form of `do_task` by its address."""
-    return ask(job, 0.0)

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import outcome, record_type
+from calm.physics.compiled import outcome
 from calm.physics.hull import HullRow, SurfaceFloat
+from calm.physics.law_kinds import record_type
 from calm.physics.line import Bed, Floats, Line, Water, off_bed
 from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot

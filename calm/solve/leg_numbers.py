@@ -178,18 +178,18 @@ class Marching(NamedTuple):
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     """Convert a leg to the form of a single-line problem."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
-    course, work = lines.course, lines.work
+    courses, works = lines.course, lines.work
     course = Course(
-        course.stages[i][: leg.stages], course.loads[i], course.cables[i][: leg.cables],
-        course.knots[i], with_beat(course.vibration, net.state[i][FREQUENCY]), leg.landing,
+        courses.stages[i][: leg.stages], courses.loads[i], courses.cables[i][: leg.cables],
+        courses.knots[i], with_beat(courses.vibration, net.state[i][FREQUENCY]), leg.landing,
     )  # fmt: skip
     afloat = SurfaceFloat(
         own.form, own.height, own.area, own.weight, own.lift, own.surface_drag, own.wind_east,
         own.wind_north, own.wind_area, own.wind_cd,
     )  # fmt: skip
     work = SearchArrays(
-        work.left[i], work.chosen[i], work.counts[i], work.records[i],
-        work.shares[i], work.samples[i], work.even[i], work.elements[i], work.found[i],
+        works.left[i], works.chosen[i], works.counts[i], works.records[i],
+        works.shares[i], works.samples[i], works.even[i], works.elements[i], works.found[i],
     )  # fmt: skip
     return LineProblem(
         course, sea, lines.loads[i], net.first[i], lines.surfacing[i][: leg.surfacing], afloat,

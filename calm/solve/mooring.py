@@ -6,7 +6,7 @@ first line and starts at its root. Two or three marches close it, and difference
 are derivatives.
 """
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -109,8 +109,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 def find_compiled(search: Search, referee: Referee) -> FoundShape:
     """Run `find_shape` in compiled code."""
     task = SearchTask(search, referee)
-    find = by_address(run_search, task)
-    outcome(call_search, True, find, task)
+    by_address(run_search, task)(task, 0.0)
     return read_found(list(search.problem.work.found))
 
 
@@ -156,11 +155,6 @@ def run_search(task: SearchTask, first: float) -> float:
     found = find_shape(task.search, task.referee)
     write_found(found, task.search.problem.work.found)
     return float(found.closed.ending)
-
-
-def call_search(find: Callable[[SearchTask, float], float], task: SearchTask) -> float:
-    """Call a compiled search by its address."""
-    return find(task, 0.0)
 
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)

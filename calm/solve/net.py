@@ -15,12 +15,12 @@ from typing import Any, TypeVar
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import by_address, outcome
+from calm.physics.compiled import by_address
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.profile import profile_of
 from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
-from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
+from calm.solve.leg_closing import NetTask, copy_values, do_task
 from calm.solve.leg_layout import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.leg_numbers import Marching
 from calm.solve.mooring import SLACK_LINE_CURRENT, stirred
@@ -118,11 +118,8 @@ class NetSearch:
         """Run a task (see `NetTask`), and return its outcome and the resulting unknowns."""
         own: Any = x.copy() if self.compiled else x.tolist()
         job = NetTask(task, self.net, own, how, enough, False)
-        if self.compiled:
-            ask = by_address(do_task, job)
-            ending = outcome(do_by_address, True, ask, job)
-        else:
-            ending = do_task(job, 0.0)
+        run = by_address(do_task, job) if self.compiled else do_task
+        ending = run(job, 0.0)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from calm.physics.compiled import record_type
 from calm.physics.hull import UNKNOWN_FLOAT, HullRow, SurfaceFloat
+from calm.physics.law_kinds import record_type
 from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Sea, profile_of

@@ -1,4 +1,4 @@
-"""Choice between the interpreted solver and the solver compiled by numba.
+"""Choice between the interpreted solver and the solver compiled by LLVM.
 
 Both give the same digits. Compiled code is loaded from the cache as soon as this saves time. If the
 cache has none, a child process compiles the solver as soon as compilation pays. Meanwhile this
@@ -20,11 +20,11 @@ from calm.physics.compiled import cache_folder, is_cached
 from calm.physics.line import Line
 from calm.solve.solution import Settings
 
-LOAD_FROM = 60
+LOAD_FROM = 40
 """Number of lines above which it pays to load compiled code from the cache."""
 COMPILE_FROM = 1200
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
-UNANNOUNCED = 250
+UNANNOUNCED = 100
 """Number of unannounced lines above which many more are expected."""
 TYPICAL_PARTS = 8
 """Number of pieces and clamps of an ordinary line. Computing time is in proportion to this number.
@@ -37,7 +37,7 @@ class CompiledPart(Enum):
     Its value is the name of the function that is compiled last.
     """
 
-    LINE = "call_search"
+    LINE = "run_search"
     NEARBY = "audited"
     LEGS = "do_task"
 
@@ -91,7 +91,7 @@ def runs_compiled(
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
-        return os.environ.get("CALM_COMPILED") == "always" and _has_numba()
+        return os.environ.get("CALM_COMPILED") == "always" and _has_llvm()
     if line is not None:
         pieces = len(line.length) + len(line.clamp_piece)
         count_lines(1.0, solver, max(pieces / TYPICAL_PARTS, 1.0))
@@ -112,13 +112,18 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
         pace.consider()
 
 
+def may_compile() -> bool:
+    """Return whether a function that is compiled at once, for all its uses, may be compiled."""
+    return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
+
+
 def _may_choose() -> bool:
-    return os.environ.get("CALM_COMPILED") not in ("never", "always") and _has_numba()
+    return os.environ.get("CALM_COMPILED") not in ("never", "always") and _has_llvm()
 
 
 @cache
-def _has_numba() -> bool:
-    return find_spec("numba") is not None
+def _has_llvm() -> bool:
+    return find_spec("llvmlite") is not None
 
 
 def _compile_ahead(solver: CompiledPart) -> "Popen[bytes] | None":

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-HEAVY = {"scipy", "pint", "xarray", "matplotlib", "pandas", "numba", "textual", "gsw"}
+HEAVY = {"scipy", "pint", "xarray", "matplotlib", "pandas", "llvmlite", "textual", "gsw"}
 
 COMMAND = """
 import contextlib, io, json, sys

@@ -246,7 +246,7 @@ def test_signals_end_it_with_nothing_left(write_mooring, folder, number):
 def test_without_a_folder_to_write_it_works_and_says_so(
     calm_process, write_mooring, record, folder
 ):
-    environment = {**os.environ, "NUMBA_CACHE_DIR": "/proc/none"}
+    environment = {**os.environ, "CALM_CACHE_DIR": "/proc/none"}
     done = calm_process(
         "batch", write_mooring(), "--currents", record, "-o", "r.nc",
         env=environment, timeout=300,

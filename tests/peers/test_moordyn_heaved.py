@@ -15,7 +15,7 @@ from calm.exchange.exporting import export_file
 from calm.records.sea_states import spectrum_of
 from calm.waves.fatigue import greatest_of
 from calm.waves.lumped_line import lumped_line
-from calm.waves.response import Waves, _axes, _deviations, _linearised, _pull, _solved
+from calm.waves.response import _axes, _deviations, _linearised, _pull, _solved, _undamped
 
 pytestmark = pytest.mark.peers
 
@@ -109,13 +109,12 @@ def in_frequency(text, omega, amplitude):
     held[:, 0, 0] = held[:, 1, 1] = -(omega**2) * 1350.0  # kg, of a float and the water beside it
     held[:, 2, 2] = 1e10
     top = held, np.zeros((len(omega), 3))
-    waves = Waves(omega, 90.0, mooring.water.depth, 1025.0, 9.80665)
     water = np.zeros((len(omega), len(line.mass), 3), complex)
     push = water.copy()
     push[:, 0, 2] = 1e10 * amplitude
     flow, weight = np.full((len(line.mass), 3), 0.01), np.full(len(omega), 0.5)
     for _ in range(30):
-        motion = _solved(line, top, waves, water, push, _linearised(line, None, flow))
+        motion = _solved(_undamped(line), top, omega, water, push, _linearised(line, None, flow))
         found = _deviations(_axes(line), water - 1j * omega[:, None, None] * motion, weight)
         flow = flow + 0.5 * (found - flow)
     depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])

@@ -123,8 +123,8 @@ def test_settings_may_settle_it(started, monkeypatch, compiled) -> None:
     assert runs_compiled(Settings(compiled=compiled)) is compiled
 
 
-def test_without_numba_nothing_is_compiled(started, monkeypatch) -> None:
-    monkeypatch.setattr(two_speeds, "_has_numba", lambda: False)
+def test_without_llvm_nothing_is_compiled(started, monkeypatch) -> None:
+    monkeypatch.setattr(two_speeds, "_has_llvm", lambda: False)
     expect_many(1e9)
     assert not runs_compiled(LEFT_OPEN)
     assert not started
@@ -133,11 +133,11 @@ def test_without_numba_nothing_is_compiled(started, monkeypatch) -> None:
 @pytest.mark.thorough
 @pytest.mark.parametrize("solver", CompiledPart, ids=lambda each: each.name.lower())
 def test_the_child_leaves_in_the_cache_what_the_solver_loads(monkeypatch, tmp_path, solver) -> None:
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "CALM_COMPILED": "always"}
+    environment = {**os.environ, "CALM_CACHE_DIR": str(tmp_path), "CALM_COMPILED": "always"}
     command = [sys.executable, "-m", "calm.solve.compile_ahead", solver.name]
     subprocess.run(command, env=environment, check=True)
     two_speeds.cache_folder.cache_clear()
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("CALM_CACHE_DIR", str(tmp_path))
     try:
         assert two_speeds.is_cached(solver.value)
     finally:
