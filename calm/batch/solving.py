@@ -157,7 +157,7 @@ def solve_rows(
             if lies_on_seabed(problem, arrays):
                 endings[case] = LIES_ON_SEABED
             measure(problem, referee, arrays, results, case)
-            if results.slopes.size > 0:
+            if results.slopes.shape[1] > 0:
                 own = Search(search.miss, problem)
                 measure_slopes(find, own, referee, arrays, depth, u, v, w, results.slopes, case)
 

@@ -22,7 +22,7 @@ from calm.solve.solution import Settings
 
 LOAD_FROM = 40
 """Number of lines above which it pays to load compiled code from the cache."""
-COMPILE_FROM = 1200
+COMPILE_FROM = 400
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
 UNANNOUNCED = 100
 """Number of unannounced lines above which many more are expected."""
