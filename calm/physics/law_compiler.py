@@ -239,17 +239,17 @@ class _Body(Instructions):
         body = "\n".join([*self.reserved, *lines])
         return f"define internal {result} {symbol}({', '.join(words)}) {how} {{\n{body}\n}}"
 
-    def label(self) -> str:
+    def _label(self) -> str:
         self.labels += 1
         return f"l{self.labels}"
 
-    def start(self, label: str) -> None:
+    def _start(self, label: str) -> None:
         self.emit(f"{label}:")
 
-    def jump(self, label: str) -> None:
+    def _jump(self, label: str) -> None:
         self.emit(f"br label %{label}")
 
-    def branch(self, test: Number, yes: str, no: str) -> None:
+    def _branch(self, test: Number, yes: str, no: str) -> None:
         self.emit(f"br i1 {test.text}, label %{yes}, label %{no}")
 
     def widen(self, name: str, kind: Any) -> Any:
@@ -281,22 +281,22 @@ class _Body(Instructions):
         """Translate statements."""
         for statement in statements:
             self.line = statement.lineno
-            if not getattr(self, f"do_{type(statement).__name__.lower()}")(statement):
+            if not getattr(self, f"_do_{type(statement).__name__.lower()}")(statement):
                 return False
         return True
 
-    def do_expr(self, node: Any) -> bool:
+    def _do_expr(self, node: Any) -> bool:
         if isinstance(node.value, ast.Call):
             self.of(node.value)
         return True
 
-    def do_assert(self, node: Any) -> bool:
+    def _do_assert(self, node: Any) -> bool:
         return True
 
-    def do_pass(self, node: Any) -> bool:
+    def _do_pass(self, node: Any) -> bool:
         return True
 
-    def do_assign(self, node: Any) -> bool:
+    def _do_assign(self, node: Any) -> bool:
         value = self.of(node.value)
         if isinstance(node.targets[0], ast.Tuple):
             value = self.kept(value)
@@ -304,11 +304,11 @@ class _Body(Instructions):
             self.put(target, value)
         return True
 
-    def do_annassign(self, node: Any) -> bool:
+    def _do_annassign(self, node: Any) -> bool:
         self.put(node.target, self.of(node.value))
         return True
 
-    def do_augassign(self, node: Any) -> bool:
+    def _do_augassign(self, node: Any) -> bool:
         read = ast.copy_location(_reading(node.target), node)
         value = self.of(ast.BinOp(read, node.op, node.value))
         self.put(node.target, value)
@@ -325,7 +325,7 @@ class _Body(Instructions):
             array, address = self.element(target)
             self.write(value, address, array.item)
 
-    def do_return(self, node: Any) -> bool:
+    def _do_return(self, node: Any) -> bool:
         if node.value is None:
             self.emit("ret void")
             return False
@@ -338,40 +338,40 @@ class _Body(Instructions):
             self.emit("ret void")
         return False
 
-    def do_if(self, node: Any) -> bool:
-        yes, no, end = self.label(), self.label(), self.label()
-        self.branch(self.test(node.test), yes, no if node.orelse else end)
-        self.start(yes)
+    def _do_if(self, node: Any) -> bool:
+        yes, no, end = self._label(), self._label(), self._label()
+        self._branch(self.test(node.test), yes, no if node.orelse else end)
+        self._start(yes)
         reached = self.run(node.body)
         if reached:
-            self.jump(end)
+            self._jump(end)
         if node.orelse:
-            self.start(no)
+            self._start(no)
             otherwise = self.run(node.orelse)
             if otherwise:
-                self.jump(end)
+                self._jump(end)
             reached |= otherwise
         else:
             reached = True
         if reached:
-            self.start(end)
+            self._start(end)
         return reached
 
-    def do_while(self, node: Any) -> bool:
-        again, body, end = self.label(), self.label(), self.label()
-        self.jump(again)
-        self.start(again)
+    def _do_while(self, node: Any) -> bool:
+        again, body, end = self._label(), self._label(), self._label()
+        self._jump(again)
+        self._start(again)
         forever = isinstance(node.test, ast.Constant)
         if forever:
-            self.jump(body)
+            self._jump(body)
         else:
-            self.branch(self.test(node.test), body, end)
-        self.start(body)
+            self._branch(self.test(node.test), body, end)
+        self._start(body)
         if self.loop(node.body, again, end):
-            self.jump(again)
+            self._jump(again)
         left = not forever or any(isinstance(each, ast.Break) for each in ast.walk(node))
         if left:
-            self.start(end)
+            self._start(end)
         return left
 
     def loop(self, body: list[Any], again: str, end: str) -> bool:
@@ -381,17 +381,17 @@ class _Body(Instructions):
         self.loops.pop()
         return reached
 
-    def do_for(self, node: Any) -> bool:
-        end = self.label()
+    def _do_for(self, node: Any) -> bool:
+        end = self._label()
         if isinstance(node.iter, ast.Tuple):
             for each in node.iter.elts:
-                following = self.label()
+                following = self._label()
                 self.put(node.target, self.of(each))
                 if self.loop(node.body, following, end):
-                    self.jump(following)
-                self.start(following)
-            self.jump(end)
-            self.start(end)
+                    self._jump(following)
+                self._start(following)
+            self._jump(end)
+            self._start(end)
             return True
         given = [self.as_kind(self.of(each), WHOLE) for each in node.iter.args]
         first, last, step = number_of(0), given[-1], number_of(1)
@@ -399,38 +399,38 @@ class _Body(Instructions):
             first, last = given[:2]
         if len(given) > 2:
             step = given[2]
-        test, body, following = self.label(), self.label(), self.label()
+        test, body, following = self._label(), self._label(), self._label()
         counter = self.reserve(WHOLE)
         self.emit(f"store i64 {first.text}, ptr {counter}")
-        self.jump(test)
-        self.start(test)
+        self._jump(test)
+        self._start(test)
         here = self.value(WHOLE, f"load i64, ptr {counter}")
         order = "slt" if step.known > 0 else "sgt"
-        self.branch(self.value(TRUTH, f"icmp {order} i64 {here.text}, {last.text}"), body, end)
-        self.start(body)
+        self._branch(self.value(TRUTH, f"icmp {order} i64 {here.text}, {last.text}"), body, end)
+        self._start(body)
         self.put(node.target, here)
         if self.loop(node.body, following, end):
-            self.jump(following)
-        self.start(following)
+            self._jump(following)
+        self._start(following)
         after = self.value(WHOLE, f"add nsw i64 {here.text}, {step.text}")
         self.emit(f"store i64 {after.text}, ptr {counter}")
-        self.jump(test)
-        self.start(end)
+        self._jump(test)
+        self._start(end)
         return True
 
-    def do_break(self, node: Any) -> bool:
-        self.jump(self.loops[-1][1])
+    def _do_break(self, node: Any) -> bool:
+        self._jump(self.loops[-1][1])
         return False
 
-    def do_continue(self, node: Any) -> bool:
-        self.jump(self.loops[-1][0])
+    def _do_continue(self, node: Any) -> bool:
+        self._jump(self.loops[-1][0])
         return False
 
     # expressions
 
     def of(self, node: Any) -> Any:
         """Translate an expression."""
-        return getattr(self, f"of_{type(node).__name__.lower()}")(node)
+        return getattr(self, f"_of_{type(node).__name__.lower()}")(node)
 
     def number(self, node: Any) -> Number:
         """Translate an expression whose value is a number."""
@@ -452,10 +452,10 @@ class _Body(Instructions):
         zero = "icmp ne i64 {}, 0" if value.kind == WHOLE else "fcmp une double {}, 0.0"
         return self.value(TRUTH, zero.format(value.text))
 
-    def of_constant(self, node: Any) -> Any:
+    def _of_constant(self, node: Any) -> Any:
         return row_of(()) if node.value is None else number_of(node.value)
 
-    def of_name(self, node: Any) -> Any:
+    def _of_name(self, node: Any) -> Any:
         if node.id in self.names:
             return self.names[node.id]
         if node.id in self.slots:
@@ -480,7 +480,7 @@ class _Body(Instructions):
             return row_of([self.as_kind(a, b) if b else a for a, b in pairs], named)
         return Global(value)
 
-    def of_attribute(self, node: Any) -> Any:
+    def _of_attribute(self, node: Any) -> Any:
         owner = self.of(node.value)
         if isinstance(owner, Global):
             if not isinstance(owner.value, ModuleType):
@@ -495,7 +495,7 @@ class _Body(Instructions):
             return Number(WHOLE, shape[0])
         return self.member(owner, owner.kind.named._fields.index(node.attr))
 
-    def of_subscript(self, node: Any) -> Any:
+    def _of_subscript(self, node: Any) -> Any:
         owner = self.of(node.value)
         if isinstance(owner.kind, Row):
             return self.member(owner, self.number(node.slice).known)
@@ -535,10 +535,10 @@ class _Body(Instructions):
         length = self.value(WHOLE, f"sub nsw i64 {last.text}, {first.text}")
         return ArrayView(view.kind, data, (length.text, *view.shape[1:]))
 
-    def of_tuple(self, node: Any) -> Made:
+    def _of_tuple(self, node: Any) -> Made:
         return row_of(self.of(each) for each in node.elts)
 
-    def of_unaryop(self, node: Any) -> Number:
+    def _of_unaryop(self, node: Any) -> Number:
         if isinstance(node.op, ast.Not):
             value = self.test(node.operand)
             return self.value(TRUTH, f"xor i1 {value.text}, true")
@@ -549,7 +549,7 @@ class _Body(Instructions):
             return self.value(REAL, f"fneg double {value.text}")
         return self.value(WHOLE, f"sub nsw i64 0, {self.as_kind(value, WHOLE).text}")
 
-    def of_binop(self, node: Any) -> Number:
+    def _of_binop(self, node: Any) -> Number:
         left, right = self.number(node.left), self.number(node.right)
         if isinstance(node.op, ast.BitOr) and left.kind == right.kind == TRUTH:
             return self.value(TRUTH, f"or i1 {left.text}, {right.text}")
@@ -566,24 +566,24 @@ class _Body(Instructions):
         how = real if kind == REAL else f"{whole} nsw"
         return self.value(kind, f"{how} {kind} {left.text}, {right.text}")
 
-    def of_boolop(self, node: Any) -> Number:
+    def _of_boolop(self, node: Any) -> Number:
         stop = isinstance(node.op, ast.Or)
-        slot, end = self.reserve(TRUTH), self.label()
+        slot, end = self.reserve(TRUTH), self._label()
         for i, each in enumerate(node.values):
             value = self.test(each)
             self.write(value, slot, TRUTH)
-            following = end if i == len(node.values) - 1 else self.label()
+            following = end if i == len(node.values) - 1 else self._label()
             if following == end:
-                self.jump(end)
+                self._jump(end)
             elif stop:
-                self.branch(value, end, following)
+                self._branch(value, end, following)
             else:
-                self.branch(value, following, end)
-            self.start(following)
+                self._branch(value, following, end)
+            self._start(following)
         found: Number = self.read(TRUTH, slot)
         return found
 
-    def of_compare(self, node: Any) -> Number:
+    def _of_compare(self, node: Any) -> Number:
         left, found = self.number(node.left), None
         for op, each in zip(node.ops, node.comparators, strict=True):
             if isinstance(op, ast.In):
@@ -611,18 +611,18 @@ class _Body(Instructions):
         how = f"fcmp {real}" if kind == REAL else f"icmp {whole}"
         return self.value(TRUTH, f"{how} {kind} {left.text}, {right.text}")
 
-    def of_ifexp(self, node: Any) -> Any:
-        yes, no, end = self.label(), self.label(), self.label()
-        self.branch(self.test(node.test), yes, no)
+    def _of_ifexp(self, node: Any) -> Any:
+        yes, no, end = self._label(), self._label(), self._label()
+        self._branch(self.test(node.test), yes, no)
         values: list[Any] = []
         later: list[list[str]] = []
         for label, branch in ((yes, node.body), (no, node.orelse)):
-            self.start(label)
+            self._start(label)
             values.append(self.of(branch))
             later.append([])
             self.lines.append(later[-1])
-            self.jump(end)
-        self.start(end)
+            self._jump(end)
+        self._start(end)
         kind = common(values[0].kind, values[1].kind)
         slot, lines = self.reserve(kind), self.lines
         for value, own in zip(values, later, strict=True):
@@ -631,7 +631,7 @@ class _Body(Instructions):
         self.lines = lines
         return self.read(kind, slot)
 
-    def of_call(self, node: Any) -> Any:
+    def _of_call(self, node: Any) -> Any:
         called = self.of(node.func)
         given = [self.of(each) for each in node.args]
         if not isinstance(called, Global):
@@ -648,10 +648,10 @@ class _Body(Instructions):
         if hasattr(function, "_fields"):
             pairs = zip(given, wanted_by(function), strict=True)
             return row_of([self.as_kind(a, b) if b else a for a, b in pairs], function)
-        called_so = getattr(self, f"call_{function.__name__}", self.call_math)
+        called_so = getattr(self, f"_call_{function.__name__}", self._call_math)
         return called_so(function, *given)
 
-    def call_math(self, function: Any, *given: Any) -> Number:
+    def _call_math(self, function: Any, *given: Any) -> Number:
         """Call a function of `math`."""
         name = function.__name__
         symbol = INTRINSIC.get(name, f"calm.{name}")
@@ -661,12 +661,12 @@ class _Body(Instructions):
         numbers = [f"double {self.as_kind(each, REAL).text}" for each in given]
         return self.value(REAL, f'call double @"{symbol}"({", ".join(numbers)})')
 
-    def call_len(self, _: Any, array: Any) -> Number:
+    def _call_len(self, _: Any, array: Any) -> Number:
         if isinstance(array.kind, Row):
             return number_of(len(array.kind.members))
         return Number(WHOLE, self.viewed(array).shape[0])
 
-    def call_abs(self, _: Any, value: Number) -> Number:
+    def _call_abs(self, _: Any, value: Number) -> Number:
         if value.kind == REAL:
             return self.value(REAL, f"call double @llvm.fabs.f64(double {value.text})")
         return self.lesser(self.value(WHOLE, f"sub nsw i64 0, {value.text}"), value, "sgt")
@@ -676,7 +676,7 @@ class _Body(Instructions):
         test = self.value(TRUTH, f"icmp {order} i64 {one.text}, {other.text}")
         return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
 
-    def call_max(self, function: Any, *given: Any) -> Number:
+    def _call_max(self, function: Any, *given: Any) -> Number:
         """Return the greatest or least number; equal numbers and NaN are treated as by CPython."""
         kind = given[0].kind
         for each in given:
@@ -691,29 +691,29 @@ class _Body(Instructions):
             )
         return best
 
-    call_min = call_max
+    _call_min = _call_max
 
-    def call_int(self, _: Any, value: Number) -> Number:
+    def _call_int(self, _: Any, value: Number) -> Number:
         if value.kind == REAL:
             return self.value(WHOLE, f"fptosi double {value.text} to i64")
         found: Number = self.as_kind(value, WHOLE)
         return found
 
-    def call_float(self, _: Any, value: Number) -> Number:
+    def _call_float(self, _: Any, value: Number) -> Number:
         found: Number = self.as_kind(value, REAL)
         return found
 
-    def call_bool(self, _: Any, value: Number) -> Number:
+    def _call_bool(self, _: Any, value: Number) -> Number:
         return self.truth(value)
 
-    def call_isnan(self, _: Any, value: Number) -> Number:
+    def _call_isnan(self, _: Any, value: Number) -> Number:
         return self.value(TRUTH, f"fcmp uno double {value.text}, {value.text}")
 
-    def call_isfinite(self, function: Any, value: Number) -> Number:
-        size = self.call_abs(function, value)
+    def _call_isfinite(self, function: Any, value: Number) -> Number:
+        size = self._call_abs(function, value)
         return self.value(TRUTH, f"fcmp olt double {size.text}, {number_of(math.inf).text}")
 
-    def call_degrees(self, _: Any, value: Number) -> Number:
+    def _call_degrees(self, _: Any, value: Number) -> Number:
         return self.value(REAL, f"fmul double {value.text}, {number_of(180.0 / math.pi).text}")
 
 

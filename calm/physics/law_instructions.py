@@ -84,9 +84,11 @@ class Instructions:
         self.count = 0
 
     def emit(self, text: str) -> None:
+        """Append an instruction."""
         self.lines.append(text)
 
     def fresh(self) -> str:
+        """Return a new name for a value."""
         self.count += 1
         return f"%t{self.count}"
 
