@@ -43,7 +43,7 @@ def batch(
     hindcast.
 
     Each profile replaces the current in the file. The result has values for every
-    component and every clamped instrument at every time. For a profile without
+    component and every clamped instrument at each time step. For a profile without
     equilibrium they are NaN, and the status gives the reason. Statistics are
     printed, and written to RESULT.summary.json and RESULT.summary.html.
 

@@ -71,7 +71,7 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
     kinds = None if kind is None else [kind]
     spelt = index.spelt(text)
     if spelt != text:
-        narrate(f"no component matches `{text}`; searched for `{spelt}`")
+        narrate(f"no component matches `{text}`; showing matches for `{spelt}`")
     first = [*remembered.favourites, *remembered.recent]
     found = index.search(spelt, kinds, first=first)
     if not found:
@@ -92,7 +92,8 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show all values of components with their sources, and derived values.
 
-    Derived values are the net force in water, and Kn and Kt, the drag at 1 m/s.
+    Derived values are the net force in water and the drag at 1 m/s across (Kn) and
+    along (Kt) the axis.
     Entries for the same item from different sources are shown side by side, the
     recommended one first.
 
@@ -140,7 +141,7 @@ def add(
         The `kind` and the values with their units, such as `diameter=432 mm`, in quotes if they
         contain a space. The manual's page on components lists the keys of each kind.
     output
-        Catalogue file to which the component is added; by default your own.
+        Catalogue file to which the component is added; by default, your own catalogue.
     """
     from calm.checks.catalogue_rules import check_catalogue, missing_figures
     from calm.errors import Problem
@@ -150,12 +151,14 @@ def add(
 
     if tidy_id(id) != id:
         raise UsageError(
-            "an id consists of lower-case letters, digits and hyphens; did you mean "
+            "an id must contain only lower-case letters, digits and hyphens; did you mean "
             f"`{tidy_id(id)}`?"
         )
     pairs = [figure.partition("=") for figure in figures]
     if bare := [key for key, equals, _ in pairs if not equals]:
-        raise UsageError(f"not KEY=VALUE: {', '.join(bare)}; put a value with blanks in quotes")
+        raise UsageError(
+            f"values must be written KEY=VALUE, in quotes if they contain spaces: {', '.join(bare)}"
+        )
     values = {key.strip(): value.strip() for key, _, value in pairs}
     path = output or user_folder() / "own.yaml"
     if output is None:

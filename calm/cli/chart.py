@@ -35,7 +35,7 @@ _DRAW_EXAMPLES = """Examples:
   calm chart draw --k 2.4 --lower-end above-90 -o chart.pdf"""
 
 _MEDIUM = Group("The cable and the current", sort_key=1)
-_SEVEN = Group("Three of these seven", sort_key=2)
+_SEVEN = Group("Quantities of the cable: set three of these seven", sort_key=2)
 _OUTPUT = Group("Output", sort_key=3)
 
 # A quantity may be negative, which must not be taken for an option.
@@ -82,9 +82,9 @@ def solve(
     density
         Density of the water; 1025 kg/m^3 by default.
     phi_a
-        Angle to the current at A; negative if the cable first goes down.
+        Angle of the cable to the current at A; negative if the cable descends from A.
     phi_b
-        Angle to the current at B.
+        Angle of the cable to the current at B.
     tension_a
         Tension at A.
     tension_b
@@ -137,7 +137,8 @@ def draw(
     output
         File to write: .svg, .png or .pdf.
     lower_end
-        Which cables to draw: cables whose angle at A is below 90° (the default) or above.
+        Cables to draw: those whose angle at the lower end A is below 90° (the default), or those
+        whose angle is above 90°.
     """
     from calm.drawing.picture import check_format, image
     from calm.drawing.plot import figure_svg
@@ -162,11 +163,11 @@ def _drag_over_weight(cable: dict[str, float]) -> float:
     if "k" in cable:
         also = [options.option(name) for name in (*parts, "density") if name in cable]
         if also:
-            raise UsageError(f"give either --k or {', '.join(also)}")
+            raise UsageError(f"--k cannot be combined with {', '.join(also)}")
         return cable["k"]
     missing = [options.option(name) for name in parts if name not in cable]
     if missing:
-        raise UsageError(f"give --k, or also {', '.join(missing)}")
+        raise UsageError(f"missing: {', '.join(missing)}; alternatively, set --k")
     for name in (*parts, "density"):
         if cable.get(name, 0.0) < 0.0:
             raise UsageError(f"{options.option(name)} must not be negative")

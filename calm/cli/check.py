@@ -53,8 +53,8 @@ def check(
     Parameters
     ----------
     environment
-        An environment named in the files, or an environment file. Repeatable. By default, every
-        environment of each file.
+        Environment to check: a name from the files, or an environment file. Repeatable. By default,
+        every environment of each file is checked.
     json
         Write the findings as JSON (- for standard output): the governing finding of each rule, all
         findings that do not pass, and those with a utilisation of at least one half.
@@ -69,11 +69,11 @@ def check(
         Mooring file of an earlier design, with which the report compares the mooring. Requires
         --report.
     all_findings
-        Write every finding into the JSON and checks.csv, for every piece and situation.
+        Write all findings, for every piece and situation, to the JSON and checks.csv.
     missing
-        Instead of the findings, print a block of YAML to complete: the missing values
-        of each component, with the rules that need them. Estimated values, and masses in air, are
-        listed as comments.
+        Instead of the findings, print a block of YAML to fill in. It lists the missing values of
+        each component, with the rules that need them, and, as comments, estimated values and
+        masses in air.
     output
         Write the block of --missing to this file.
     allow_unknown
@@ -99,7 +99,9 @@ def check(
     if full and report is None:
         raise UsageError("--full needs --report")
     if against is not None and (report is None or len(files) > 1):
-        raise UsageError("--against compares one mooring with an earlier design in its --report")
+        raise UsageError(
+            "--against needs --report and exactly one mooring to compare with the earlier design"
+        )
     _check_missing(missing, output, files, (json, report))
     draws = options.draws_of(uncertainty, samples)
     if report is not None:
@@ -198,7 +200,9 @@ def _check_missing(
 ) -> None:
     """Reject the output file of --missing if it cannot be written, before anything is solved."""
     if output is not None and not missing:
-        raise UsageError("-o needs --missing; to write the findings, use --json or --report")
+        raise UsageError(
+            "-o can only be used with --missing; to write the findings, use --json or --report"
+        )
     if missing and any(other):
         raise UsageError(
             "--missing replaces the findings and cannot be combined with other outputs"
@@ -225,7 +229,7 @@ def _write_missing(
         show(block)
     else:
         only_comments = all(line.startswith("#") for line in block.splitlines())
-        save(output, block.encode(), "; it has only comments" * only_comments)
+        save(output, block.encode(), "; it contains only comments" * only_comments)
 
 
 def _answer(

@@ -47,9 +47,9 @@ def deck(
         Page size.
     environment
         Environment in which depths and lengths are computed: a name from the files, or an
-        environment file. Repeatable; further environments are used as design currents. By default,
-        the sheets are for the default environment of the file, and its named environments are the
-        design currents.
+        environment file. Repeatable: the currents of any further environments are the design
+        currents. By default, depths and lengths are computed in the default environment of the
+        file, and the design currents are those of its named environments.
     order
         Deployment order.
     ship_speed
@@ -113,8 +113,8 @@ def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
         narrate(f"{path}: {note}")
     if isinstance(deck.plan, DropPlan) and deck.plan.start is None:
         narrate(
-            f"{path}: the start of the run is not computed; set `deck_time` (handling time per "
-            "piece, by role) in the `document` of the file"
+            f"{path}: the position where the run to the target starts is not computed; set "
+            "`deck_time` (handling time per piece, by role) in the `document` section of the file"
         )
     write_report(folder, _contents(deck, page_size, notes))
     narrate(f"Deck sheets written to {folder}")

@@ -29,17 +29,17 @@ def diff(
     Pieces and clamps are matched by label, otherwise by component and position.
     Parts added, removed, moved or changed are listed; depth, knockdown, tensions,
     anchor, weights and the margins of calm check are shown side by side. With one
-    file, its design is compared with its `deployed:`. A design without
-    equilibrium can be compared, too. The exit code is 0 whether or not the
-    designs differ.
+    file, the design is compared with the mooring as deployed (its `deployed:`
+    section). A design without equilibrium can be compared, too. The exit code is
+    0 whether or not the designs differ.
 
     Parameters
     ----------
     before
         A mooring file; it may contain a tow or a net.
     after
-        Mooring file to compare with. Without it, the design in BEFORE is compared with its own
-        `deployed:`.
+        Mooring file to compare with. Without it, the design in BEFORE is compared with the mooring
+        as deployed (its `deployed:` section).
     environment
         Use this environment: a name from both files, or an environment file.
     json
@@ -49,7 +49,7 @@ def diff(
     --------
       calm diff design-A.yaml design-B.yaml
       calm diff design-A.yaml design-B.yaml --environment storm.yaml
-      calm diff mooring.yaml             (its design against its deployed:)
+      calm diff mooring.yaml             (the design with the mooring as deployed)
       calm diff design-A.yaml design-B.yaml --json - | jq '.changed[].where'
     """
     files = (before,) if after is None else (before, after)
@@ -82,10 +82,12 @@ def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
     if len(lines) == 2:
         return comparison_of((str(files[0]), str(files[1])), first, last)
     if first.towed:
-        raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
+        raise UsageError(f"{files[0]} is a tow; name a second tow to compare it with")
     try:
         deployed = as_deployed(first)
         design, there = (Design(replace(one.file, deployed=None)) for one in (first, deployed))
         return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
-        raise UsageError(f"{files[0]}: no cut length fits: {failure}") from failure
+        raise UsageError(
+            f"{files[0]}: no length was found for the fitted piece: {failure}"
+        ) from failure

@@ -47,17 +47,19 @@ def grid(
     output
         Gridded output file, .nc.
     levels
-        FIRST:STEP:LAST in metres, such as "0:20:1500", or levels separated by commas.
+        Levels of the grid: FIRST:STEP:LAST in metres, such as "0:20:1500", or depths separated by
+        commas.
     step
         Write means over intervals of this length, such as "1 h"; by default, values at the times of
         DEPTHS are written.
     variables
-        temperature, salinity, u, v; by default all of these in the files. With TEMP, PSAL, UCUR or
-        VCUR, the output has the OceanSITES names in capitals.
+        Variables to map: temperature, salinity, u, v; by default, all of these that the files
+        contain. If you write TEMP, PSAL, UCUR or VCUR, the output has the OceanSITES names in
+        capitals.
     method
-        depth-time, or depth, which treats each time separately.
+        Method of interpolation: depth-time, or depth, which treats each time step separately.
     flags
-        Quality flags of the values to use as measurements; values with flag 8 are never used.
+        Use only values with these quality flags as measurements; values with flag 8 are never used.
     report
         Write a page and a PDF, grid.html and grid.pdf, in this folder.
     json

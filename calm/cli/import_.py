@@ -41,26 +41,26 @@ def import_(
     Parameters
     ----------
     files
-        Files of other programs.
+        Files of other programs to convert.
     output
         Mooring file to write; for several files, a folder.
     format
         Program or format of the file: mdd, cbl, moordyn, oceanarray, moords or table. By default it
         is recognised from the content.
     strict
-        Reject files that need guesses.
+        Reject files with missing values that CALM would have to guess.
     define
         A macro of WHOI Cable, as NAME=VALUE, or the catalogue id for an oceanarray name, as
         "NAME=ID". Repeatable.
     environment
-        An environment file, instead of the environment in the file.
+        Use this environment file instead of the environment in the imported file.
     onto
         A mooring file. FILE is then a list of instruments with serial number, name, nominal depth
         and clock offset (CSV, RODB's info.dat, oceanarray, or NetCDF). Its instruments are assigned
         to the line of the mooring, and OUTPUT is a copy of the mooring file with the serial numbers
         in `deployed:`.
     columns
-        Headings of the columns of a table: name=Item,length=Len.
+        Headings of the columns of a table, each as KEY=HEADING, such as name=Item,length=Len.
     sheet
         Name of the sheet in a workbook; needed if several sheets have headings.
     elements
@@ -87,10 +87,10 @@ def import_(
     from calm.report import folder, result_files
 
     if not files:
-        raise UsageError("calm import needs a file")
+        raise UsageError("no file to import was given; name one or more files")
     if onto is not None:
         if len(files) > 1:
-            raise UsageError("--onto takes one list of instruments")
+            raise UsageError("--onto can be used with only one list of instruments")
         return _assign(files[0], onto, output, json)
     headings = _pairs("--columns", columns.split(",") if columns else [])
     given = ImportOptions(

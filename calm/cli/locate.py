@@ -36,9 +36,9 @@ def locate(
     Outliers are reported, and rejected if enough ranges remain. The result is the
     position with its 95 % ellipse and the depth with its interval; CALM warns if
     the ship's positions constrain them poorly. If two positions fit, both are
-    reported, and weighted by the possible fallback of an anchor from the planned
-    position. The exit code is 1 if both remain possible. Acoustic rays are
-    assumed straight.
+    reported, with weights from their distances to the planned position, compared
+    with the usual fallback of an anchor. The exit code is 1 if both remain
+    possible. Acoustic rays are assumed to be straight.
 
     Parameters
     ----------
@@ -47,23 +47,22 @@ def locate(
         are those of the transducer in WGS 84, in degrees or in degrees and minutes. Survey files
         without column headings, as written for the programs of WHOI and NOC, are accepted, too.
     sound_speed
-        Speed of sound with which times are converted: a speed, or a CSV file with the
-        columns depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges in
-        metres.
+        Speed of sound, used to convert travel times to ranges: a speed, or a CSV file with the
+        columns depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges in metres.
     transducer
         Depth of the ship's transducer.
     depth
         Water depth at the anchor, if known; otherwise it is estimated.
     above_seabed
-        Height of the transponder, such as the release, above the seabed.
+        Height of the transponder (usually the release) above the seabed.
     plot
-        Draw the ranges as circles about the ship, with the position found:
-        .png, .svg or .pdf.
+        Draw the ranges as circles about the ship's positions, and the anchor position found, to
+        this .png, .svg or .pdf file.
     json
         Write the position as JSON (- for standard output).
     near
-        Planned latitude and longitude of the anchor, by which two possible positions are
-        weighted; by default the planned position in the file of --update.
+        Planned latitude and longitude of the anchor, used to weight two possible positions; by
+        default, the planned position in the file of --update.
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
@@ -80,7 +79,7 @@ def locate(
       calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
       calm locate times.csv --sound-speed profile.csv --depth "1103 m"
       calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
-      calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
+      calm locate ranges.csv --update mooring.yaml   (writes position and depth to deployed:)
 
     ranges.csv:
 

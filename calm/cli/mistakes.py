@@ -39,7 +39,7 @@ def complaint(error: CycloptsError) -> str:
     if isinstance(error, UnknownCommandError):
         word, *others = error.unused_tokens or [""]
         if word == "help":
-            return f"the help of a command is `{' '.join(('calm', *others))} --help`"
+            return f"for the help of a command, type `{' '.join(('calm', *others))} --help`"
         if Path(word).suffix and Path(word).exists():
             return f"`{word}` is a file, not a command; see `calm --help`, or `calm run {word}`"
         return f"{error} See `{command} --help`."
@@ -52,7 +52,7 @@ def _about_option(error: UnknownOptionError) -> str:
     """
     word = error.token.keyword or error.token.value
     if word == "-":
-        return "the standard input is not read; give a file"
+        return "CALM does not read standard input; name a file"
     names = [name for one in error.argument_collection for name in one.names]
     longer = [name for name in names if name.startswith(word) and word.startswith("--")]
     return f"unknown option {word}; did you mean {' or '.join(longer)}?" if longer else ""

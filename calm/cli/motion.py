@@ -47,16 +47,15 @@ def motion(
     environment: options.EnvironmentName = None,
     catalog: options.CatalogFiles = None,
 ) -> ExitCode:
-    """Estimate the depth of every instrument at every time from pressures and
-    currents.
+    """Estimate the depth of every instrument over time from pressures and currents.
 
     CALM computes the shape of the line in the measured currents. From the
     pressures, it estimates the drag for the whole record, and corrects the
-    current at each time. The result has the depth of every component and clamped
+    current at each time step. The result has the depth of every component and clamped
     instrument with its standard deviation, and the residuals of the sensors. A
     current meter on the line is matched by its label, and its position is taken
-    from the mooring file. If there are no currents, they are inferred from the
-    pressures of two or more sensors.
+    from the mooring file. If no current record is given, the currents are
+    inferred from the pressures of two or more sensors.
 
     Parameters
     ----------
@@ -71,7 +70,7 @@ def motion(
     match
         How sensors are matched to the line: by label, or by nominal height or depth.
     fit
-        What to estimate for the whole record in addition to the drag: buoyancy, length.
+        Quantities to estimate for the whole record in addition to the drag: buoyancy, length.
     hold_out
         Labels of sensors to withhold at all times, separated by commas. The estimated depths of
         these sensors are compared with interpolation between the remaining sensors.
@@ -85,9 +84,9 @@ def motion(
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
-        Quality flags of the pressures to use.
+        Use only pressures with these quality flags.
     gap
-        Maximum time between values for interpolation in time.
+        Longest gap between values across which CALM interpolates in time.
     onto
         A NetCDF file of instruments, or a folder of such files. OUTPUT is then a copy to
         which depths are added with their standard deviations and flags (`depth` for several
@@ -201,7 +200,10 @@ def write_copies(
         output.mkdir(parents=True, exist_ok=True)
     for one in instruments:
         if all(point is None for point in one.point):
-            narrate(f"{one.path} matches no part of the line and was not written")
+            narrate(
+                f"The instrument in {one.path} matches no part of the line; no output was written "
+                "for it"
+            )
             continue
         name = one.path.name if one.path.suffix == ".nc" else f"{one.path.name}.nc"
         target = output / name if folder else output

@@ -63,6 +63,6 @@ def _write(output: Path, content: bytes, force: bool, then: str) -> None:
     from calm.report.folder import check_destination
 
     if output.exists() and not force:
-        raise UsageError(f"{output} exists already; --force overwrites it")
+        raise UsageError(f"{output} exists already; use --force to overwrite it")
     check_destination(output)
     save(output, content, then)

@@ -28,15 +28,15 @@ EnvironmentName = Annotated[
     str | None,
     Parameter(help="Use this environment: a name from the mooring file, or an environment file."),
 ]
-Samples = Annotated[int, Parameter(help="Number of samples, a power of two.")]
+Samples = Annotated[int, Parameter(help="Number of samples, which must be a power of two.")]
 Threads = Annotated[
     int | None, Parameter(help="Number of threads; by default one for each processor.")
 ]
 Declination = Annotated[
     str | None,
     Parameter(
-        help="Magnetic declination, such as 12.5 deg, positive to the east; applied to "
-        "currents that the record marks as relative to magnetic north.",
+        help="Magnetic declination, such as 12.5 deg, positive to the east. It is applied "
+        "to currents that the record marks as relative to magnetic north.",
         allow_leading_hyphen=True,
     ),
 ]
@@ -51,7 +51,7 @@ Units = Annotated[
     str | None,
     Parameter(
         help="Units of tables and reports, such as force=kgf,length=ft,speed=kn,mass=lb, "
-        "instead of those of the file; JSON, CSV and NetCDF stay in SI."
+        "instead of those of the file; JSON, CSV and NetCDF are always in SI."
     ),
 ]
 
@@ -86,7 +86,7 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
                 name, unit = suggestion
                 raise UsageError(f"--units: for `{part.strip()}` write `{name}={unit}`")
             forms = (f"{each}={'|'.join(units)}" for each, units in SHOWN_UNITS.items())
-            raise UsageError(f"--units: `{part.strip()}` is none of {', '.join(forms)}")
+            raise UsageError(f"--units: `{part.strip()}` must be one of {', '.join(forms)}")
         chosen[name] = unit
     show_in(chosen)
 

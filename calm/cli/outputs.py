@@ -239,7 +239,7 @@ class Outputs:
         for path in paths:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(
-                    f"{path} was given where a path is needed; write ./{path} for a file"
+                    f"a file name is expected, not the option {path}; write ./{path} for a file"
                 )
         for path in self.written:
             check_suffix(path, self.suffixes)

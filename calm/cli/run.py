@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 def _dash(_: object, tokens: Sequence[Token]) -> str:
     """Return the value of `--json`, which must be ``-``. UsageError: it is another text."""
     if (value := tokens[0].value) != "-":
-        raise UsageError(f"--json {value}: --json - prints the result; -o FILE.json writes a file")
+        raise UsageError(
+            f"--json {value}: the value must be -, which prints the result; use -o FILE.json to "
+            "write a file"
+        )
     return value
 
 
@@ -55,11 +58,11 @@ def run(
     files
         Mooring files. A file with `tow:` describes a tow, a file with `legs:` a net.
     output
-        Write the result in the format of the suffix. Repeatable. One file for all moorings: .json;
-        .csv with a row per component, or with --speeds a row per speed. One file per mooring (for
-        several moorings, p.svg becomes p-FILE.svg): .svg or .png, a drawing of the line; .html or
-        .pdf, a report with table, drawings and inputs; .nc, NetCDF with the variable names of `calm
-        batch`.
+        Write the result to this file, in the format of its suffix. Repeatable. One file holds all
+        moorings in .json and in .csv, which has a row per component or, with --speeds, a row per
+        speed. Each mooring gets its own file (for several moorings, p.svg becomes p-FILE.svg) in
+        .svg and .png (a drawing of the line), .html and .pdf (a report with table, drawings and
+        inputs), and .nc (NetCDF with the variable names of `calm batch`).
     json
         Print the result as JSON instead of the table; several files give an array.
     speeds
@@ -131,5 +134,5 @@ def _refuse(options: Mapping[str, object], what: str, designs: Sequence[Design])
     chosen = [option for option, value in options.items() if value]
     if chosen and designs:
         raise UsageError(
-            f"{chosen[0]} is for {what}: {', '.join(one.file.path for one in designs)}"
+            f"{chosen[0]} is only for {what}: {', '.join(one.file.path for one in designs)}"
         )

@@ -34,13 +34,14 @@ def size(
     file
         A mooring file, or the file of a net of legs.
     target
-        Quantity of a part of the line, <=, >= or =, and a limit with its unit.
+        Condition to meet: a quantity of a part of the line, then <=, >= or =, then a limit with its
+        unit.
     change
-        Value to change: the label of a part, a point, and buoyancy, length or count.
-        A label without its number stands for all pieces with that label.
+        Value to change, written LABEL.buoyancy, LABEL.length or LABEL.count. A label without its
+        number stands for all pieces with that label.
     between
-        Smallest and largest value, with units. By default a buoyancy may be 0 to 100 times its
-        present value, a length at most twice the water depth, and a count at most 1000.
+        Smallest and largest value to try, with units. By default a buoyancy may be 0 to 100 times
+        its present value, a length at most twice the water depth, and a count at most 1000.
 
     Examples
     --------
@@ -53,9 +54,9 @@ def size(
       calm size mooring.yaml --target "required_weight <= 8 kN" \
           --change "top float.buoyancy" --json -
 
-    Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
-    required_weight of the anchor, in a net required_weight(LEG). Changes:
-    LABEL.buoyancy, LABEL.length, LABEL.count.
+    A target limits the knockdown, depth, excursion, tilt or tension of a label or
+    of top, or the required_weight of the anchor; in a net, write
+    required_weight(LEG).
     """
     outputs = Outputs((file,), json)
     from calm.case import load

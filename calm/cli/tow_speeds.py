@@ -126,7 +126,8 @@ def speed_range(text: str) -> list[float]:
         raise UsageError(f"--speeds: `{text}` begins at {first:g} m/s; a tow needs a speed above 0")
     if last < first:
         raise UsageError(
-            f"--speeds: `{text}` ends at {last:g} m/s, below its beginning, {first:g} m/s"
+            f"--speeds: `{text}` ends at {last:g} m/s, which is below its first speed, "
+            f"{first:g} m/s"
         )
     if step <= 0.0:
         raise UsageError(f"--speeds: `{text}` has a step of {step:g} m/s; it must be above 0")

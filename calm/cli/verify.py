@@ -29,8 +29,8 @@ def verify(
     words
         Check only cases whose source or name contains all these words (or parts of words).
     field
-        Instead, estimate the depths of a real mooring at withheld sensors, and compare them
-        with the measured depths (see `calm docs motion`).
+        Instead of these cases, estimate the depths of withheld sensors on a real mooring, and
+        compare them with the measured depths (see `calm docs motion`).
     json
         Write the values, with the reason for each tolerance, as JSON (- for standard output).
 

@@ -48,14 +48,14 @@ def waves(
         period Tz. For pierson-moskowitz the default is that of a fully developed sea;
         ochi-hubble does not use it.
     spectrum
-        bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea), or a file
-        with a measured spectrum: CSV with frequency[Hz],density[m^2/Hz], or NetCDF.
+        Wave spectrum: bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea), or a
+        file with a measured spectrum: CSV with frequency[Hz],density[m^2/Hz], or NetCDF.
     toward
         Direction in which the waves travel, clockwise from north; 90 deg by default.
     scatter
         CSV file of sea states: significant_wave_height[m],peak_period[s],share.
     duration
-        Duration for the most probable maximum and minimum tension; 3 h by default.
+        Duration over which the most probable maximum and minimum tension occur; 3 h by default.
     report
         Folder for waves.html and waves.pdf, with plots of the tension.
 
@@ -81,8 +81,10 @@ def waves(
     leg = mooring.moored
     given, seas = mooring.file.environment.waves, of_options or mooring.file.environment.seas
     if not seas:
-        missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
-        raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
+        missing = "--hs is" if spectrum in OF_HEIGHT else "--hs and --tp are"
+        raise UsageError(
+            f"{missing} missing; set them here, use --scatter, or add `waves:` to {file}"
+        )
     if direction is None:
         direction = 90.0 if given is None else given.toward
     options.show_units(units, [mooring.file])
@@ -99,8 +101,8 @@ def waves(
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(
-        f"{file}: {SLACK}: minimum tension is below 0, where linear tensions are "
-        "invalid. Add weight or stretch to the line, or solve it in the time domain: "
+        f"{file}: {SLACK}: the line goes slack, so the linear tensions are not "
+        "valid. Add weight or stretch to the line, or solve it in the time domain: "
         "`calm export --to moordyn`."
     )
     return ExitCode.NO_EQUILIBRIUM
@@ -143,14 +145,17 @@ def _sea_states(
     chosen = [options.option(name) for name, each in waves.items() if each is not None]
     if scatter is not None and (chosen or not named):
         complaints.append(
-            f"--scatter contains heights and periods; omit {', '.join(chosen) or 'the file'}"
+            "a --scatter file already contains heights and periods; omit "
+            f"{', '.join(chosen) or 'the spectrum file'}"
         )
     elif scatter is None and path.is_file() and not named and chosen:
-        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own height and period")
+        complaints.append(
+            f"a measured spectrum has its own height and period; omit {', '.join(chosen)}"
+        )
     elif scatter is None and named and (chosen or spectrum != "bretschneider"):
         needs = ["--hs", *(["--tp"] if spectrum not in sea_states.OF_HEIGHT else [])]
         if missing := [name for name in needs if name not in chosen]:
-            complaints.append(f"{', '.join(missing)}: missing; or give a --scatter table")
+            complaints.append(f"missing: {', '.join(missing)}; alternatively, use --scatter")
     if complaints:
         raise UsageError("\n".join(complaints))
     seas = None

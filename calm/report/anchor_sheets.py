@@ -287,7 +287,9 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
         several = "lines" if len(outliers) > 1 else "line"
         lines = ", ".join(map(str, outliers))
         sentences.append(Prose((f"Rejected as outliers: {several} {lines}.",)))
-    notes = ["Acoustic rays are assumed straight, and the sea surface is the WGS 84 ellipsoid."]
+    notes = [
+        "Acoustic rays are assumed to be straight, and the sea surface is taken as the WGS 84 ellipsoid."
+    ]
     if located.survey.timed:
         notes.append("Times are two-way travel times, without a transponder delay.")
     shown: tuple[blocks.Block, ...] = (
@@ -340,7 +342,7 @@ def _residuals(located: Located) -> Table:
         number(measured[0], lambda at: f"{survey.measured[at]:.{decimals}f}", measured[1]),
         number("residual", residual, "m"),
         blocks.words("", lambda at: None if used[at] else "not used", 0.0),
-        note="Residual: measured less computed.",
+        note="The residual is the measured range minus the computed range.",
     )
 
 
@@ -365,7 +367,7 @@ def located_figure(located: Located) -> str:
     close = max(3.0 * np.nan_to_num(located.horizontal_95), 3.0 * scatter, 1.0)
     page = Graph(2 * _PANEL + 110.0, _PANEL + 52.0, "Position of the anchor by ranges", _SIZE)
     titles = (
-        "all ranges, numbered by their lines in the file",
+        "all ranges, with their line numbers in the file",
         "the position, with its 95 % ellipse",
     )
     for panel, half in enumerate((max(reach, 2.0 * close), close)):

@@ -141,7 +141,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
     state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
     verdict = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
-    verdict += f"; {len(incomplete)} more lack values." if incomplete else "."
+    verdict += f"; {len(incomplete)} more lack values that the check needs." if incomplete else "."
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
     yield Prose(((Span(head, state), Span(verdict)),), state)
     called = {name: DEFAULT_ENVIRONMENT if name == OWN else name for name in shown}
@@ -150,14 +150,14 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     if len(shown) < len(names):
         note += f" {len(names) - len(shown)} milder environments are omitted."
     yield table_of(
-        "Largest use, %",
+        "Highest utilisation, %",
         rows,
         words("Mooring", lambda row: short(row.mooring, 44), 1.0),
         number("Water\nm", lambda row: row.depth, share=0.2),
         *(_column(codes[name], name) for name in shown),
         number("Launch", lambda row: _shown(row.handling), share=0.24),
-        aside="over all checks, rounded up. White on black: fails. Hatched: over 100 without "
-        "failure. ?: unknown. Grey: 90 and more",
+        aside="of all checks, rounded up. White on black: a check fails. Hatched: over 100 without "
+        "failure. Grey: 90 to 100. ?: unknown",
         note=note,
     )
     yield table_of(
@@ -168,7 +168,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         words("First failure", lambda row: _failure(row, codes), 1.3),
         number("Accepted", lambda row: row.accepted),
         note=f"This page summarises {sum(row.findings for row in rows)} findings. A page on each "
-        "mooring follows. Fish bite, metals and minimum tension are excluded from the use, because "
+        "mooring follows. Fish bite, metals and minimum tension have no utilisation, because "
         "their limits are not capacities.",
     )
 
@@ -234,8 +234,8 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
                if one is reported[one.rule][0] else None),
         words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
         aside=(
-            "per rule, the finding with the largest use, followed by any more severe finding; "
-            "over 100 %: number of findings in all environments"
+            "Each rule is shown by its finding with the highest utilisation, then any more severe "
+            "ones. “Over 100 %” counts the findings in all environments."
         ),
         ruled=False,
     )  # fmt: skip

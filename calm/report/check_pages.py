@@ -103,8 +103,8 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",
         aside=(
-            "per rule, the finding with the largest use, followed by any more severe finding; "
-            "number of pieces in brackets"
+            "Each rule is shown by its finding with the highest utilisation, then any more severe "
+            "ones. The number of pieces is in brackets."
         ),
     )  # fmt: skip
 
@@ -348,7 +348,10 @@ def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     tides = [*dict.fromkeys(one for one in every if one is not None)]
     waves = all(one.leg.file.environment.waves for one in assessment.in_environments)
     unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
-    unseen = f"{plain('; '.join(unjudged))}.", "No utilisation in this report includes them."
+    unseen = (
+        f"{plain('; '.join(unjudged))}.",
+        "No utilisation in this report takes these effects into account.",
+    )
     text = provenance.source_text(assessment.file)
     name = provenance.file_name(assessment.file)
     limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters, tides)

@@ -225,7 +225,11 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
             break
         kept.append(item)
     left = items[len(kept) :]
-    notes = [f"{len(left)} more in the report (--report) and the JSON (--json)"] if left else []
+    notes = (
+        [f"{len(left)} more open items are in the report (--report) and the JSON (--json)"]
+        if left
+        else []
+    )
     unknown = [one.head.removesuffix(".") for one in left if one.state is State.UNKNOWN]
     notes += wrap(f"Also unknown: {'; '.join(unknown)}.", _WIDTH - 3) if unknown else []
     return blocks.OpenItems("Open items", tuple(kept), "\n".join(f"   {one}" for one in notes))
@@ -271,7 +275,7 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     yield blocks.table_of(
         "",
         rows,
-        words("largest use, %", lambda row: short(row.mooring, room)),
+        words("highest utilisation, %", lambda row: short(row.mooring, room)),
         *(_of_environment(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
         note="! fails  ~ over 100, a warning or accepted  ? unknown\n"

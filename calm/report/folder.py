@@ -38,7 +38,8 @@ def check_folder(folder: Path) -> None:
             folder.lstat()  # rejects a name that no folder can have
         if folder.suffix in _FILE_SUFFIXES and not folder.exists():
             raise UsageError(
-                f"cannot write {folder}: the output is a folder; use a name without {folder.suffix}"
+                f"cannot write {folder}: the output is a folder of several files; use a folder "
+                f"name, without {folder.suffix}"
             )
 
         nearest = folder.absolute()
@@ -46,7 +47,7 @@ def check_folder(folder: Path) -> None:
             nearest = nearest.parent
         if not nearest.is_dir():
             raise UsageError(
-                f"cannot write {folder}: the output is a folder, but {nearest} is a file"
+                f"cannot write {folder}: the output must be a folder, but {nearest} is a file"
             )
         if not os.access(nearest, os.W_OK | os.X_OK):
             raise UsageError(f"cannot write {folder}: permission denied in {nearest}")

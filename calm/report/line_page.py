@@ -111,7 +111,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             "factor; the launch columns use the factors for the launch. – not judged, ? no "
             "published load, ≈ estimated, ○ accepted. The code of the load case follows the "
             "tension. Equal pieces share a row: tension, capacity and use are those of the piece "
-            "with the largest use; minimum, tilt and rise cover all of them."
+            "with the highest use; minimum, tilt and rise cover all of them."
         ),
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-_BARE = "Instruments without a pressure: depths estimated, with the 95 % band"
+_BARE = "Instruments without a pressure sensor: depths estimated, with the 95 % band"
 _DEPTHS = "Depths measured (black), estimated (blue, 95 % band), from the currents alone (orange)"
 _FALSE = "Times when a current is probably wrong"
 _WHOLE = (
@@ -75,7 +75,7 @@ def motion_report(
         *([held_out_table(study.held_out.values())] if study.held_out else []),
     ]
     how = Note((PLAIN if study.plain else UNKNOWN,))
-    notes_block = (Prose(tuple(notes) or ("All input was used.",)),)
+    notes_block = (Prose(tuple(notes) or ("All of the input was used.",)),)
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     return report_of(
         f"{name}: motion of the mooring",

@@ -302,8 +302,8 @@ def governing_table(signed: SignedMooring) -> Table:
         *check_fields(MOST_LABELS),
         note=note,
         ruled=False,
-        aside="use = demand / capacity, or required / available, rounded up; "
-        "the bars have a line at 100 % and are hatched above it",
+        aside="Use is the utilisation, demand / capacity or required / available, rounded up. "
+        "The bars have a line at 100 % and are hatched above it.",
     )
 
 

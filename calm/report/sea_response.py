@@ -16,22 +16,23 @@ from calm.waves.measured import COMPARED, MeasuredBand
 from calm.waves.pieces_in_sea import MooringInSea, PieceInWaves, PieceLoads
 
 _NOTE = (
-    "Tension at the upper end: mean, standard deviation, most probable maximum and minimum. "
-    "Tz: mean period of upward crossings through the mean. Heave and tilt: standard deviations. "
-    "!: the piece goes slack."
+    "Tension is given at the upper end: mean, standard deviation, most probable maximum and "
+    "minimum. Tz is the mean period between upward crossings of the mean. Heave and tilt are "
+    "standard deviations. ! marks a piece that goes slack."
 )
 _SEAS = (
-    "Measured: range of the standard deviation, as implied by tensions measured at sea. Half, "
-    "twice: standard deviation with half and with twice the cut-off frequency."
+    "Measured: range of the standard deviation that tensions measured at sea imply. Half, twice: "
+    "standard deviation with half and with twice the cut-off frequency."
 )
 _CUT_OFFS = (
-    "Tension at the top if the waves are cut off at another frequency, with the same drag. Most "
-    "changed: the piece whose standard deviation changes most."
+    "The table gives the tension at the top if the waves are cut off at another frequency, with "
+    "the same drag. Most changed: the piece whose standard deviation changes most."
 )
 _LIFE = (
-    "Life: years until the damage sum reaches 1 in these seas. Low, high: with standard deviations "
-    "of tension 15 % larger and smaller. Half, twice: with half and twice the cut-off frequency. "
-    "Curves are quoted from secondary sources: compare them with the standard."
+    "Life: years until the damage sum reaches 1 in these seas. Low, high: life with standard "
+    "deviations of tension 15 % larger and smaller. Half, twice: life with half and twice the "
+    "cut-off frequency. The fatigue curves are quoted from secondary sources: compare them with "
+    "the standard."
 )
 
 
@@ -40,9 +41,9 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
 
     The drawings show the tension as a spectrum, along the line, and against Hs.
     """
-    title = "Tension in the highest sea: its spectrum at the top; along the line"
+    title = "Tension in the highest sea: spectrum at the top, and distribution along the line"
     if several := len(analysis.states) > 1:
-        title += ". Tension at the top over Hs"
+        title += ". Tension at the top against Hs"
     pictures = ReportPart("Tension", (blocks.Figure(title, _drawn(analysis, several)),))
     return report_of(analysis.name, "in waves", sea_response_part(analysis), pictures)
 
@@ -211,7 +212,7 @@ def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line
     top = state.components[0].tension_std
     if state.follower_std is not None and abs(state.follower_std - top) > 1e-3 * top:
         statements.append(
-            "If the float followed every wave, the standard deviation of tension below it would "
+            "If the float followed every wave, the standard deviation of the tension below it would "
             f"be {say('tension', state.follower_std)}."
         )
     if state.pitch_std is not None:
@@ -237,7 +238,7 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
     outside = (
         ""
         if COMPARED[0] <= height <= COMPARED[1]
-        else (" The height of this sea is outside that range.")
+        else (" The height of this sea is outside that range of Hs.")
     )
     return (
         f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
@@ -245,7 +246,8 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
         f"{band.low:.2f} to {band.high:.2f} times the computed one. For this mooring that means "
         f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} at the top, with "
         f"a maximum of {say('tension', low.tension_max)} to "
-        f"{say('tension', high.tension_max)}.{outside} No other mooring was compared."
+        f"{say('tension', high.tension_max)}.{outside} "
+        "The wave model has been compared with measurements at that station only."
     )
 
 
