@@ -179,7 +179,7 @@ def between(
     Newton's method converges to it if each step is halved until the position error decreases.
     """
     if not isfinite(x + z + length + weight):
-        raise ValueError("the measures of a catenary must be finite")
+        raise ValueError("the dimensions of a catenary must be finite")
     given = {"distance": x, "length": length, "weight": weight, "stiffness": stiffness}
     for name, value in given.items():
         if not value > 0.0:

@@ -263,18 +263,20 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
         if abs(above - below - height) <= _ROUNDING * above:
             return family("Two tensions and the height are not independent: T_B = T_A + w H.")
         return _inconsistent(
-            "T_B = T_A + w H is violated.", "Set two of these and one other quantity."
+            "The two tensions and the height do not satisfy T_B = T_A + w H.",
+            "Set two of these and one other quantity.",
         )
     if above is not None and above <= (below or 0.0) + height:
         least = "that at the other end" if below is not None else "w H" if height else "0"
         return _inconsistent(
             f"The tension at the upper end (lower end if buoyant) must exceed {least}.",
-            "Check which end is which, and the weight.",
+            "Check that the two ends are not exchanged, and check the weight.",
         )
     chord = math.hypot(height, distance)
     if "length" in known and chord > known["length"] * (1.0 + _ROUNDING):
         return _inconsistent(
-            f"The cable, {known['length']:.6g} m, is shorter than the distance of {chord:.6g} m.",
+            f"The cable, {known['length']:.6g} m, is shorter than the distance between its ends, "
+            f"{chord:.6g} m.",
             "Lengthen the cable or bring its ends closer.",
         )
     return None
@@ -302,7 +304,9 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
     start, end = known.get("phi_a"), known.get("phi_b")
     if known.get("tension_a") == 0.0:
         message = f"A cable without tension at one end is straight, at {angle}."
-        return _none(message, "Set a tension, or quantities of that straight cable.")
+        return _none(
+            message, "Set a tension above 0, or quantities that such a straight cable can have."
+        )
     if is_taut(known):
         message = (
             "A cable no longer than the distance between its ends would need infinite tension."
@@ -310,7 +314,7 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
         return _none(message, "Lengthen the cable or bring its ends closer.")
     if end is not None and not 0.0 < end < math.pi:
         message = "The cable must rise at the end with the larger tension."
-        return _none(message, "Set an angle between 0 and 180° there.")
+        return _none(message, "Set an angle between 0 and 180° at that end.")
     if start is not None and end is not None:
         lean = start + 2 * math.pi if start < critical - math.pi else start
         if (lean - critical) * (end - critical) <= 0.0:
@@ -320,11 +324,12 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
             )
         return _none(
             "No cable with these two angles rises from A to B.",
-            "Check which end is which, and the sign of the distance if it is given.",
+            "Check that the two ends are not exchanged, and check the sign of the distance if it is "
+            "set.",
         )
     return _none(
         f"No cable in a uniform current at K = {k:g} satisfies these three quantities.",
-        "Check K and the quantities; replace one of them to see what is possible.",
+        "Check K and the quantities, or replace one of the quantities by another.",
     )
 
 

@@ -98,7 +98,7 @@ def critical_weight_ratio(angle: ArrayLike) -> Floats:
     """
     phi = np.asarray(angle, float)
     if not np.all((phi >= 0.0) & (phi < 0.5 * np.pi)):
-        raise ValueError("a critical angle lies from 0 to below 90°")
+        raise ValueError("a critical angle must be at least 0 and below 90°")
     ratio: Floats = np.sin(phi) * np.tan(phi)
     return ratio
 
@@ -201,7 +201,9 @@ def heavy_line(
         rubbed = tangential_drag * (cosine**2 if law == "square" else 1.0)
         pull += (weight * sine + rubbed) * s
         if not pull >= 0.0:
-            raise ValueError("the straight line has no tension left before the arc is reached")
+            raise ValueError(
+                "the tension of the straight line falls to 0 before this arc length is reached"
+            )
         return phi, pull, s * cosine, s * sine
 
     stations = np.array([follow(float(s), tension, angle) for s in arcs.ravel()])
@@ -214,7 +216,9 @@ def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> H
     """
     _checked(start)
     if law not in ("constant", "square"):
-        raise ValueError(f'the law of the tangential drag is "constant" or "square", not "{law}"')
+        raise ValueError(
+            f'the law of the tangential drag must be "constant" or "square", not "{law}"'
+        )
     steep = Hodograph(weight_ratio, friction, law, steep=True)
     return steep if start >= steep.critical_angle else Hodograph(weight_ratio, friction, law, False)
 

@@ -68,7 +68,7 @@ def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[
     """
     w, r = np.asarray(weight, float), np.asarray(normal_drag, float)
     if exponent not in (1, 2):
-        raise ValueError(f"the exponent of the drag is 1 or 2, not {exponent}")
+        raise ValueError(f"the exponent of the drag must be 1 or 2, not {exponent}")
     if not (np.all(w > 0.0) and np.all(r > 0.0)):
         raise ValueError("weight and normal drag of a towed cable must be above 0")
     return np.arctan2(w, r) if exponent == 1 else critical_angle(w / r)

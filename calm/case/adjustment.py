@@ -83,7 +83,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         if isinstance(each, Chain):
             raise LookupError(f"a {each.kind} has a weight instead of a buoyancy")
     if any(part.component != component for part in parts):
-        raise LookupError("these parts differ; select one")
+        raise LookupError("the parts with this label have different components; select one part")
     now = component.net_buoyancy
     most = MOST_BUOYANCY * now
     if most < 0.0 and component.mass is not None:
@@ -123,7 +123,7 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts) or not isinstance(pieces[0].component, Flexible):
-        raise LookupError("only cables and chains are cut to length")
+        raise LookupError("only the length of cables and chains can be changed")
     now, depth = pieces[0].length, file.environment.depth
     if now is None or any(piece.length is None for piece in pieces):
         raise LookupError("its length is fitted (`length: fit`); set a length in the file first")
@@ -146,9 +146,11 @@ def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
-        raise LookupError("only pieces in line have a count, not clamped instruments")
+        raise LookupError("clamped instruments have no count; only in-line pieces do")
     if isinstance(pieces[0].component, Anchor):
-        raise LookupError("a line has one anchor")
+        raise LookupError(
+            "a line has exactly one anchor, so the count of the anchor cannot be changed"
+        )
     _refuse_several_items(pieces)
     item = tuple(one for one in file.pieces if one.place.item == pieces[0].place.item)
     if len(pieces) < len(item) and pieces[0].place.part >= 0:
@@ -225,11 +227,11 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
     text = " ".join(text.split())
     name, point, field = text.rpartition(".")
     if not point or field not in _FIELDS:
-        what = f"unknown field `{field}`" if point else "there is no field to change"
+        what = f"unknown field `{field}`" if point else "the field to change is missing"
         message = unknown(what, field if point else "", _FIELDS)
         anchors = (one for one in file.pieces if isinstance(one.component, Anchor))
         if field == "weight" and any(name in ("anchor", one.label, one.use) for one in anchors):
-            message = f"the weight of an anchor is not searched for; {_ANCHOR_WEIGHT}"
+            message = f"calm size does not search for the weight of an anchor; {_ANCHOR_WEIGHT}"
         raise pointed("--change", text, len(name) + 1 if point else len(text), message)
     try:
         assembly = tuple(one for one in file.pieces if one.named == name and one.place.part >= 0)
@@ -268,5 +270,5 @@ def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[floa
         limit = with_unit(least, change.unit)
         raise UsageError(f"--between: `{texts[0]}` must be at least {limit}")
     if change.whole and (low % 1 or high % 1):
-        raise UsageError("--between: a count is a whole number")
+        raise UsageError("--between: a count must be a whole number")
     return low, high

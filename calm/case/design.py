@@ -372,8 +372,8 @@ def _upside_down(result: LegResult) -> str:
         return ""
     return (
         f"Leg {leg.name} is listed in reverse order: its first end is "
-        f"{say('length', top - bottom)} deeper than its last end. Legs are listed from their "
-        "upper to their lower ends."
+        f"{say('length', top - bottom)} deeper than its last end. List each leg from its "
+        "upper to its lower end."
     )
 
 

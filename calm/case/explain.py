@@ -198,16 +198,16 @@ def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Ite
         )
     if surface:
         yield (
-            "A float at the surface has no knockdown; the table explains its excursion and "
-            "the buoyancy in use."
+            "A float at the surface has no knockdown; the table gives the causes of its excursion "
+            "and of the buoyancy in use instead."
         )
     elif "knockdown" not in quantities:
         yield (
-            "In still water the line has no unique shape, and so no knockdown; the table "
-            "explains its excursion."
+            "The line has no unique shape in still water, so its knockdown is undefined; the table "
+            "gives the causes of its excursion instead."
         )
     if not result.design.water.moving:
-        yield "There is no current, and so no drag."
+        yield "There is no current, so there is no drag."
 
 
 def _shares(

@@ -226,7 +226,7 @@ class Leg:
             if self.of_several:
                 line, its = f"leg {self.name}", "its anchor"
             raise Status.ANCHOR_LIFTS.because(
-                f"The vertical load of {line} is {pull:.0f} N; the weight of {its} in water is "
+                f"The vertical load of {line}, {pull:.0f} N, exceeds the weight of {its} in water, "
                 f"{weight:.0f} N."
             )
 

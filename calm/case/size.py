@@ -249,9 +249,14 @@ def _why_not(
     nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)
     as_it_is = at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
-        message = f"The present value is closest, with {nearest}; {change.text} was tried {span}."
+        message = (
+            f"The present value comes closest, with {nearest}; {change.text} was tried {span}."
+        )
     else:
-        message = f"The closest is {nearest}, with {change.text} at {where}; tried {span}."
+        message = (
+            f"The closest result is {nearest}, with {change.text} at {where}; "
+            f"{change.text} was tried {span}."
+        )
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):
         failure = at(neighbour).failure
         if failure is not None:

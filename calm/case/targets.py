@@ -103,11 +103,11 @@ def parse_target(text: str, file: MooringFile) -> Target:
 
     quantity = found["quantity"]
     if quantity not in QUANTITIES:
-        what = f"unknown quantity `{quantity}`" if quantity else "there is no quantity"
+        what = f"unknown quantity `{quantity}`" if quantity else "the quantity is missing"
         raise mistake("quantity", unknown(what, quantity, QUANTITIES))
     relation = found["relation"]
     if relation not in RELATIONS:
-        what = f"`{relation}` is not a relation" if relation else "there is no relation"
+        what = f"`{relation}` is not a relation" if relation else "the relation is missing"
         raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
     chosen, pieces, leg = None, file.pieces, None
     if file.legs and quantity == "required_weight":
@@ -126,11 +126,11 @@ def parse_target(text: str, file: MooringFile) -> Target:
         except LookupError as error:
             raise mistake("label", str(error.args[0])) from None
     elif file.legs and quantity != "required_weight":
-        raise mistake("quantity", f"a net has no single top; add a piece: `{quantity}(LABEL)`")
+        raise mistake("quantity", f"a net has no single top; name a piece: `{quantity}(LABEL)`")
     try:
         limit = parse_quantity(found["limit"], QUANTITIES[quantity])
     except QuantityError as error:
-        shown = f"`{found['limit']}` {error}" if found["limit"] else "there is no limit"
+        shown = f"`{found['limit']}` {error}" if found["limit"] else "the limit is missing"
         raise mistake("limit", shown) from None
     label, place = (leg, None) if chosen is None else (chosen.label, chosen.place)
     return Target(text, quantity, label, RELATIONS[relation], limit, place)

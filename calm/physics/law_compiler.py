@@ -484,7 +484,7 @@ class _Body(Instructions):
         owner = self.of(node.value)
         if isinstance(owner, Global):
             if not isinstance(owner.value, ModuleType):
-                raise TypeError(f"{ast.unparse(node)} has no value")
+                raise TypeError(f"{ast.unparse(node)} has no value in a law")
             return self.given(getattr(owner.value, node.attr))
         if isinstance(owner.kind, Array):
             shape = self.viewed(owner).shape
@@ -555,7 +555,7 @@ class _Body(Instructions):
             return self.value(TRUTH, f"or i1 {left.text}, {right.text}")
         if isinstance(node.op, ast.FloorDiv) and left.kind == right.kind == WHOLE:
             if right.known is None or right.known & (right.known - 1):
-                raise TypeError("// is by a power of two only")
+                raise TypeError("a law can only divide with // by a power of two")
             shift = right.known.bit_length() - 1
             return self.value(WHOLE, f"ashr i64 {left.text}, {shift}")
         whole, real, known = ARITHMETIC[type(node.op)]
@@ -656,7 +656,7 @@ class _Body(Instructions):
         name = function.__name__
         symbol = INTRINSIC.get(name, f"calm.{name}")
         if function is not getattr(math, name, None) or name not in (*INTRINSIC, *FROM_MATH):
-            raise TypeError(f"laws do not call {name}")
+            raise TypeError(f"the function {name} cannot be used in a law")
         self.program.declare(symbol, len(given))
         numbers = [f"double {self.as_kind(each, REAL).text}" for each in given]
         return self.value(REAL, f'call double @"{symbol}"({", ".join(numbers)})')

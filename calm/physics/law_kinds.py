@@ -66,7 +66,7 @@ def common(one: Any, other: Any) -> Any:
     numbers = (TRUTH, WHOLE, REAL)
     if one in numbers and other in numbers:
         return max(one, other, key=numbers.index)
-    raise TypeError(f"a value is {one} as well as {other}")
+    raise TypeError(f"a value cannot be both {one} and {other}")
 
 
 FROM_MATH = ("log", "pow", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "floor")
@@ -157,7 +157,7 @@ def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
 def _address_of_array(array: Any) -> int:
     """Return the address of the data of an array without gaps."""
     if not array.flags.c_contiguous:
-        raise ValueError("compiled laws need arrays without gaps")
+        raise ValueError("an array for a compiled law must be contiguous")
     return _pointer_at(id(array) + _DATA).value or 0
 
 

@@ -366,7 +366,7 @@ class Line(_Arrays):
                 raise ValueError(f"Line.{name} must not be negative")
         on = self.clamp_piece
         if ((on < 0) | (on >= len(self.length))).any() or (self.clamp_at < 0).any():
-            raise ValueError("Line: a clamp is not on a piece")
+            raise ValueError("Line: every clamp must be on a piece")
         if not 0.0 <= self.anchor_height < inf:
             raise ValueError("Line.anchor_height must be finite and not negative")
 

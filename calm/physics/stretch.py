@@ -164,7 +164,7 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
         loads.append(load)
         strains.append(strain)
     if len(loads) == 1:
-        raise ValueError("an elongation curve needs a point with a load")
+        raise ValueError("an elongation curve needs at least one point with a load above 0")
     return loads, strains
 
 

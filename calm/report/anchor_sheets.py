@@ -288,7 +288,8 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
         lines = ", ".join(map(str, outliers))
         sentences.append(Prose((f"Rejected as outliers: {several} {lines}.",)))
     notes = [
-        "Acoustic rays are assumed to be straight, and the sea surface is taken as the WGS 84 ellipsoid."
+        "Acoustic rays are assumed to be straight, and the sea surface is taken as the WGS 84 "
+        "ellipsoid."
     ]
     if located.survey.timed:
         notes.append("Times are two-way travel times, without a transponder delay.")

@@ -142,7 +142,7 @@ def handling_page(signed: SignedMooring) -> Iterator[Block]:
         yield Beside((_launch(assessment),), (_recovery(assessment),))
     else:
         of_net = "Launch and recovery of a net of legs are not checked."
-        of_line = "Launch and recovery have no solution."
+        of_line = "Launch and recovery could not be computed."
         several = len({one.leg.name for one in assessment.in_environments}) > 1
         yield Prose((of_net if several else of_line,))
     if assessment.backup:

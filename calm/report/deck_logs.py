@@ -72,7 +72,7 @@ def recovery_part(deck: Deck) -> ReportPart:
             "bottom."
         )
     elif rise is None:
-        sentences.append("The ascent has no solution; pieces are listed from top to bottom.")
+        sentences.append("The ascent could not be computed; pieces are listed from top to bottom.")
     elif rise.time_to_surface is None:
         sentences.append(
             "After release the line does not rise; pieces are listed from top to bottom."

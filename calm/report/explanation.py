@@ -33,8 +33,9 @@ SMALLEST_SHARE = 0.005
 """Fraction of a total below which drag forces are summed in one row."""
 
 _SHARES = (
-    "Shares: all drag forces are increased together from zero to their full value, and each is "
-    "attributed the change that its own increase causes. Drag is the horizontal force of the water."
+    "Shares: all drag forces are increased together from zero to their full value, and the "
+    "share of each force is the change that its own increase causes. Drag is the horizontal force "
+    "of the water."
 )
 _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are unchanged."
 
@@ -48,10 +49,10 @@ def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
     unknown = masses.count(None)
     mass = f"{say('dry_mass', sum(filter(None, masses)))} in air without the anchor"
     if unknown:
-        parts = "1 part has" if unknown == 1 else f"{unknown} parts have"
-        mass = f"at least {mass} ({parts} no mass)"
+        parts = "1 part" if unknown == 1 else f"{unknown} parts"
+        mass = f"at least {mass} (the mass of {parts} is unknown)"
     if unknown == len(masses):
-        mass = "unknown, because no part has a mass in air"
+        mass = "unknown, because the mass in air is not set for any part"
     rise = (("Recovery", text),) if (text := _rise(result.leg)) else ()
     return (*rise, ("Mass", mass))
 

@@ -42,9 +42,7 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
         "Probability of exceeding a limit",
         rows,
         words("design", lambda row: row[1]),
-        words(
-            "rule", lambda row: row[0].rule if row[0] else "no limit is exceeded in any sample", 0.0
-        ),
+        words("rule", lambda row: row[0].rule if row[0] else "no limit exceeded", 0.0),
         *((column, lambda row, show=show: row[0] and show(row[0])) for column, show in fields),
         note=_NOTE,
     )

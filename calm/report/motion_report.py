@@ -30,7 +30,7 @@ _DEPTHS = "Depths measured (black), estimated (blue, 95 % band), from the curren
 _FALSE = "Times when a current is probably wrong"
 _WHOLE = (
     "Depths of all instruments, with 95 % bands; dashed: withheld instruments and those without a "
-    "pressure"
+    "pressure sensor"
 )
 _ASSUMED = (
     "Prior assumptions: buoyancy, weights, lengths and positions as in the mooring file; an "
@@ -110,12 +110,12 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
         f"The depths of {len(series)} instruments between {str(time[0])[:16]} and "
         f"{str(time[-1])[:16]} ({len(time)} times) were estimated from the static equilibrium of "
         f"the line, the pressures of {', '.join(used.label)}, and {by} (CALM {__version__}).",
-        f"Estimated for the whole record: {factors}; a datum common to all pressures of "
+        f"The estimates for the whole record are: {factors}; and a datum common to all pressures, "
         f"{common.datum:+.1f} m.",
         f"The knockdown of the uppermost pressure sensor was up to {down.max():.0f} m (median "
         f"{np.median(down):.0f} m, 95th percentile {np.quantile(down, 0.95):.0f} m). The standard "
-        f"deviation of the depths is {np.median(wide):.1f} m in the median and "
-        f"{np.quantile(wide, 0.95):.1f} m in the 95th percentile.",
+        f"deviation of the depths has a median of {np.median(wide):.1f} m and a 95th percentile of "
+        f"{np.quantile(wide, 0.95):.1f} m.",
     ]
     sentences += [
         f"When withheld, {one.label} was predicted with an rms error of {one.rms:.1f} m "
@@ -134,12 +134,12 @@ TITLES = {
 }
 
 _RMS = (
-    "rms: rms difference after removal of the mean in calm periods (the 10 % of times with the "
-    "smallest knockdown)."
+    "Rms is the rms difference from the measured depths, after removal of the mean in calm periods "
+    "(the 10 % of times with the smallest knockdown)."
 )
 PLAIN = (
-    "Alone: computed from the currents only, without fitting. Estimated: with the pressures of all "
-    f"sensors in use. {_RMS}"
+    "Alone: depths computed from the currents only, without fitting. Estimated: depths computed "
+    f"with the pressures of all sensors in use. {_RMS}"
 )
 UNKNOWN = f"Without a current record, the currents are inferred from the pressures. {_RMS}"
 

@@ -212,8 +212,8 @@ def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line
     top = state.components[0].tension_std
     if state.follower_std is not None and abs(state.follower_std - top) > 1e-3 * top:
         statements.append(
-            "If the float followed every wave, the standard deviation of the tension below it would "
-            f"be {say('tension', state.follower_std)}."
+            "If the float followed every wave, the standard deviation of the tension below it "
+            f"would be {say('tension', state.follower_std)}."
         )
     if state.pitch_std is not None:
         statements.append(f"The float pitches by {state.pitch_std:.1f}° (standard deviation).")

@@ -192,7 +192,7 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
             "The line is slack: its shape depends on the last digits of the buoyancy in use."
         )
     return Status.NOT_CONVERGED.because(
-        f"The line's end misses the anchor by {closed.value:.3g} m."
+        f"The computed end of the line is {closed.value:.3g} m from the anchor."
     )
 
 

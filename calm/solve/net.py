@@ -183,7 +183,7 @@ class NetSearch:
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
         if miss > self.settings.tolerance * net.span:
-            raise unsettled(f"a leg misses its end by {miss:.2g} m")
+            raise unsettled(f"the computed end of a leg is {miss:.2g} m from its attachment point")
         imbalance = np.linalg.norm(left[net.nodes_at :].reshape(-1, 3), axis=1)
         errors = (
             float(net.errors[leg_closing.DEPTH_ERROR]) + miss + 1e-9 * net.length,
@@ -196,7 +196,7 @@ class NetSearch:
             )
         greatest = max(float(each.tension.max()) for each in legs)
         if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:
-            raise unsettled(f"the forces at a node do not balance, by {imbalance.max():.2g} N")
+            raise unsettled(f"the forces at a node are out of balance by {imbalance.max():.2g} N")
         for leg in legs:
             refuse_unbalanced(leg.closure, leg.moment_residual)
         return NetSolution(
@@ -306,7 +306,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
         closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
         x, fraction = (x, fraction) if closer is None else (closer, following)
-        why = f"its legs do not meet above {fraction:.0%} of the current"
+        why = f"its legs do not meet in more than {fraction:.0%} of the current"
     if x is None or fraction < 1.0:
         net.put_in(water)
         x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)

@@ -353,6 +353,6 @@ def too_heavy(lift: Floats) -> NoEquilibrium:
     """
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(
-        f"Too little buoyancy to hold the line up: buoyant pieces {up:.0f} N net, "
-        f"weight of the other pieces in water {down:.0f} N."
+        f"There is too little buoyancy to hold the line up: the net buoyancy of the buoyant pieces "
+        f"is {up:.0f} N, the weight of the other pieces in water is {down:.0f} N."
     )

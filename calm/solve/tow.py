@@ -250,8 +250,8 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
             advice=PAY_OUT,
         )
     raise Status.ABOVE_SURFACE.because(
-        "The towed body would come out of the water: even at the surface the line's upper end "
-        f"is {-low:.2f} m below the tow point.",
+        "The towed body would come out of the water: even with the body at the surface, the upper "
+        f"end of the line would be {-low:.2f} m below the tow point.",
         advice=STAY_BELOW,
     )
 
@@ -335,9 +335,12 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
             continue
         body = bodies[np.argmin(off)]
         what = "{piece}" if shape.clamp[body] < 0 else "a clamp on {piece}"
-        why = f"its upper end would be {above:.2g} m above the tow point or {-below:.2g} m below"
+        why = (
+            f"the line's upper end would be {above:.2g} m above the tow point or {-below:.2g} m "
+            "below it"
+        )
         if lacking:
-            why = "in neither state does its frequency match the vortex shedding at the ship"
+            why = "in neither state does its strumming match the vortex shedding at the ship"
         return Status.NO_EQUILIBRIUM.because(
             f"No equilibrium has {what} fully in water or fully in air: {why}. It would be partly "
             "out of the water, a state that CALM does not solve.",

@@ -111,7 +111,9 @@ def sized(mooring: Design, target: str, change: str) -> Offer:
     key, unit = change.rpartition(".")[2], f" {adjustment.unit}" if adjustment.unit else ""
     clamps = (f"clamps.{part.place.clamp}" for part in adjustment.parts if part.place.is_clamp)
     if any(clamps):
-        raise UsageError(f"{change}: only items of the line can be changed here")
+        raise UsageError(
+            f"{change}: clamped instruments cannot be changed here, only items of the line"
+        )
 
     def make(draft: Draft) -> Draft:
         sizing = size(mooring, target, change)
@@ -271,7 +273,7 @@ def differences(before: View, after: View) -> list[str]:
     elif after.failure is not None:
         effects.append(f"no equilibrium: {after.failure.message}")
     if idle := [when for when, view in (("before", before), ("now", after)) if not view.result]:
-        return [*effects, f"findings: not judged {' and '.join(idle)} (no equilibrium)"]
+        return [*effects, f"findings were not judged {' and '.join(idle)} (no equilibrium)"]
     words = {"failures": State.FAIL, "unknown values": State.UNKNOWN, "warnings": State.WARN}
     for word, state in words.items():
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]

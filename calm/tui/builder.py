@@ -102,7 +102,7 @@ class BuilderScreen(ComparingScreen):
         session = self.session
         if not self.settle():
             return
-        view = self.workspace.judged("Missing values are listed once the line is judged")
+        view = self.workspace.judged("Missing values can be listed once the line has been checked")
         if view is None:
             return
         missing = missing_figures(view, session.draft)

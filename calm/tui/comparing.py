@@ -137,7 +137,10 @@ class ComparingScreen(line_screen.LineScreen):
                 "change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")
             ),
         ]
-        text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
+        text = (
+            "A target is written like depth(LABEL) = 100 m or tilt(LABEL) <= 5 deg; a change is "
+            "LABEL.buoyancy, LABEL.length or LABEL.count."
+        )
         enter(self.app, "A target to meet", text, fields, take)
 
     def _try(self, offer: Offer, before: View) -> None:

@@ -84,7 +84,7 @@ class ComponentScreen(dialogs.Form[Defined]):
     async def on_mount(self) -> None:
         """Show the fields of the first kind."""
         what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
-        self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
+        self.query_one(TitleBar).show(f"{what}, defined in this file   * required", "")
         self.query_one(KeyBar).show_keys(key_table.hints("form"))
         await self._show_fields()
         self.fields[0].input.focus()

@@ -246,7 +246,8 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
                 yield from self.parts_of(self._form_fields)
             yield Static(id="sheet-note", markup=False)
             yield Static(
-                "[b]Enter[/b] next, then done   [b]Ctrl+S[/b] done   [b]Esc[/b] go back",
+                "[b]Enter[/b] next field, or accept after the last   [b]Ctrl+S[/b] accept   "
+                "[b]Esc[/b] cancel",
                 classes="keys",
             )
 

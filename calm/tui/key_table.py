@@ -268,8 +268,8 @@ def hints(place: str) -> list[Action]:
 _SIGNS = "Signs: " + ", ".join(f"{state.sign} {state}" for state in reversed(State))
 _GROUND = (
     "Every change is solved and judged at once; until then the previous values are dimmed. "
-    " A number without a unit takes the unit shown. With the mouse: press a cell to go "
-    "there, press again to edit."
+    " A number without a unit takes the unit shown. With the mouse, click a cell to go "
+    "there, and click again to edit it."
 )
 _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
     "On every screen, with Ctrl+P and Ctrl+Q": Screen.BINDINGS,

@@ -20,7 +20,7 @@ from calm.tui.names import Named, references_to
 from calm.tui.verdict_text import VerdictLine, why
 from calm.tui.workspace import Workspace
 
-_MIXED = "Pieces and clamps of other pieces are marked; mark only pieces or only clamps"
+_MIXED = "Pieces and clamps of other pieces are both marked; mark only pieces or only clamps"
 _FROM_A_ROW = frozenset(
     {"mark", "why", "equipment", "column", "repeat", "duplicate", "delete",
      "move_piece", "cut"}

@@ -301,7 +301,7 @@ class LineSearch(cell_editor.EditableTable):
         """Move to the next or previous row whose id, label, serial or maker contains all words."""
         wanted = self.words.casefold().split()
         if not wanted:
-            self.workspace.tell("/ finds words in the line first")
+            self.workspace.tell("Press / first to search for words in the line")
             return
         self._to(
             by, lambda row: all(word in self._searched_text(row) for word in wanted), self.words
@@ -319,12 +319,12 @@ class LineSearch(cell_editor.EditableTable):
             if each.rule == strength.name
         ]
         if not found:
-            self.workspace.tell("The use of strength is unknown for all pieces")
+            self.workspace.tell("The utilisation of strength is unknown for all pieces")
             return
         use, place, finding = max(found, key=lambda each: each[0])
         self.table.go_to(place)
         used = f"{percent_used(use):.0f} %"
-        text = f"Highest use of strength, {used}: {finding.component}, {finding.message}"
+        text = f"Highest utilisation of strength, {used}: {finding.component}, {finding.message}"
         self.workspace.tell(text)
 
     def _to(self, by: int, is_wanted: Callable[[TableRow], bool], what: str) -> None:

@@ -33,7 +33,7 @@ _BEGIN_A_TOW = (
     "The line becomes a tow: suspended from a ship, listed from the ship down, without an "
     "anchor. Undo restores the mooring."
 )
-_COMPARED = "Compared with the design by calm diff."
+_COMPARED = "calm diff compares these entries with the design."
 RELEASES: Location = ("releases",)
 _ITEMS: Location = ("deployed", "items")
 
@@ -45,7 +45,7 @@ SHEETS = {
 }
 """Titles of sheets, and the keys of the file that each sheet contains."""
 _ABOUT = {
-    "document": "For the title block of drawings, and its history.",
+    "document": "These entries fill the title block of drawings, with its revision history.",
     "tow": _BEGIN_A_TOW,
 }
 

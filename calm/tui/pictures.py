@@ -63,7 +63,7 @@ class Picture(scrolled.DrawnRows, can_focus=True):
     def _picture(self, size: Size) -> list[Text]:
         result = None if self._view is None else self._view.result
         if _is_small(size):
-            return [Text("(too small)", style="dim")]
+            return [Text("(window too small)", style="dim")]
         if result is None:
             waits = "A picture appears once the line has an equilibrium."
             words = waits if self._view else theme.ELLIPSIS
@@ -77,7 +77,7 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         if self.tab == "tension":
             rows = size.height // len(lines)
             if rows < _LEAST[1]:
-                return [Text("(too small for the tension of each leg)", style="dim")]
+                return [Text("(window too small to show the tension of each leg)", style="dim")]
             return [row for line in lines for row in tension(line, size.width, rows)]
         if self.tab == "schematic":
             texts = [schematic_text(line.file, line, size.width) for line in lines]

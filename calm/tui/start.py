@@ -58,7 +58,7 @@ def _refuse_other_files(session: Session) -> None:
     Catalogue.load(session.catalogs)
     here, names = session.standing.environment, session.standing.environments
     if (lost := session.standing.lost_environment) is not None:
-        what = f"--environment {lost}: neither a file nor an environment of {session.name}"
+        what = f"--environment {lost} is neither a file nor an environment of {session.name}"
         raise UsageError(unknown(what, lost, filter(None, names)))
     given = {str(each) for each in session.catalogs}
     if here is not None and here not in names:

@@ -267,7 +267,7 @@ class Grid(cell_editor.EditableTable):
             readings = [column.check(value) for column, value in cells]
             bad = [each.note for each in readings if not each.is_good]
             if len(row) != len(self._columns):
-                bad = [f"{len(row)} values for {len(self._columns)} columns"]
+                bad = [f"it has {len(row)} values, but the table has {len(self._columns)} columns"]
             if bad:
                 self.tell(f"Not pasted: row {number}: {bad[0]}", wrong=True)
                 return

@@ -162,7 +162,7 @@ def _mooring(
     from calm.checks.strength import anchor_weight
 
     anchor, top = result.anchor_load, result.top
-    pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
+    pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} from the vertical"
     yield VerdictLine(pull, heading="Anchor")
     yield _holds(result, _worst(findings, anchor_weight), pending, held)
     if result.type == "surface":
@@ -181,7 +181,7 @@ def _mooring(
         yield _figure(text, "Knockdown", worst)
     if anchor.grounded_length > 0.0:
         yield VerdictLine(
-            f"{say('grounded_length', anchor.grounded_length)} of line", heading="Lies"
+            f"{say('grounded_length', anchor.grounded_length)} of line", heading="On seabed"
         )
 
 

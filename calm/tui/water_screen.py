@@ -43,8 +43,8 @@ from calm.tui.water_tables import (
 from calm.tui.workspace import Workspace, problem_text
 
 _ELSEWHERE = (
-    "The line is solved in {0}, which profile and verdict refer to. Below is the default "
-    "environment; values of {0} override it."
+    "The line is solved in {0}, so profile and verdict are for {0}. Below is the default "
+    "environment; the values of {0} override it."
 )
 _INHERITED = "as in the default environment"
 _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
@@ -267,7 +267,7 @@ class WaterScreen(screen.DraftScreen):
         if copied.headings is None:
             text += " The pasted table has no headings: check the columns below."
         first = "   ".join(copied.rows[0])
-        text += f" Its first row is  {first}"
+        text += f" The first pasted row is  {first}"
         form_field = FormField("columns", "Columns", ", ".join(headings), check)
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
@@ -350,14 +350,16 @@ class WaterScreen(screen.DraftScreen):
             fields = [
                 FormField("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
             ]
-            text = "It contains only values that differ from the default environment."
+            text = (
+                "A new environment needs only the values that differ from the default environment."
+            )
             dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
         """Delete the displayed named environment from the file."""
         name = self.water.variant
         if name is None:
-            self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
+            self.workspace.tell("The default environment cannot be removed; F5 shows a named one")
             return
         self.discard_typing()
         if self.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}"):
@@ -384,7 +386,7 @@ class WaterScreen(screen.DraftScreen):
             answers = dialogs.numbered(
                 (name, partial(take, each)) for name, each in PRESETS.items()
             )
-            text = f"A table down to {down}, towards the east, for you to change."
+            text = f"This fills in a table of a current towards the east, down to {down}. Edit it as needed."
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:

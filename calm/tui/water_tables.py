@@ -36,11 +36,11 @@ _POWER = 1 / 7
 
 PRESETS: Mapping[str, Callable[[float], float]] = {
     "uniform, 0.5 m/s": lambda share: 0.5,
-    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the seabed":
+    "tidal stream, 1 m/s at the surface, by the 1/7-power law of height above the seabed":
         lambda share: (1.0 - share) ** _POWER,
     "linear shear, 0.8 m/s at the surface to zero at the seabed":
         lambda share: 0.8 * (1.0 - share),
-    "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
+    "boundary current, 1.2 m/s at the surface, decaying by a factor of e over a fifth of the depth":
         lambda share: 0.05 + 1.15 * exp(-share / 0.2),
 }  # fmt: skip
 """Typical current profiles: speed [m/s] by relative depth, from 0 at the surface to 1 at the
@@ -64,7 +64,9 @@ def import_sheet(folder: Path) -> InputSheet:
         "name in the mooring file; `copy` writes its profile as a table.",
         [
             forms.FormField("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-            forms.FormField("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            forms.FormField(
+                "time", "Time", placeholder="e.g. 2026-03-01T06:00, if the file is a record"
+            ),
             forms.FormField("how", "refer or copy", "refer", one_of(("refer", "copy"))),
         ],
     )
