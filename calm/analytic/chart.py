@@ -324,7 +324,7 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
             )
         return _none(
             "No cable with these two angles rises from A to B.",
-            "Check that the two ends are not exchanged, and check the sign of the distance if it is "
+            "Check that the two ends are not exchanged, and check the sign of the distance, if "
             "set.",
         )
     return _none(

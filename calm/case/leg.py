@@ -226,8 +226,8 @@ class Leg:
             if self.of_several:
                 line, its = f"leg {self.name}", "its anchor"
             raise Status.ANCHOR_LIFTS.because(
-                f"The vertical load of {line}, {pull:.0f} N, exceeds the weight of {its} in water, "
-                f"{weight:.0f} N."
+                f"The vertical load of {line} is {pull:.0f} N and lifts {its}, which weighs "
+                f"{weight:.0f} N in water."
             )
 
     def _refuse_grounded_pieces(self, solution: Solution) -> None:

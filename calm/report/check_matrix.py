@@ -140,15 +140,17 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
     state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
-    verdict = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
-    verdict += f"; {len(incomplete)} more lack values that the check needs." if incomplete else "."
+    fail, lack = ("s" * (len(some) == 1) for some in (failing, incomplete))
+    verdict = f"{len(failing)} of {len(rows)} moorings fail{fail} in at least one environment"
+    more = f"; {len(incomplete)} more lack{lack} values that the check needs"
+    verdict += f"{more * bool(incomplete)}."
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
     yield Prose(((Span(head, state), Span(verdict)),), state)
     called = {name: DEFAULT_ENVIRONMENT if name == OWN else name for name in shown}
     note = ", ".join(f"{codes[name]} {short(called[name], 24)}" for name in shown)
     note += ". Launch includes recovery and breaks."
     if len(shown) < len(names):
-        note += f" {len(names) - len(shown)} milder environments are omitted."
+        note += f" Milder environments omitted: {len(names) - len(shown)}."
     yield table_of(
         "Highest utilisation, %",
         rows,

@@ -254,15 +254,15 @@ def _breaks(assessment: Assessment) -> Table:
     note = ""
     if rows:
         note = (
-            f"{len(assessment.backup)} breaks were computed; each row shows the most critical "
-            "break of a section. "
+            f"Breaks computed: {len(assessment.backup)}. Each row shows the most critical break of "
+            "a section. "
         )
     if left > 0:
-        note += f"{left} sections with a larger margin are omitted. "
+        note += f"Sections with a larger margin omitted: {left}. "
     if unjudged:
         note += (
-            f"{unjudged} breaks within the lowest floats, or between them and the release, would "
-            "leave the release on the seabed in any design and are not judged."
+            f"Breaks not judged: {unjudged}. They are within the lowest floats, or between these "
+            "and the release, and would leave the release on the seabed in any design."
         )
     return table_of(
         "Breaks and losses",

@@ -225,11 +225,8 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
             break
         kept.append(item)
     left = items[len(kept) :]
-    notes = (
-        [f"{len(left)} more open items are in the report (--report) and the JSON (--json)"]
-        if left
-        else []
-    )
+    more = f"{len(left)} more open item{'s' * (len(left) != 1)}"
+    notes = [f"{more}: see the report (--report) or the JSON (--json)"] if left else []
     unknown = [one.head.removesuffix(".") for one in left if one.state is State.UNKNOWN]
     notes += wrap(f"Also unknown: {'; '.join(unknown)}.", _WIDTH - 3) if unknown else []
     return blocks.OpenItems("Open items", tuple(kept), "\n".join(f"   {one}" for one in notes))
@@ -270,7 +267,7 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     places = f"{len(names)} ENVIRONMENT{'S' * (len(names) != 1)}"
     head = f"DESIGN CHECK OF {len(rows)} MOORINGS IN {places}: {outcome}"
     yield Prose(((Span(head, state),),))
-    milder = f"; {len(names) - len(kept)} milder environments omitted" * (len(kept) < len(names))
+    milder = f"; milder environments omitted: {len(names) - len(kept)}" * (len(kept) < len(names))
     room = max(20, _WIDTH - 6 * len(kept) - 8)
     yield blocks.table_of(
         "",

@@ -202,8 +202,9 @@ def lifts_part(deck: Deck) -> ReportPart:
     note = (
         "In air: crane load of the piece with its clamps; cables are paid out instead. Suspended: "
         "weight in water of all pieces over the side, hanging vertically; in a net, of the leg "
-        "alone. A negative value means that they float. Drag and swell are not included. Shackles, links and "
-        "swivels are lifted with the adjacent pieces; the files list them in separate rows."
+        "alone. A negative value means that they float. Drag and swell are not included. Shackles, "
+        "links and swivels are lifted with the adjacent pieces; the files list them in separate "
+        "rows."
     )
     return ReportPart("Lifts", (blocks.Prose(tuple(sentences)), _stages(deck), Note((note,))))
 

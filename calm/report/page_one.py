@@ -231,7 +231,7 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
         note = "The table has the case with the largest knockdown of each environment."
     if len(cases) > MOST_CASES:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
-        note += f" {len(cases) - MOST_CASES} less severe cases are omitted."
+        note += f" Less severe cases omitted: {len(cases) - MOST_CASES}."
         cases = [one for one in cases if one in kept]
     return cases, note
 

@@ -128,7 +128,7 @@ def _travel(profiler: ProfilerTravel) -> str:
 def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     """Describe the top, the line and, if the leg is anchored, the anchor load."""
     top = result.top
-    off = f"{say('offset', math.hypot(top.x, top.y))} from the anchor" * result.leg.anchored
+    off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
         text = [", ".join(filter(None, ("at the surface", off)))]
         text.append(f"{100 * top.used_buoyancy:.1f} % of its buoyancy in use, reserve buoyancy "
@@ -155,11 +155,11 @@ def _line_text(result: LegResult) -> str:
     if result.anchor_load.grounded_length > 0.0:
         text += f", {say('grounded_length', result.anchor_load.grounded_length)} on the seabed"
     most = max(rows, key=lambda row: row.tension)
-    text += f"; highest tension {say('tension', most.tension)} in {most.label}"
+    text += f"; largest tension {say('tension', most.tension)} in {most.label}"
     known = [row for row in rows if not math.isnan(row.safety_factor)]
     if known:
         least = min(known, key=lambda row: row.safety_factor)
-        text += f"; lowest safety factor {least.safety_factor:.1f} in {least.label}"
+        text += f"; least safety factor {least.safety_factor:.1f} in {least.label}"
     return text
 
 

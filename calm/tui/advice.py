@@ -273,7 +273,7 @@ def differences(before: View, after: View) -> list[str]:
     elif after.failure is not None:
         effects.append(f"no equilibrium: {after.failure.message}")
     if idle := [when for when, view in (("before", before), ("now", after)) if not view.result]:
-        return [*effects, f"findings were not judged {' and '.join(idle)} (no equilibrium)"]
+        return [*effects, f"findings: not judged {' and '.join(idle)} (no equilibrium)"]
     words = {"failures": State.FAIL, "unknown values": State.UNKNOWN, "warnings": State.WARN}
     for word, state in words.items():
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]

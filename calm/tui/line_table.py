@@ -24,7 +24,7 @@ _TAIL = 4
 _EMPTY = (
     "  The line is empty.",
     "  a   adds the first piece, from the catalogue",
-    "  b   begins with a mooring: deep, shelf, ADCP, taut or slack surface; a tow",
+    "  b   starts from a template: deep, shelf, ADCP, taut or slack surface, or tow",
 )
 
 

@@ -162,7 +162,7 @@ def _mooring(
     from calm.checks.strength import anchor_weight
 
     anchor, top = result.anchor_load, result.top
-    pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} from the vertical"
+    pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
     yield VerdictLine(pull, heading="Anchor")
     yield _holds(result, _worst(findings, anchor_weight), pending, held)
     if result.type == "surface":

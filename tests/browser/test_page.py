@@ -272,7 +272,7 @@ def test_it_works_without_a_network_and_goes_on_where_it_was(browser, address):
     first = Visit(context, address)
     first.page.click("text=New")
     first.shows("The line is empty")
-    first.page.keyboard.type("b")  # begins with a mooring: the first of the list
+    first.page.keyboard.type("b")  # starts from a template: the first of the list
     first.shows("Begin with")
     first.page.keyboard.press("1")
     first.shows("not saved")

@@ -35,7 +35,7 @@ def in_terminal(monkeypatch):
         ("--catalog", "weight.yaml", "weight.yaml:1:32: `weight: 5000` needs a unit"),
         ("--environment", "broken.yaml", "broken.yaml:2:1: is not valid YAML"),
         ("--environment", "bad.yaml", "bad.yaml:1:32: `speed: -1 m/s` must be at least 0 m/s"),
-        ("--environment", "none.yaml", "none.yaml: neither a file nor an environment of m.yaml"),
+        ("--environment", "none.yaml", "none.yaml is neither a file nor an environment of m.yaml"),
         ("--environment", "strom", "m.yaml; did you mean `storm`?"),
     ],
 )

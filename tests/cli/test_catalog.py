@@ -245,7 +245,7 @@ def test_catalogue_of_ones_own_is_listed_last(calm, tmp_path):
 
 def test_search_says_how_it_read_a_misspelt_word(calm):
     done = calm("catalog", "list", "releese", "ar861", "--json")
-    assert done.err == "no component matches `releese ar861`; searched for `release ar861`\n"
+    assert done.err == "no component matches `releese ar861`; showing matches for `release ar861`\n"
     assert "release-ar861" in [each["id"] for each in json.loads(done.out)]
 
 

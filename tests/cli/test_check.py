@@ -246,7 +246,7 @@ def test_a_tow_is_refused(calm, folder):
     (folder / "tow.yaml").write_text(text)
     done = calm("check", "tow.yaml")
     assert (done.code, done.out) == (2, "")
-    assert "calm check is for moorings; these are tows: tow.yaml" in done.err
+    assert "calm check is only for moorings; these are tows: tow.yaml" in done.err
 
 
 def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
@@ -272,7 +272,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "named storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
-        (("m.yaml", "--report", "m.yaml"), "the output is a folder, but"),
+        (("m.yaml", "--report", "m.yaml"), "the output must be a folder, but"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
         (("missing.yaml",), "missing.yaml"),
         ((), "FILE"),

@@ -131,7 +131,7 @@ def test_optional_values_are_listed_as_comments(calm, folder):
         f"{line.replace('sbe56-uwa', 'sbe37')}components:\n{SPACER}", encoding="utf-8"
     )
     done = calm("check", "m.yaml", "--missing", "-o", "block.yaml")
-    assert done.err.rstrip().endswith("block.yaml written; it has only comments")
+    assert done.err.rstrip().endswith("block.yaml written; it contains only comments")
     block = (folder / "block.yaml").read_text(encoding="utf-8")
     assert block.startswith("# No check lacks a value.\n")
     assert "#   swivel-13:\n#     working_load:  # estimated: at least 9.81 kN\n" in block

@@ -345,7 +345,7 @@ def test_usage(calm, folder, write_mooring):
         (("m.yaml",), "needs -o path"),
         (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
         (("m.yaml", "-o", "file"), "is a file"),
-        (("tow.yaml", "-o", "out"), "calm deck is for moorings; these are tows: tow.yaml"),
+        (("tow.yaml", "-o", "out"), "calm deck is only for moorings; these are tows: tow.yaml"),
         (("m.yaml", "-o", "out", "--ship-speed", "2"), "--ship-speed: `2` needs a unit: `2 m/s`?"),
         (("m.yaml", "-o", "out", "--ship-speed", "0 m/s"), "too slow to stream the line"),
         (("m.yaml", "-o", "out", "--streamed", "2 km"), "must be shorter than the line"),

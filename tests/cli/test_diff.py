@@ -146,7 +146,7 @@ def test_the_mistakes_of_both_files_at_once(calm, broken, write_mooring, folder)
     [
         (("m.yaml",), "m.yaml has no `deployed:` to compare its design with"),
         (("m.yaml", "tow.yaml"), "a mooring cannot be compared with a tow"),
-        (("tow.yaml",), "tow.yaml is a tow; give the file to compare it with"),
+        (("tow.yaml",), "tow.yaml is a tow; name a second tow to compare it with"),
         (("m.yaml", "none.yaml"), "none.yaml"),
     ],
 )
@@ -180,4 +180,4 @@ def test_against_needs_a_report_of_one_mooring(calm, two):
     for words in (("b.yaml",), (*two, "--report", "out")):
         done = calm("check", *words, "--against", "a.yaml")
         assert done.code == 2
-        assert "--against compares one mooring" in done.err
+        assert "--against needs --report and exactly one mooring" in done.err

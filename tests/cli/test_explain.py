@@ -68,7 +68,7 @@ def test_tows_are_refused(calm, folder, write_mooring):
     done = calm("run", write_mooring(), "tow.yaml", "--explain")
     assert done.code == 2
     assert done.out == ""
-    assert done.err == "calm: --explain is for moorings; these are tows: tow.yaml\n"
+    assert done.err == "calm: --explain is only for moorings; these are tows: tow.yaml\n"
 
 
 def test_columns_fit_a_terminal(calm, write_mooring):

@@ -676,7 +676,7 @@ def test_a_piece_of_a_net_is_sized(net: Path, capsys: pytest.CaptureFixture[str]
     (anchor,) = document(net, capsys)["anchors"]
     assert anchor["required_weight"] == pytest.approx(10e3, rel=1e-5)
     assert run("size", net, "--target", "knockdown <= 1 m", *change) == 2
-    assert "add a piece: `knockdown(LABEL)`" in capsys.readouterr().err
+    assert "name a piece: `knockdown(LABEL)`" in capsys.readouterr().err
 
 
 def test_more_floats_in_one_leg_move_no_other(net: Path) -> None:

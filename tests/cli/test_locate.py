@@ -272,7 +272,7 @@ def test_the_plot(calm, ranges, folder):
     svg = (folder / "circles.svg").read_text(encoding="utf-8")
     words = words_of(svg)
     assert {
-        "all ranges, numbered by their lines in the file",
+        "all ranges, with their line numbers in the file",
         "2",
         "7",
         "north of the anchor [m]",

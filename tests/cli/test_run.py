@@ -175,8 +175,8 @@ def test_catalogue_of_ones_own(calm, write_mooring, folder):
         (["-o", "same.csv", "-o", "./same.csv"], "two outputs have the same path, same.csv"),
         (["-o", "-"], "cannot write -: its name must end in"),
         (["-o", "m.yaml"], "cannot write m.yaml: its name must end in"),
-        (["-o", "--explain"], "--explain was given where a path is needed"),
-        (["--json", "x.json"], "--json - prints the result; -o FILE.json writes a file"),
+        (["-o", "--explain"], "a file name is expected, not the option --explain"),
+        (["--json", "x.json"], "the value must be -, which prints the result"),
     ],
 )
 def test_hopeless_outputs_are_refused_before_solving(
@@ -246,7 +246,9 @@ def test_units_that_are_none(calm, write_mooring, units):
     done = calm("run", write_mooring(), "--units", units)
     assert done.code == 2
     assert done.out == ""
-    assert "is none of force=N|kN|kgf|lbf, length=m|ft, speed=m/s|cm/s|kn, mass=kg|lb" in done.err
+    assert (
+        "must be one of force=N|kN|kgf|lbf, length=m|ft, speed=m/s|cm/s|kn, mass=kg|lb" in done.err
+    )
 
 
 def test_units_of_a_file_that_are_none(calm, write_mooring, folder):

@@ -79,7 +79,7 @@ def test_the_band_measured_at_sea_and_other_cut_offs(calm, buoy):
             f"{loads[each]:.0f}" for each in ("tension_std", "tension_max", "tension_min")
         ]
     low_sea = " ".join(calm("waves", buoy(), "--hs", "0.4 m", "--tp", "4 s").out.split())
-    assert "The height of this sea is outside that range." in low_sea
+    assert "The height of this sea is outside that range of Hs." in low_sea
     chain = told["fatigue"][1]
     assert chain["life_twice_cut_off"] <= chain["life"] <= chain["life_half_cut_off"]
 
@@ -120,14 +120,14 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
     [
         (("--hs", "0 m", "--tp", "6 s"), "--hs: must be above 0"),
         (("--hs", "2 m", "--tp", "-1 s"), "--tp: must be above 0"),
-        (("--hs", "2 m"), "--tp: missing"),
+        (("--hs", "2 m"), "missing: --tp"),
         (("--hs", "2", "--tp", "6 s"), "--hs"),
         (("--hs", "5 m", "--tp", "4 s"), "would break"),
         (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
         (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
         ((*SEA, "--duration", "2 s"), "--duration must be at least one minute"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
-        ((*SEA, "--scatter", "none.csv"), "--scatter contains heights"),
+        ((*SEA, "--scatter", "none.csv"), "a --scatter file already contains heights"),
         (("--scatter", "none.csv"), "none.csv"),
     ],
 )

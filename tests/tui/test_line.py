@@ -74,7 +74,7 @@ def test_hints_below_an_empty_line_are_not_cut(drive, folder, width):
         lines = driver.screen.splitlines()
         pane = " ".join(line[: driver.table.size.width].strip() for line in lines)
         assert "adds the first piece, from the catalogue" in " ".join(pane.split())
-        assert "ADCP, taut or slack surface; a tow" in " ".join(pane.split())
+        assert "ADCP, taut or slack surface, or tow" in " ".join(pane.split())
 
     drive(story, folder / "new.yaml", size=(width, 36))
 

@@ -215,7 +215,7 @@ def test_a_slack_line_has_an_excursion_without_drag():
 
 def test_still_water_has_nothing_to_explain(solve):
     explanation = explain(solve(plumb(speed="0 m/s")))
-    assert "There is no current, and so no drag." in explanation.notes
+    assert "There is no current, so there is no drag." in explanation.notes
     assert explanation.causes.knockdown == pytest.approx([0.0, 0.0])
 
 

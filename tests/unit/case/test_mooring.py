@@ -291,7 +291,7 @@ def test_only_chain_may_lie_on_the_seabed_below_a_sub_surface_float(solve):
     with pytest.raises(calm.NoEquilibrium) as caught:
         solve(weak, speed="0.1 m/s")
     assert caught.value.status == "no-equilibrium"
-    assert "Too little buoyancy" in caught.value.message
+    assert "too little buoyancy" in caught.value.message
     chained = FILE.replace("length: 40 m", "length: 40 m}\n  - {use: chain, length: 60 m")
     chained = chained.replace(
         "components:", "components:\n  chain: {kind: chain, diameter: 20 mm, source: test}"

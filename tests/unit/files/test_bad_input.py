@@ -342,7 +342,7 @@ ONE_MISTAKE = {
     ),
     "elongation of no points": (
         changed("length: 480 m", "length: 480 m, elongation: []"),
-        (11, 47, "`elongation`: an elongation curve needs a point with a load"),
+        (11, 47, "`elongation`: an elongation curve needs at least one point with a load above 0"),
     ),
     "elongation by force": (
         changed("length: 480 m", "length: 480 m, elongation: [[5 kN, 0.02]]"),

@@ -92,7 +92,7 @@ def test_an_interruption_leaves_no_temporary_file(tmp_path, monkeypatch):
 def test_a_file_in_the_folders_place_is_refused(tmp_path):
     path = tmp_path / "report"
     path.write_bytes(b"mine")
-    with pytest.raises(UsageError, match="the output is a folder"):
+    with pytest.raises(UsageError, match="the output must be a folder"):
         check_folder(path)
     with pytest.raises(UsageError, match="cannot write"):
         write_report(path, REPORT)

@@ -207,7 +207,7 @@ def test_a_mooring_without_equilibrium_is_reported(assessment):
     text = Page(calm.report.html.page(check_report([mooring_section(failed)]))).text
     assert "Default environment: no equilibrium" in text
     assert "The mooring has no equilibrium" in text
-    assert "Launch and recovery have no solution" in text
+    assert "Launch and recovery could not be computed" in text
 
 
 def test_one_environment_without_equilibrium_leaves_the_others(assessment):

@@ -310,7 +310,7 @@ def test_a_cell_of_the_matrix_is_black_where_a_mooring_fails(assessments, tmp_pa
     failing = judged(unaccepting("tidal-adcp.yaml", tmp_path), "ebb")
     report = check_report([short_section(failing), short_section(assessments("compact-adcp"))])
     tables = [block for block in report.front[0].blocks if isinstance(block, Table)]
-    (matrix,) = [table for table in tables if table.title == "Largest use, %"]
+    (matrix,) = [table for table in tables if table.title == "Highest utilisation, %"]
     heads = [column.heading for column in matrix.columns]
     assert heads == ["Mooring", "Water\nm", "E1", "E2", "Launch"]
     first, second = matrix.rows

@@ -53,7 +53,7 @@ def test_a_clamp_below_the_cut_is_refused():
 
 def test_a_line_too_heavy_to_stand_says_so():
     heavy = line(rigid(1.0, 300.0), rigid(0.8, -400.0), rope(0.0, weight=0.1))
-    with pytest.raises(NoEquilibrium, match="Too little buoyancy"):
+    with pytest.raises(NoEquilibrium, match="too little buoyancy"):
         fit_length(heavy, water(500), 2, 120.0, Settings())
 
 
