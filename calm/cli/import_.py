@@ -50,7 +50,7 @@ def import_(
     strict
         Reject files with missing values that CALM would have to guess.
     define
-        A macro of WHOI Cable, as NAME=VALUE, or the catalogue id for an oceanarray name, as
+        Set a macro of WHOI Cable, as NAME=VALUE, or the catalogue id for an oceanarray name, as
         "NAME=ID". Repeatable.
     environment
         Use this environment file instead of the environment in the imported file.

@@ -66,10 +66,10 @@ def locate(
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
-        Mooring file in which position and depth are written to `deployed:`. The distance from its
-        planned position is reported. If two positions remain, if the depth differs from the planned
-        depth by more than 30 m or 3 %, or if the position is doubtful for another reason, nothing
-        is written and the exit code is 1.
+        Mooring file in which position and depth are written to `deployed:`. The distance of the
+        anchor from its planned position is reported. If two positions remain, if the depth differs
+        from the planned depth by more than 30 m or 3 %, or if the position is doubtful for another
+        reason, nothing is written and the exit code is 1.
     accept
         Write the position even if it is doubtful.
 

@@ -80,7 +80,8 @@ def motion(
         Withhold each sensor in turn, and compare its measured depths with the estimate.
     correct
         Faults to correct in faulty sensors, separated by commas: clock, gain, offset, drift; or
-        air, for absolute pressures. The history attribute of the output lists the corrections.
+        air, for pressures that include the air pressure. The history attribute of the output lists
+        the corrections.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags

@@ -71,7 +71,7 @@ def run(
         equilibrium has a row with its status, and the exit code is then 3.
     explain
         Show the contribution of each drag force to the knockdown, and the effect of
-        more buoyancy, less drag, and more or less current; also in JSON. Not for tows.
+        more buoyancy, less drag, and more or less current. Also applies to --json. Not for tows.
     schematic
         Print a schematic (not to scale) above the table, or instead of it if there
         is no equilibrium.
@@ -79,7 +79,7 @@ def run(
         Solve each mooring for many samples of the inputs under `uncertainty` in
         its file (current, drag, buoyancy, lengths, depth), and print the 5th, 50th
         and 95th percentiles of the results and the contribution of each input to
-        the spread; also in the JSON, the plot and the reports.
+        the spread. The JSON, the plot and the reports include these, too.
     verbose
         Also print the numerical error and solver statistics.
 

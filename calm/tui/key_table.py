@@ -71,7 +71,7 @@ equipment | N | serial number |  | Edit serial number, calibration, sampling, ba
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | Go to the next match.
 find_next(-1) | less_than_sign | find previous |  | Go to the previous match.
-weakest | percent_sign | weakest |  | Go to the piece with the highest use of strength.
+weakest | percent_sign | weakest |  | Go to the piece with the highest utilisation of strength.
 column | number_sign | fill column |  | Fill in serial numbers, lengths, labels or codes of the
   marked rows, or of all rows with the component under the cursor; a list can be pasted.
 repeat | plus | repeat |  | Add several copies of the piece, or of the marked pieces.
@@ -90,8 +90,8 @@ move_column(1) | right | right | - | Go to the column on the right.
 screen.back | escape | back | - | Return to the line of the verdict that led here.
 [anywhere] On the main screen
 undo | u | undo | 3 | Undo the last change; repeat to undo earlier changes.
-suspend | ctrl+z | suspend |  | Suspend to the shell (`fg` returns); undo while a value is edited
-  or in a browser.
+suspend | ctrl+z | suspend |  | Suspend CALM (`fg` in the shell resumes it); while a value is
+  edited, or in a browser, undo.
 redo | U,ctrl+y | redo |  | Redo the last undone change.
 water | w | water | 4 | Edit depth, density, current and wind of the environments.
 next_environment | e | environment |  | Show the line in the next environment.
@@ -113,7 +113,7 @@ sheet('document') | M | document |  | Edit number, revisions, author, ship and c
   block.
 sheet('deployed') | at | as deployed |  | Edit date, position and depth of the deployment, and
   serial number, length, remark and release codes of the row.
-sheet('tow') | T | tow |  | Edit speed and course of a tow; turns a mooring into a tow.
+sheet('tow') | T | tow |  | Edit speed and course of a tow, or turn a mooring into a tow.
 settings | comma | settings |  | Edit solver, limits of the check, uncertainty and units of output.
 begin | b | begin |  | Start an empty line from a template: deep, shelf, ADCP, taut or slack surface
   mooring, or tow.
@@ -126,7 +126,7 @@ app.save_as | S | save as |  | Save the file under another name.
 app.help | question_mark,f1 | help | 2 | Show all keys.
 app.command_palette | ctrl+p,colon | commands | - | Find any of these actions by name.
 app.repaint | ctrl+l | repaint |  | Redraw the whole screen.
-app.quit | q,ctrl+q | quit | 11 | Quit; prompts for unsaved changes.
+app.quit | q,ctrl+q | quit | 11 | Quit; CALM asks about unsaved changes.
 [verdict] The verdict, line by line
 move(-1) | up | up |  | Go to the line above that leads to a row.
 move(1) | down | down |  | Go to the line below that leads to a row.
@@ -142,10 +142,11 @@ abandon | escape | cancel | 2 | Cancel editing.
 [catalogue] The catalogue
 choose(-1) | up | up |  | Go to the component above.
 choose(1) | down | down |  | Go to the component below.
-choose(-10) | pageup | page up |  | Go up by ten.
-choose(10) | pagedown | page down |  | Go down by ten.
+choose(-10) | pageup | page up |  | Go up by ten components.
+choose(10) | pagedown | page down |  | Go down by ten components.
 sort | f4 | sort | 1 | Sort by net force, loads, depth rating, drag or mass.
-mark | f3 | favourite | 2 | Add to the favourites, or remove; favourites come first, in every file.
+mark | f3 | favourite | 2 | Add the component to the favourites, or remove it; favourites are
+  listed first, in every file.
 take | enter | insert | 0 | Add the component to the line.
 close | escape | close | 3 | Return to the line.
 [water] The water
@@ -166,8 +167,8 @@ move_row(-1) | up | up |  | Go to the row above; from the first row to the previ
 move_row(1) | down | down |  | Go to the row below; from the last row to the next field.
 move_cell(1) | tab | next cell |  | Go to the next value of the table.
 move_cell(-1) | shift+tab | previous cell |  | Go to the previous value of the table.
-move_column(-1) | left | left |  | Go to the left.
-move_column(1) | right | right |  | Go to the right.
+move_column(-1) | left | left |  | Go to the column on the left.
+move_column(1) | right | right |  | Go to the column on the right.
 edit | enter,f2 | edit | 0 | Edit the value; typing a digit also starts editing.
 add_row(1) | a,insert | add row | 1 | Add a row below.
 add_row(0) | A | add above |  | Add a row above.
@@ -177,7 +178,7 @@ turn(-1) | left | previous |  | Show the previous word.
 turn(1) | right,space | next |  | Show the next word.
 app.focus_next | enter | go on |  | Go to the next field.
 [given] The form of density or current
-take | enter | accept |  | Choose the form shown, and go on.
+take | enter | accept |  | Choose the form shown, and go to the next field.
 [text] The file as text
 app.save | ctrl+s | save | 1 | Save the file.
 find | ctrl+f | find | 4 | Find words in the text.
@@ -274,7 +275,7 @@ _GROUND = (
 _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
     "On every screen, with Ctrl+P and Ctrl+Q": Screen.BINDINGS,
     "While a value is typed": Input.BINDINGS,
-    "In addition, while the text is typed": TextArea.BINDINGS,
+    "In addition, while text is typed": TextArea.BINDINGS,
     "Pictures, verdict and texts longer than the screen": ScrollableContainer.BINDINGS,
 }
 """Keys that Textual's widgets define, with their descriptions."""
