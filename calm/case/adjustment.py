@@ -29,7 +29,7 @@ MOST_COUNT = 1000
 Parts = tuple[Piece | Clamp, ...]
 
 _ANCHOR_WEIGHT = (
-    "the weight that it needs follows from its load: `calm run` prints the weight required, and "
+    "the weight that the anchor needs follows from its load: `calm run` prints the weight required, and "
     "`calm check` the largest of all situations"
 )
 

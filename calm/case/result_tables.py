@@ -51,7 +51,7 @@ class Columnar:
 
     def __init__(self, **columns: Any) -> None:
         if sorted(columns) != sorted(self.names()):
-            raise TypeError(f"the columns of {type(self).__name__} are {', '.join(self.names())}")
+            raise TypeError(f"{type(self).__name__} has only the columns {', '.join(self.names())}")
         self.__dict__ = {name: columns[name] for name in self.names()}
 
     if TYPE_CHECKING:

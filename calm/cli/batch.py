@@ -44,7 +44,7 @@ def batch(
 
     Each profile replaces the current in the file. The result has values for every
     component and every clamped instrument at each time step. For a profile without
-    equilibrium they are NaN, and the status gives the reason. Statistics are
+    equilibrium, these values are NaN, and the status gives the reason. Statistics are
     printed, and written to RESULT.summary.json and RESULT.summary.html.
 
     The result is written completely or not at all. After an interruption, run the
@@ -66,7 +66,7 @@ def batch(
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
     no_statistics
-        Write no statistics, for instance for part of a longer record.
+        Write no statistics, for instance if the record is only part of a longer one.
 
     Examples
     --------

@@ -34,8 +34,8 @@ def import_(
     """Convert designs of other programs to mooring files.
 
     The program is recognised from the content of the file. Values
-    that the file lacks are guessed. Each guess is marked with a comment on its
-    line, and reported; so are omissions. If CALM cannot represent a design, the
+    that the file lacks are guessed. Guesses and omissions are reported, and marked
+    with comments in the mooring file. If CALM cannot represent a design, the
     reason is reported and nothing is written.
 
     Parameters

@@ -91,8 +91,8 @@ def motion(
     onto
         A NetCDF file of instruments, or a folder of such files. OUTPUT is then a copy to
         which depths are added with their standard deviations and flags (`depth` for several
-        instruments, `DEPTH` for one). The result itself is written next to it, with a name
-        ending in .motion.nc. Instruments are identified by label, serial number or nominal
+        instruments, `DEPTH` for one). The result itself is written next to OUTPUT, with a
+        name ending in .motion.nc. Instruments are identified by label, serial number or nominal
         depth.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.

@@ -33,8 +33,9 @@ def waves(
     """Estimate tensions and motions of a mooring in waves, about its equilibrium.
 
     The model is linear: it computes small motions about the shape in the mean
-    current, with drag linearised for equal dissipation. It is not valid if a
-    piece goes slack; the status is then slack-in-waves and the exit code 3.
+    current, with drag linearised for equal dissipation. A linear model is not
+    valid if a piece goes slack; the status is then slack-in-waves, and the exit
+    code is 3.
     Without --hs, --scatter or a file for --spectrum, CALM uses the sea states
     under `waves:` in the environment, which may also specify a swell and a
     peakedness.
@@ -83,7 +84,7 @@ def waves(
     if not seas:
         missing = "--hs is" if spectrum in OF_HEIGHT else "--hs and --tp are"
         raise UsageError(
-            f"{missing} missing; set them here, use --scatter, or add `waves:` to {file}"
+            f"{missing} missing; alternatively, use --scatter, or add `waves:` to {file}"
         )
     if direction is None:
         direction = 90.0 if given is None else given.toward
