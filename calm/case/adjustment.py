@@ -29,8 +29,8 @@ MOST_COUNT = 1000
 Parts = tuple[Piece | Clamp, ...]
 
 _ANCHOR_WEIGHT = (
-    "the weight that the anchor needs follows from its load: `calm run` prints the weight required, and "
-    "`calm check` the largest of all situations"
+    "the weight that the anchor needs follows from its load: `calm run` prints the weight "
+    "required, and `calm check` the largest of all situations"
 )
 
 

@@ -119,7 +119,7 @@ def check(
     if nets and uncertainty:
         from calm.files.legs import NET_SURE
 
-        raise UsageError(f"--uncertainty is for {NET_SURE}: {nets[0]}")
+        raise UsageError(f"--uncertainty is only for {NET_SURE}: {nets[0]}")
     own = names_of_files(designs, report, ["report"]) if drawing.full and report else []
     options.show_units(units, [one.file for design in designs for one in design.moorings])
     judged = judge(designs, workers, drawn, draws)

@@ -386,10 +386,7 @@ class WaterScreen(screen.DraftScreen):
             answers = dialogs.numbered(
                 (name, partial(take, each)) for name, each in PRESETS.items()
             )
-            text = (
-                f"This fills in a table of a current towards the east, down to {down}. Edit it as "
-                "needed."
-            )
+            text = f"The table goes down to {down}. The current is towards the east; edit it."
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:

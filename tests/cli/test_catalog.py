@@ -171,7 +171,7 @@ def test_search_takes_a_bare_fraction_for_inches_and_drops_a_word_that_nothing_h
     [
         (["upward", "adcp"], "adcp-workhorse", "these match most of them"),
         (["single", "point", "current", "meter"], "current-meter-cdms", "none matches `point`"),
-        (["wyre"], "wire-jacketed-8-5", "searched for `wire`"),
+        (["wyre"], "wire-jacketed-8-5", "showing matches for `wire`"),
     ],
 )
 def test_the_components_with_most_words_are_found(calm, words, first, says):
@@ -251,7 +251,7 @@ def test_search_says_how_it_read_a_misspelt_word(calm):
 
 def test_a_short_word_with_another_first_letter_is_not_misspelt(calm):
     done = calm("catalog", "list", "back-up", "buoyancy")
-    assert "searched for" not in done.err and "none matches `back`" in done.err
+    assert "showing matches" not in done.err and "none matches `back`" in done.err
 
 
 def test_search_keeps_limits_and_puts_what_is_used_first(calm):
@@ -292,7 +292,7 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
     ("id", "figures", "said"),
     [
         ("Bad_Glass", GLASS, "did you mean `bad-glass`?"),
-        ("glass", ("kind=sphere", "diameter"), "not KEY=VALUE: diameter"),
+        ("glass", ("kind=sphere", "diameter"), "values must be written KEY=VALUE"),
         ("glass", ("kind=spere", *GLASS[1:]), "did you mean `kind: sphere`?"),
         ("glass", (*GLASS[:2], "diametr=432 mm", "buoyancy=250"), "did you mean `diameter`?"),
         (

@@ -107,7 +107,7 @@ def test_several_moorings_in_several_environments(calm, write_mooring, storm):
     assert calm(*words, "--json", "-", "--workers", "2").out == done.out
     matrix = calm(*words).out.splitlines()
     assert matrix[0].startswith("DESIGN CHECK OF 2 MOORINGS IN 2 ENVIRONMENTS: ")
-    assert matrix[2].split() == ["largest", "use,", "%", "E1", "E2", "launch"]
+    assert matrix[2].split() == ["highest", "utilisation,", "%", "E1", "E2", "launch"]
     assert "E1 storm, E2 calm" in matrix
     for line in matrix[3:5]:
         assert re.fullmatch(r"(One|Two) +>?\d+[~!? ]? +>?\d+[~!? ]? +\d+[~!? ]?", line)

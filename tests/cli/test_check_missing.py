@@ -158,7 +158,7 @@ def test_a_missing_value_is_not_also_optional(calm, folder):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("-o", "x.yaml"), "-o needs --missing"),
+        (("-o", "x.yaml"), "-o can only be used with --missing"),
         (("--missing", "--json", "-"), "--missing replaces the findings"),
         (("--missing", "-o", "m.yaml"), "m.yaml is the input file; choose another output"),
     ],

@@ -206,14 +206,14 @@ def test_check_refuses_to_count_samples_of_a_net(
     net: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run("check", net, "--uncertainty") == 2
-    assert "--uncertainty is for single lines" in capsys.readouterr().err
+    assert "--uncertainty is only for single lines" in capsys.readouterr().err
 
 
 def test_options_for_single_lines_are_refused(
     net: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run("run", net, "--uncertainty") == 2
-    assert "--uncertainty is for single lines" in capsys.readouterr().err
+    assert "--uncertainty is only for single lines" in capsys.readouterr().err
 
 
 def test_files_of_a_net_have_the_leg_of_each_part(

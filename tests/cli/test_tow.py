@@ -67,7 +67,7 @@ def test_every_output_of_run_takes_a_tow(calm, write_tow, write_mooring, folder)
 def test_moorings_have_no_speeds(calm, write_tow, write_mooring):
     done = calm("run", write_tow(), write_mooring(), "--speeds", "1 m/s:2 m/s:1 m/s")
     assert (done.code, done.out) == (2, "")
-    assert done.err == "calm: --speeds is for tows; these are moorings: m.yaml\n"
+    assert done.err == "calm: --speeds is only for tows; these are moorings: m.yaml\n"
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_a_sweep_is_drawn(calm, write_tow, folder):
         ("1 knot:2 kg:0.5", "`0.5` needs a unit"),
         ("1 knot:2 knot:0 knot", "step of 0 m/s"),
         ("1 knot:2 knot:-1 knot", "must be above 0"),
-        ("2 knot:1 knot:0.5 knot", "below its beginning"),
+        ("2 knot:1 knot:0.5 knot", "below its first speed"),
         ("0 knot:1 knot:0.5 knot", "a speed above 0"),
         ("-1 knot:1 knot:0.5 knot", "a speed above 0"),
         ("1 m/s:2 m/s:0.0001 m/s", "more than 10000 speeds"),

@@ -15,7 +15,7 @@ def test_an_empty_line_begins_with_a_mooring(drive, number):
     kind = list(TEMPLATES)[number - 1]
 
     async def story(driver):
-        assert "b   begins with a mooring" in driver.screen
+        assert "b   starts from a template" in driver.screen
         await driver.press("b", str(number))
         assert driver.text == template(kind)
         await driver.settle()

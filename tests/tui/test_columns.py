@@ -144,7 +144,7 @@ def test_the_weakest_piece_is_found(drive):
             if each.rule == strength.name and each.utilisation is not None
         ]
         assert driver.table.spot == max(strengths)[1]
-        assert "Highest use of strength" in driver.screen
+        assert "Highest utilisation of strength" in driver.screen
 
     drive(story, shipped_folder("lines") / "deep-current-meters.yaml")
 

@@ -159,7 +159,7 @@ def test_a_file_without_anything_offers_a_start(drive, folder, text):
     path.write_text(text, encoding="utf-8")
 
     async def story(driver):
-        assert "b   begins with a mooring" in driver.screen
+        assert "b   starts from a template" in driver.screen
         await driver.press("b", "1", "ctrl+s")
         await driver.settle()
         assert path.read_text(encoding="utf-8").startswith("# A sub-surface mooring")

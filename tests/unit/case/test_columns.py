@@ -41,7 +41,7 @@ def test_a_table_that_was_read_by_rows_is_pickled_as_its_columns(clamps):
 def test_a_table_has_the_columns_of_its_rows_and_no_others(clamps):
     assert Clamps.names() == [field.name for field in fields(Clamps.record)]
     assert [*vars(clamps)] == Clamps.names()
-    with pytest.raises(TypeError, match="Clamps has only the columns part, index, use, label, depth"):
+    with pytest.raises(TypeError, match="Clamps has only the columns part, index, use, label"):
         clamps.with_columns(drag=np.zeros(2))
 
 

@@ -100,8 +100,8 @@ def test_mean_strain_is_that_of_all_tensions_between(points, tension, half):
         ([(-0.1, 0.1)], "is not above that of the point before"),
         ([(0.1, float("nan"))], "not a number"),
         ([(float("inf"), 0.1)], "not a number"),
-        ([(0.0, 0.0)], "needs a point"),
-        ([], "needs a point"),
+        ([(0.0, 0.0)], "needs at least one point"),
+        ([], "needs at least one point"),
     ],
 )
 def test_a_table_that_can_be_no_ropes_is_refused(points, message):
