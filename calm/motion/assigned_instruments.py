@@ -53,7 +53,7 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     InputError
         A file has mistakes, or the list has an unknown format.
     UsageError
-        The mooring is a tow, or has several legs; the order of the instruments is ambiguous; or the
+        The mooring is a tow or has several legs, the order of the instruments is ambiguous, or the
         YAML of the file cannot be edited automatically.
     """
     mooring = load(path)

@@ -26,7 +26,7 @@ REACH = 5.0
 class Common:
     """Estimate of the unknowns common to a whole record.
 
-    The q columns of the covariance are the logarithms of the factors, the datum [m] and the offsets
+    The q unknowns are, in this order, the logarithms of the factors, the datum [m] and the offsets
     of the sensors [m].
 
     Attributes
@@ -35,7 +35,8 @@ class Common:
     datum : correction added to the depths of the line [m]
     offset : (s,) offset of each sensor [m]
     covariance : (q, q) covariance of the unknowns
-    worst : error of the line itself, as a share of the knockdown, after all other corrections
+    worst : error of the computed line that remains after all corrections, as a share of the
+        knockdown
     law : prior distribution of the inferred current speeds; None if currents were measured
     """
 
@@ -58,7 +59,7 @@ class Common:
         return np.concatenate([logs, [self.datum], self.offset])
 
     def at(self, value: Floats) -> Common:
-        """Return a copy with new values (q,) of the unknowns; the factors are limited."""
+        """Return a copy with new values (q,) of the unknowns; extreme factors are clipped."""
         count = len(self.factors)
         factors = np.exp(np.clip(value[:count], -FURTHEST, FURTHEST)).tolist()
         return replace(
@@ -87,7 +88,12 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append the derivatives by datum and offsets to the derivatives (n, s, f) by the factors."""
+    """Append derivatives with respect to the datum and the offsets to those of the factors.
+
+    Parameters
+    ----------
+    common : (n, s, f) derivatives of the readings with respect to the logarithms of the factors
+    """
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
@@ -121,7 +127,7 @@ LONGEST_MEMORY = 25
 def repeated(pull: Floats) -> float:
     """Return the number of successive times that share an error.
 
-    It follows from the autocorrelation of `pull`.
+    The number follows from the autocorrelation of `pull`.
     """
     one = pull - pull.mean()
     whole = float(one @ one)
@@ -150,10 +156,11 @@ class LinearLaw:
     ----------
     time, share : (n,) times, and the share of the record that has elapsed (0 to 1)
     known : (n, s) whether a reading exists
-    raw, left : (n, s) measured less computed depths [m], with all unknowns zero, and with the
-        unknowns at the state about which the model is linearised
+    raw : (n, s) measured minus computed depths [m], with all unknowns zero
+    left : (n, s) the same differences with the unknowns at the state of linearisation
     expected : (n, s, s) covariance of `left`
-    fixed : (n, s, q) derivatives of the readings by the factors, the datum and the offsets
+    fixed : (n, s, q) derivatives of the readings with respect to the logarithms of the factors, the
+        datum and the offsets
     fall : (n, s) increase in the depth of each sensor per metre that it slips down the line
     """
 
@@ -186,7 +193,7 @@ class LinearLaw:
 
         Parameters
         ----------
-        seen : (n, s, q) derivatives of the readings by the unknowns
+        seen : (n, s, q) derivatives of the readings with respect to the unknowns
         left : (n, s) residuals [m]
         """
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
@@ -208,8 +215,8 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
     Parameters
     ----------
-    code : 0 for a wrong zero, the index of the time at which a slip begins, `MISHUNG`, or a code of
-        `RAMPS` for a drift
+    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong
+        place on the line throughout, or a key of `RAMPS` for a drift
     fall : (n,) increase in the depth of the sensor per metre that it slips down the line
     share : (n,) share of the record that has elapsed, 0 to 1
     """
@@ -223,7 +230,7 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 
     Parameters
     ----------
-    code : see `moved_by`
+    code : code of the fault, as in `moved_by`
     times : number of times at which a clamp may slip
     """
     if code in RAMPS:

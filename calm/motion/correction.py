@@ -156,7 +156,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
 
 
 def about(mooring: Design) -> Attributes:
-    """Return archive attributes from `document:` and `deployed:` of a mooring file."""
+    """Return archive attributes from the keys `document` and `deployed` of a mooring file."""
     file = mooring.file
     attributes: Attributes = {}
     if file.document is not None:
@@ -174,7 +174,10 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return flags of all depths: measured (points with a valid pressure), estimated or missing."""
+    """Return a flag for each depth: measured, estimated or missing.
+
+    A depth is flagged as measured if the point has a sensor with a valid pressure at that time.
+    """
     clamps = profiles.clamp_depth.shape[1]
     depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
@@ -214,10 +217,11 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """Input of the estimate of depths. `measured` contains only the sensors in use.
+    """Input of the estimate of depths.
 
-    `smoother` is the solution for the whole record if currents were measured, else None. `faults`
-    are the diagnosed faults; None means that the diagnosis has not been made.
+    `measured` contains only the sensors in use. `smoother` is the solution for the whole record, or
+    None if no currents were measured. `faults` are the diagnosed faults, or None if the diagnosis
+    has not been made.
     """
 
     mooring: Design
@@ -288,9 +292,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Replace results by NaN at times that are too far from any current (mask `lost`, (n,)).
+    """Replace the results with NaN at times that are too far from any measured current.
 
-    Their status becomes "implausible-current" where `false` is set, otherwise "no-current".
+    `lost` (n,) marks these times. Their status becomes "implausible-current" where `false` is true,
+    and "no-current" elsewhere.
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
@@ -304,7 +309,7 @@ def without_current(
 
 
 class MeasuredRecord(Record):
-    """Measured currents in the form of a `Record`, to write them to a result."""
+    """Measured currents as a `Record`, the form in which they are written to a result file."""
 
     def __init__(
         self,
@@ -317,7 +322,7 @@ class MeasuredRecord(Record):
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """See `Record`; the depth of levels on the line is NaN."""
+        """Return the levels of profiles as `Record.profiles` does; depths on the line are NaN."""
         one = self._measured.at(slice(start, stop))
         return one.level_depth, one.u, one.v, None
 

@@ -79,10 +79,11 @@ AGAIN = 3
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
-    """Return the measurements with knots of unknown current as their levels.
+    """Return the measurements with knots of unknown current in place of their current levels.
 
-    The uppermost knot is where the top of the line is in strong currents, because pressures contain
-    no information on the current above it. This depth comes from the uppermost sensor.
+    The uppermost knot is at the depth of the top of the line in strong currents, because pressures
+    contain no information on the current above the line. This depth is computed from the readings
+    of the uppermost sensor.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -102,7 +103,7 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
 
 
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
-    """Return prior mean (k,) and covariance (k, k) of the logarithms of the speeds [m/s]."""
+    """Return prior mean (k,) and covariance (k, k) of the log speeds at the knots [m/s]."""
     knots = measured.level_depth[0]
     mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
@@ -180,11 +181,11 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return the difference between measured and still-water depths if a sensor is too high [m].
+    """Return measured minus still-water depth [m] of the sensor that is farthest above its place.
 
-    Currents cannot raise a line. If even the shallowest readings of a sensor are above its place in
-    still water, the water depth, a length or the place in the file is wrong. The result is the
-    largest such difference, negative, or 0 if all are small.
+    Currents only lower a line. If the shallowest readings of a sensor are far above its place in
+    still water, the water depth, a length or the place in the file is wrong. The result is
+    negative, or 0 if no sensor is far above its place.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]
