@@ -66,12 +66,12 @@ _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 
 
 def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
-    """Return the reader for a text file of an instrument; None for any other file.
+    """Return the function that reads a text file of an instrument; None for any other file.
 
-    The reader returns a dataset with the names and attributes of OceanSITES. Times are seconds
+    The function returns a dataset with the names and attributes of OceanSITES. Times are seconds
     since 1970, and missing values are NaN. For currents, `INSTRUMENT_DEPTH` is computed from
-    pressure by TEOS-10, or is the nominal depth. The reader raises InputError if the file is
-    unreadable, has no times, or has an invalid row.
+    pressure by TEOS-10; without pressure, it is the nominal depth. The function raises InputError
+    if the file is unreadable, has no times, or has an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
