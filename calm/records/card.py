@@ -209,7 +209,7 @@ def cut(text: str) -> str:
 
 
 def description_of(attributes: Mapping[Any, Any]) -> str:
-    """Join the long name and comment in the attributes of a variable; cut to `LONGEST` characters."""
+    """Join long name and comment from the attributes of a variable, cut to `LONGEST` characters."""
     texts = (str(attributes.get(name, "")).strip() for name in ("long_name", "comment"))
     return cut("; ".join(filter(None, texts)))
 

@@ -76,7 +76,7 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
     Parameters
     ----------
     path, terms : path of the record, and options for reading its currents
-    time : period to read, as text for `parse_period`; None for the whole record
+    time : period to read, as returned by `parse_period`; None for the whole record
     every : n, if only every n-th profile is to be read
 
     Raises
