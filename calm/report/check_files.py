@@ -34,13 +34,14 @@ MUCH_USED = 0.5
 def listed_findings(
     assessment: Assessment, *, every: bool = False
 ) -> Iterator[tuple[Finding, bool]]:
-    """Yield the findings to list for a mooring, each with a flag: whether it governs its rule.
+    """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
-    The list contains the governing finding of each rule. It also contains the governing finding of
-    each rule on each component over all environments, unless this finding passes with a utilisation
+    The finding that governs a rule is its most severe finding, and has the flag set. The list
+    contains the governing finding of each rule. It also contains the most severe finding of each
+    rule on each component over all environments, unless this finding passes with a utilisation
     below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment. A cluster of
-    equal floats counts as a single component. With `every`, all findings of all situations are
-    listed.
+    equal floats counts as a single component. If `every` is true, all findings of all situations
+    are listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -68,7 +69,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
 
     Parameters
     ----------
-    every : list every finding instead of the selection of `listed_findings`
+    every : whether to list every finding instead of the selection made by `listed_findings`
 
     Returns
     -------
@@ -78,7 +79,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         with reasons; `findings`, the listed findings, and `findings_in_all`, their total number;
         `situations`, the solved situations of each mooring in each environment; and by name of each
         mooring, the `key_figures` of page one, `launch`, `recovery`, `backup`, `inventory` with its
-        `totals`, and the `document` if a file has any.
+        `totals`, and the `document` if a mooring file has one.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:
@@ -198,7 +199,7 @@ def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str
 
     Parameters
     ----------
-    every : list every finding, as in `check_document`
+    every : whether to list every finding, as in `check_document`
     """
     rows = (
         _finding_row(*listed)

@@ -29,7 +29,7 @@ _BOX = "☐"
 
 
 def cutting_part(deck: Deck) -> ReportPart:
-    """Build the cutting list, with lengths, marks, and their tolerances."""
+    """Build the cutting list, with cut lengths, positions of marks, and tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
         f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: effect "
@@ -143,7 +143,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 
 def shipping_part(deck: Deck) -> ReportPart:
-    """Build the shipping list; each sum is followed by the number of unknown values."""
+    """Build the shipping list; each sum is followed by the number of items of unknown value."""
 
     def at_least(heading: str, name: str, value: str, missing: str) -> Field:
         shown = QUANTITIES[name]
@@ -228,7 +228,7 @@ def _stages(deck: Deck) -> blocks.Table:
 def instruments_part(deck: Deck) -> ReportPart:
     """Build the instrument sheet, with depths, tilts and further data from the file.
 
-    It lists every release and every instrument, and floats or frames that hold an instrument.
+    The sheet lists all releases and instruments, and floats or frames that hold an instrument.
     """
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
     planned = any(one.item.planned_depth is not None for one in deck.instruments)

@@ -68,11 +68,12 @@ _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 @dataclass(frozen=True)
 class SignedMooring:
-    """Mooring with all data for its printed report.
+    """A mooring with all data for its printed report.
 
     Attributes
     ----------
-    assessment, cases : assessment of the mooring, and its load cases
+    assessment : assessment of the mooring
+    cases : load cases of the mooring
     items : numbered open items
     sha256 : hash of the inputs
     """
@@ -84,17 +85,17 @@ class SignedMooring:
 
     @property
     def standing(self) -> list[LoadCase]:
-        """Load cases for which there is an equilibrium."""
+        """Load cases that have an equilibrium."""
         return [one for one in self.cases if one.results]
 
     @cached_property
     def apart(self) -> frozenset[str]:
-        """Labels of connecting hardware that needs a row of its own."""
+        """Labels of those pieces of connecting hardware that need a table row of their own."""
         return standing_out(self.assessment.every_finding())
 
     @property
     def document(self) -> str:
-        """Document number and revision; "" without a number."""
+        """Document number and revision; "" if the document has no number."""
         given = self.assessment.file.document
         if given is None or not given.id:
             return ""
@@ -218,13 +219,13 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Return the columns that have at least one value in the load cases; no cell is bold."""
+    """Return the columns for which at least one load case has a value; no cell is bold."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
 
 def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
-    """Select the load cases that fit a table, and return a note on the omitted ones."""
+    """Select the load cases that fit in a table; also return a note on the omitted cases."""
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
@@ -237,7 +238,10 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
 
 
 def cases_table(signed: SignedMooring) -> Table:
-    """Tabulate the load cases. Governing values are bold; the last row names their components."""
+    """Tabulate the load cases; governing values are bold.
+
+    The last row names the components to which the governing values belong.
+    """
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
@@ -310,7 +314,7 @@ def governing_table(signed: SignedMooring) -> Table:
 def check_fields(longest: int) -> tuple[blocks.Field, ...]:
     """Return the columns of a table of findings, with bars.
 
-    The component in the last column is cut to about `longest` characters.
+    The name of the component in the last column is cut to about `longest` characters.
     """
     return (
         words("", lambda one: Cell(state=one.state), 0.0),
@@ -437,7 +441,7 @@ def afloat(result: LegResult) -> bool:
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """Return the parts of a leg as drawn; a row of equal items has one short name."""
+    """Return the parts of a leg as drawn; consecutive equal items share one short name."""
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
@@ -449,7 +453,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """Return mark and number of the first open item that concerns each rule and component."""
+    """Return the mark and number of the first open item on each pair of rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

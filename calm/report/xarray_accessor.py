@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """Access to batch results of a part of the line, by its label in the mooring file.
+    """Access to the batch results for a part of the line, by its label in the mooring file.
 
-    ``top`` is the first component, even if another part has that label. Data are loaded lazily. All
-    methods raise UsageError if the line has no part with the label.
+    The label ``top`` means the first component, even if another part has that label. Data are
+    loaded lazily. All methods raise UsageError if the line has no part with the given label.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """
@@ -46,7 +46,7 @@ class BatchAccessor:
     def tension(self, label: str) -> xr.DataArray:
         """Return the tension over time [N].
 
-        It is the tension at a clamp, or the larger tension at the two ends of a component.
+        For a component, the larger of the tensions at its two ends is returned.
         """
         upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)
@@ -55,8 +55,8 @@ class BatchAccessor:
     def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
         """Draw the line from the side, in the profile nearest to a given time, on matplotlib axes.
 
-        Without `ax`, a new figure is created. Raise UsageError if the profile has no equilibrium,
-        or if matplotlib is not installed.
+        If `ax` is None, a new figure is created. Raise UsageError if the profile has no
+        equilibrium, or if matplotlib is not installed.
         """
         axes = plot_elevation(shape_picture(self._dataset, time), ax)
         moment = when(_nearest(self._dataset, time)["time"].values)
