@@ -39,7 +39,7 @@ class LineKind(Enum):
 
 @dataclass(frozen=True)
 class Polyline:
-    """A line in a picture: `x` to the right, `y` along the vertical axis of the picture [m]."""
+    """A line in a picture: `x` to the right, and `y` along the vertical axis of the picture [m]."""
 
     kind: LineKind
     x: Floats
@@ -49,10 +49,10 @@ class Polyline:
 
 @dataclass(frozen=True)
 class PictureMark:
-    """A marked point of the line: component, name and role of the part, and its depth [m].
+    """A marked point of the line: component id, name, role and depth [m] of a part.
 
-    `x` and `y` are coordinates in the picture [m]; in `named_parts`, they are distances to the east
-    and north [m].
+    `x` and `y` are coordinates in the picture [m]. In the marks from `named_parts`, `x` and `y` are
+    distances to the east and north [m].
     """
 
     use: str
@@ -91,7 +91,7 @@ class LinePicture:
     seabed: float | None = None
 
     def span(self) -> tuple[float, float]:
-        """Return the minimum and maximum `x`; zero is included, the line in still water is not."""
+        """Return the minimum and maximum `x`, including zero but not the line in still water."""
         reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
         return min(0.0, *(float(x.min()) for x in reach)), max(
             0.0, *(float(x.max()) for x in reach)
@@ -200,16 +200,14 @@ def _band(uncertain: Uncertain) -> Polyline:
 def plane_of(result: AnyResult) -> Floats:
     """Return the horizontal direction (east, north) of the side view.
 
-    It points from the anchor to the free end of a mooring (east for an upright mooring), along the
-    largest extent of a net, or from the ship backward for a tow.
+    The direction is from the anchor to the free end of a mooring (east for an upright mooring),
+    along the largest extent of a net, or backward from the ship of a tow.
     """
     return plane_of_legs(result.legs)
 
 
 def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
-    """Return the horizontal direction (east, north) of the side view for one leg or for the legs of
-    a net; see `plane_of`.
-    """
+    """Return the direction of the side view for one leg or all legs of a net, as in `plane_of`."""
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
@@ -242,26 +240,35 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: AnyResult) -> float:
-    """Return the depth of the deepest seabed in the picture [m]: at an anchor, or at the end of a
-    slope that is drawn.
+    """Return the depth of the deepest seabed in the picture [m].
+
+    This seabed is at an anchor, or at the end of a slope that is drawn.
     """
     beds = (float(bed.y.max()) for bed in _beds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
-    """Return the coordinates of points (east, north) along a horizontal direction."""
+    """Return the distances of points along a horizontal direction.
+
+    Parameters
+    ----------
+    x, y : distances of the points to the east and north [m]
+    plane : (2,) direction, east and north
+    """
     return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
 
 
 def current_between(
     water: Water, top: float, bottom: float, samples: int = 200
 ) -> tuple[Floats, Floats, Floats]:
-    """Return depths, and the current to the east and north at these depths [m/s]. All levels of the
-    current profile are included.
+    """Return depths, and the current to the east and north at these depths [m/s].
+
+    All levels of the current profile are included.
 
     Parameters
     ----------
+    water : water with the current
     top, bottom : range of depths [m]
     samples : minimum number of depths
     """
@@ -293,9 +300,7 @@ def along_the_line(shape: Shape) -> Floats:
 
 
 def named_parts(result: AnyResult) -> list[PictureMark]:
-    """Return the floats, instruments, releases and anchors, whether in line or clamped, in file
-    order.
-    """
+    """Return all floats, instruments, releases and anchors, also if clamped, in file order."""
     parts = []
     for row, clamps in rows_down(result):
         ends = (
@@ -335,17 +340,17 @@ def differ_by_number(label: str, other: str) -> bool:
 
 
 def together(labels: list[str]) -> str:
-    """Join labels that differ only by a number at the end to one name: ``glass 1–6``."""
+    """Join labels that differ only by a number at the end to one name, such as ``glass 1–6``."""
     return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Shift positions so that they are at least `gap` apart, but as close as possible to the
-    `wanted` positions, which are in ascending order.
+    """Shift positions so that they are at least `gap` apart, but as little as possible.
 
-    Between `start` and `end`, the sum of the squared shifts is minimal. If not all positions fit,
-    they extend beyond the end. After subtraction of the gaps before each position, this is an
-    isotonic regression: descending runs are replaced by their mean.
+    The positions `wanted` are in ascending order. The new positions are between `start` and `end`,
+    and the sum of the squared shifts is minimal. If not all positions fit, they extend beyond the
+    end. If the gaps before each position are subtracted from it, this is an isotonic regression, in
+    which each descending run is replaced by its mean.
     """
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):

@@ -36,12 +36,12 @@ def listed_findings(
 ) -> Iterator[tuple[Finding, bool]]:
     """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
-    The finding that governs a rule is its most severe finding, and has the flag set. The list
-    contains the governing finding of each rule. It also contains the most severe finding of each
-    rule on each component over all environments, unless this finding passes with a utilisation
-    below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment. A cluster of
-    equal floats counts as a single component. If `every` is true, all findings of all situations
-    are listed.
+    Among several findings, the one with the largest utilisation governs. The list contains the
+    governing finding of each rule; its flag is true. The list also contains the governing finding
+    of each rule on each component over all environments, unless this finding passes with a
+    utilisation below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment.
+    A cluster of equal floats counts as a single component. If `every` is true, all findings of all
+    situations are listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
