@@ -328,7 +328,7 @@ def seabed_row(height: float) -> str:
 
 
 def row_height(part: ShownPart) -> float:
-    """Return the minimum row height for the symbol of a part."""
+    """Return the minimum height of a table row with the symbol of a part."""
     if part.sign.symbol in LINES:
         return 19.0
     scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE

@@ -161,7 +161,7 @@ def _days(months: Any, step: int) -> Any:
 
 
 def round_numbers(low: float, high: float, most: int) -> list[float]:
-    """Return about `most` round numbers between `low` and `high`, and at least two."""
+    """Return about `most` round numbers between `low` and `high`, but at least two."""
     raw = (high - low) / max(most, 1)
     power = 10.0 ** floor(log10(raw))
     step = next(power * each for each in _STEPS if power * each >= raw * (1.0 - 1e-9))
@@ -218,7 +218,7 @@ class LegendEntry(NamedTuple):
 
 
 class Graph:
-    """An SVG graph with a white background. Its width and height are in points."""
+    """An SVG graph with a white background; width and height are in points."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size
@@ -396,7 +396,7 @@ class Axes:
                 )  # fmt: skip
 
     def mark(self, x: float, y: float, sign: str, size: float, colour: str) -> None:
-        """Draw a mark at a point (see `draw_mark`)."""
+        """Draw a mark at a point; the arguments are as in `draw_mark`."""
         draw_mark(self.drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
 
     def frame(

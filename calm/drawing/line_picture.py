@@ -28,7 +28,7 @@ NAMED_ROLES = ("float", "instrument", "release", "anchor")
 
 
 class LineKind(Enum):
-    """Kind of a line in a picture; each output format draws the kinds differently."""
+    """Kind of a line in a picture, which determines how an output format draws the line."""
 
     LINE = "line"
     STILL = "still"
@@ -74,7 +74,7 @@ class LinePicture:
     top, bottom : depths at the upper and lower edge of a side view, with margins [m]
     height : water depth of a mooring, or height of a towed line [m]
     surface : whether there is a sea surface at depth 0
-    seabed : depth of the seabed [m]; None if it is not in the picture
+    seabed : depth of the seabed [m]; None if the seabed is not in the picture
     ship : position of the towing ship
     across, up : labels of the axes, with units
     """
@@ -101,7 +101,7 @@ class LinePicture:
 def elevation_of(
     result: AnyResult, overlays: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
-    """Return the side view of a line, in the vertical plane of its excursion or tow direction.
+    """Return the side view of a line, in the vertical plane of its excursion or of the tow.
 
     Parameters
     ----------
@@ -156,12 +156,12 @@ def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
 def from_the_side(
     shape: Shape, plane: Floats, kind: LineKind = LineKind.LINE, label: str = ""
 ) -> Polyline:
-    """Project a shape onto a vertical plane: distances in the plane, and depths.
+    """Project a shape onto a vertical plane; return the line of distances in the plane and depths.
 
     Parameters
     ----------
     plane : (2,) direction of the plane, east and north
-    kind, label : kind of the line, and its text in a legend
+    kind, label : kind of the line in the picture, and text for this line in a legend
     """
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
@@ -281,7 +281,8 @@ def current_between(
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
-    For a mooring or a net this is the current. For a tow, the speed of the ship is added.
+    For a mooring or a net, this velocity is the current. For a tow, the velocity due to the motion
+    of the ship is added.
     """
     water, tow = result.water, result.file.tow
     if tow is None:
@@ -320,7 +321,7 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
     """Return the names to write in a drawing, each with its part.
 
     Adjacent parts of the same component share a name, such as ``glass 1–6``, if their labels differ
-    only by a number at the end and they are at most `near` [m] apart in depth.
+    only by a number at the end and the parts are at most `near` [m] apart in depth.
     """
     runs: list[list[PictureMark]] = []
     for part in parts:

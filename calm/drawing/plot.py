@@ -27,7 +27,7 @@ _STYLES: dict[LineKind, dict[str, Any]] = {
 
 
 def empty_figure(width: float, height: float, **options: Any) -> Figure:
-    """Create a figure of a given size [inches], which opens no window."""
+    """Create a figure of a given size [inches] without opening a window."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), **options)

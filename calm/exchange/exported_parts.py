@@ -133,7 +133,7 @@ class PartLoad:
         self.along += other.along
 
     def add(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part without its clamps; its drag is multiplied by `share`."""
+        """Add a part without its clamps; the drag of the part is multiplied by `share`."""
         areas = (share * part.area(self.density, along=along) for along in (False, True))
         self.merge(PartLoad(self.density, [part.use], part.net, part.likely_mass, *areas))
 
@@ -183,7 +183,7 @@ def place_along(path: Floats, share: float) -> Coordinates:
 
 @dataclass(frozen=True)
 class ExportedTow:
-    """Velocity of the ship to the east and north [m/s], and height of the sheave [m]."""
+    """Velocity of the ship to the east and north [m/s], and sheave height above the water [m]."""
 
     east: float
     north: float
@@ -246,7 +246,7 @@ class ExportedLine:
     def paths(self) -> list[Floats]:
         """Return the positions (n, 3) of the nodes of each part in equilibrium, from the top down.
 
-        Positions are east, north and depth [m]. Raises NoEquilibrium if there is no equilibrium.
+        Each position is east, north and depth [m]. Raise NoEquilibrium if there is no equilibrium.
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])

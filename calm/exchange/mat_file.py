@@ -310,7 +310,7 @@ class MatVariables(dict[str, MatValue]):
             return np.zeros(0)
 
     def first(self, name: str) -> float:
-        """Return the first number of a variable; 0 if there is none."""
+        """Return the first number of a variable; 0 if the variable has none."""
         row = self.row(name)
         return float(row[0]) if row.size else 0.0
 

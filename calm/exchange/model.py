@@ -95,7 +95,7 @@ class ImportedComponent:
         return cls(name, kind, figures)
 
     def number(self, field: str) -> float:
-        """Return a value; 0 if it is missing."""
+        """Return the value of a field; 0 if the value is missing."""
         return float(self.figures.get(field, 0.0))
 
     def identity(self) -> tuple[object, ...]:
@@ -218,7 +218,7 @@ class ImportedWater:
 
 @dataclass(eq=False)
 class ImportedTow:
-    """Speed [m/s] and course [degrees] of a tow, and sheave height above the water [m]."""
+    """Speed [m/s] and course [degrees] of a tow, and height of the sheave above the water [m]."""
 
     speed: float
     toward: float
@@ -277,7 +277,7 @@ class ImportedDesign:
         self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
-        """Yield the component of each piece, followed by those of its clamps, with repetitions."""
+        """Yield the component of each piece and those of its clamps, with repetitions."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:

@@ -54,7 +54,7 @@ class Common:
 
     @property
     def value(self) -> Floats:
-        """Values (q,) of the unknowns, in the order of the covariance."""
+        """Values (q,) of the unknowns, in the same order as in the covariance."""
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset])
 
@@ -100,7 +100,7 @@ def fixed_slopes(common: Floats) -> Floats:
 
 
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
-    """Return (n, s) increase in the depth of each sensor per metre that it slips down the line.
+    """Return the increase (n, s) in the depth of each sensor if it slips one metre down the line.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class LinearLaw:
 
     @cached_property
     def inverse(self) -> Floats:
-        """Inverse (n, s, s) of the covariance of the residuals."""
+        """Inverse (n, s, s) of the covariance `expected` of the residuals."""
         return np.asarray(np.linalg.inv(self.expected), np.float64)
 
     @cached_property
@@ -199,7 +199,12 @@ class LinearLaw:
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
-        """Return the (q, q) information matrix of all times, for derivatives `seen` (n, s, q)."""
+        """Return the (q, q) information matrix for the readings at all times.
+
+        Parameters
+        ----------
+        seen : (n, s, q) derivatives of the readings with respect to the unknowns
+        """
         heavy = self.weight[:, None, None] * self.inverse
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
@@ -242,14 +247,14 @@ def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) ->
     """Find the most likely start of each of several candidate changes in the readings.
 
     Each change lasts to the end of the record and is fitted jointly with the common unknowns.
-    Return the index of the time at which each change starts; 0 means that the change applies
-    throughout, or that no time has enough readings before and after it.
+    Return the index of the time at which each change starts. An index of 0 means that the change
+    applies to the whole record, or that no time has enough readings before and after it.
 
     Parameters
     ----------
     law : linear model of the readings
     covariance : (q, q) prior covariance of the unknowns, whose prior mean is zero
-    columns : for each change, (n, s) change in the readings per metre of its size
+    columns : for each change, the effect (n, s) on the readings if the change has a size of 1 m
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))

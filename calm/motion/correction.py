@@ -85,9 +85,9 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the block of times that begins at `start`, ready to be written.
+    """Estimate the depths in the block of times that begins at `start`, ready to be written.
 
-    The smallest and largest depth of the block [m] are appended to `extent`.
+    The smallest and the largest of these depths [m] are appended to `extent`.
     """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
@@ -103,8 +103,8 @@ def solve_times(
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     """Return the layout of the result file: a batch result plus the estimates of motion.
 
-    The layout includes depth flags, serial numbers and archive attributes. Its date is set only if
-    SOURCE_DATE_EPOCH is set, so equal inputs give equal bytes.
+    The layout includes depth flags, serial numbers and archive attributes. The date of the file is
+    set only if SOURCE_DATE_EPOCH is set, so that equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -190,7 +190,7 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Estimate (n, m) depths of m points and their standard deviations [m], without writing a file.
+    """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file.
 
     Parameters
     ----------

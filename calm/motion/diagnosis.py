@@ -132,7 +132,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for the faults of a record by the likelihood of its pressures."""
+    """Search for faults in a record, by the likelihood of the pressures with each fault."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes

@@ -109,7 +109,7 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """Currents at several times, with the linearised line and the posterior there."""
+    """Currents at several times, with the linearised line and the posterior at these currents."""
 
     read: ReadCurrents
     at: Linear

@@ -266,7 +266,7 @@ def at_own_times(
     Parameters
     ----------
     result : dataset of `calm motion`
-    point : index of the point, see `calm.motion.line_response.Forward`
+    point : index of the point, as defined in `calm.motion.line_response.Forward`
     time : (n,) times of the instrument
     gap : longest gap over which depths are interpolated
     """

@@ -27,7 +27,7 @@ UNMEASURED = 1e4
 
 
 class LineResponse:
-    """Computes the depths of a mooring, and their derivatives, at the times of a block."""
+    """Solver for the depths of a mooring, and for their derivatives, at the times of a block."""
 
     def __init__(
         self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward]
@@ -118,11 +118,11 @@ class Forward:
         return self._batch.solve(u, v, depth, workers=1)
 
     def depths(self, depth: Floats, u: Floats, v: Floats) -> Floats:
-        """Return (n, p) depths of the points [m], NaN if there is no equilibrium.
+        """Return (n, p) depths of the points [m]; NaN if there is no equilibrium.
 
         Parameters
         ----------
-        depth, u, v : see `solve`
+        depth, u, v : as in `solve`
         """
         return points(self.solve(depth, u, v))
 
@@ -134,7 +134,7 @@ class Forward:
 
         Parameters
         ----------
-        depth, u, v : see `solve`
+        depth, u, v : as in `solve`
         """
         profiles, slopes = self._batch.slopes(u, v, depth)
         return points(profiles), slopes

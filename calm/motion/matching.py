@@ -83,7 +83,7 @@ class Clock:
     late: float
 
     def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
-        """Correct the times (n,) of readings for the error of this clock."""
+        """Correct the times (n,) of readings for the error of the clock."""
         share = (time - self.since) / (self.checked - self.since)
         late = np.round(self.late * 1e9 * np.maximum(share, 0.0)).astype("m8[ns]")
         true: NDArray[np.datetime64] = time + late
@@ -91,7 +91,7 @@ class Clock:
 
     @property
     def sentence(self) -> str:
-        """The clock error in words."""
+        """Sentence that describes the clock error."""
         way = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
         return f"its clock was {abs(self.late):g} s {way} at {when}; its times were corrected"
@@ -102,12 +102,12 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
 
     Parameters
     ----------
-    first : start of the record; the lag grows from this time if the deployment has no date
+    first : start of the record; if the deployment has no date, the lag grows from this time
 
     Raises
     ------
     UsageError
-        A clock was checked before the deployment.
+        A clock was checked before the deployment or at the same time.
     """
     deployed = mooring.file.deployed
     found = {}

@@ -131,7 +131,12 @@ class Knots:
     seabed: float
 
     def at(self, levels: Floats) -> Floats:
-        """Return (n, K) depths of the knots, which move with the levels at depths (n, k) [m]."""
+        """Return depths (n, K) of the knots, which move with the levels [m].
+
+        Parameters
+        ----------
+        levels : (n, k) depths of the levels [m]
+        """
         level, knot = self.measured
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
@@ -484,7 +489,7 @@ class CurrentSmoother:
 
     @property
     def at_levels(self) -> tuple[Floats, Floats]:
-        """Estimated currents (n, k), u and v, at the levels [m/s]."""
+        """Estimated currents u and v at the levels, each (n, k) [m/s]."""
         u, v = self.currents(self.state[:, self.columns.current])
         return u @ self.knots.level.T, v @ self.knots.level.T
 

@@ -84,7 +84,7 @@ class MooringMeasurements:
         return TIDE if self.tide is None else RESIDUAL_TIDE
 
     def elapsed(self, time: Times) -> Floats:
-        """Return the share (m,) of the record, 0 to 1, that has elapsed at times (m,)."""
+        """Return the share of the record, 0 to 1, that has elapsed at each of the times (m,)."""
         first, last = self.time[[0, -1]]
         share: Floats = (time - first) / max(last - first, np.timedelta64(1, "ns"))
         return share
@@ -162,7 +162,7 @@ def _sparse(times: Times, step: np.timedelta64) -> Times:
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate values linearly to other times (n,); NaN within gaps longer than `gap`.
+    """Interpolate values linearly to other times (n,); the result is NaN in gaps longer than `gap`.
 
     Parameters
     ----------

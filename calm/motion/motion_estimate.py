@@ -55,7 +55,7 @@ RARE = 0.1
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
-    """Return a note if only few times have pressures from two sensors or more.
+    """Return a note if few times have pressures from two or more sensors.
 
     Raises
     ------

@@ -72,13 +72,16 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Deviation of `value` from its value without a fault; for faults of the line, its log."""
+        """Deviation of `value` from the value that means no fault.
+
+        For a fault of the line, the logarithm of the factor `value` is returned.
+        """
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
 
     def sized(self, size: float, deviation: float) -> Fault:
-        """Return a copy with another size, and its 95 % interval from a standard deviation."""
+        """Return a copy with another size, and with a 95 % interval from a standard deviation."""
         three = [size, size - BAND * deviation, size + BAND * deviation]
         if self.kind in OF_LINE:
             three = [float(np.exp(one)) for one in three]
@@ -194,7 +197,7 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def no_drag(name: str, value: float) -> bool:
-    """True if a drag factor is so far from 1 that it must absorb another error."""
+    """True if a drag factor is too far from 1 to describe drag, and must absorb another error."""
     far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name]
     return name.endswith("drag") and far
 

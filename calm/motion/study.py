@@ -354,7 +354,7 @@ class SensorSeries:
 
     Attributes
     ----------
-    hidden : whether the sensor was withheld from the estimate, or has no pressure
+    hidden : whether the estimate uses no pressure of the sensor: it was withheld, or has none
     time : (n,) times
     measured : (n,) measured depths [m]; NaN if not measured
     estimated, spread : (n,) estimated depths and their standard deviations [m]
@@ -383,7 +383,10 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
     """Return the depths of all sensors from the top down, then those of the other instruments.
 
-    `measured` includes the withheld sensors.
+    Parameters
+    ----------
+    study : the estimate
+    measured : measurements, including those of the withheld sensors
     """
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     labels, columns = (

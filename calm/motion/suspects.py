@@ -97,14 +97,14 @@ which a meter is reported.
 
 
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
-    """Return a remark on each meter that is rotated, mirrored or in another unit.
+    """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with its two nearest meters while these agree with each
-    other. Agreement is measured by the complex correlation of the currents over the whole record.
-    The phase of this correlation is the mean angle between the two currents (Kundu 1976, J. Phys.
-    Oceanogr. 6, 238-242); its standard deviation is sqrt((1 - r²) / (2 r² n)) for n independent
-    times. Exchanged east and north components are found from the correlation with the mirrored
-    current.
+    A meter is reported if it disagrees with the two nearest meters although these agree with each
+    other. Agreement is measured by the complex correlation r of the currents over the whole record.
+    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
+    238-242). For n independent times, the phase has the standard deviation
+    sqrt((1 - r²) / (2 r² n)). Exchanged east and north components are found from the correlation
+    with the mirrored current.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -157,7 +157,7 @@ STRETCHED, AMISS = 1.25, 20.0
 
 
 def distances_of(mooring: Design) -> Floats:
-    """Return distances (p,) of clamps and pieces from the top along the unstretched line [m]."""
+    """Return distances (p,) of clamps and pieces from the top, along the unstretched line [m]."""
     pieces = mooring.file.pieces
     tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
     clamps = [

@@ -117,14 +117,14 @@ def learn_currents(
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
 ) -> Common:
-    """Learn the distribution of the speeds jointly with the common unknowns.
+    """Estimate the distribution of the current speeds jointly with the common unknowns.
 
     Parameters
     ----------
     mooring : mooring as in its file
     measured : measurements with the knots as levels
     names : names of the factors to estimate
-    tell : receives progress messages
+    tell : function that receives progress messages
 
     Raises
     ------
@@ -296,7 +296,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time, starting from the nearest stored fit."""
+    """Find the most likely currents at each time, starting from the nearest stored model."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -57,12 +57,12 @@ class RangeModel:
         return np.array([x[0], x[1], sagging - self.depth])
 
     def mean_speed(self, x: Floats) -> float:
-        """Return the mean speed of sound from the transducer to a position [m/s]."""
+        """Return the mean speed of sound between the transducer and a position [m/s]."""
         below = self.frame.position(self.place(x))[2]
         return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
 
     def measured(self, x: Floats) -> Floats:
-        """Return the measured ranges (n,) [m]; times are converted by the mean speed of sound."""
+        """Return the measured ranges (n,) [m]; travel times are converted at the mean speed."""
         if not self.survey.timed:
             return self.survey.measured
         ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)

@@ -145,12 +145,12 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
 
 
 def hemisphere_signs(letters: str) -> dict[str, float]:
-    """Return the signs of latitude and longitude for the letters of their hemispheres.
+    """Return the signs of latitude and longitude for two letters that name the hemispheres.
 
     Raises
     ------
     UsageError
-        A letter is none of N, S, E and W, or two letters refer to the same coordinate.
+        A letter is not N, S, E or W, or both letters refer to the same coordinate.
     """
     signs: dict[str, float] = {}
     for letter in filter(None, (part.strip().upper() for part in letters.split(","))):

@@ -43,7 +43,7 @@ class VariableSummary:
 
     @classmethod
     def of(cls, name: str, units: str, values: Any, description: str = "") -> VariableSummary:
-        """Summarise an array by its finite elements."""
+        """Summarise the finite elements of an array."""
         values = np.asarray(values, np.float64).ravel()
         known = values[np.isfinite(values)]
         if not known.size:

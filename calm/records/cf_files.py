@@ -127,7 +127,7 @@ def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
 
 
 def open_current(path: Path) -> xr.Dataset:
-    """Open a dataset of currents with lazily read values and undecoded times."""
+    """Open a dataset of currents; values are read only when needed, and times are not decoded."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -231,7 +231,7 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
 
 
 def converted(variable: xr.DataArray, values: Floats, wanted: str) -> Floats:
-    """Convert values from the unit of a variable to a wanted unit, given in pint notation.
+    """Convert values from the unit of a variable to the unit `wanted`, given in pint notation.
 
     Raise UnreadableError if the variable has no unit, or a unit of another dimension.
     """
@@ -299,7 +299,7 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
 
 
 def texts_of(variable: xr.DataArray) -> list[str]:
-    """Return the values of a variable as stripped strings."""
+    """Return the values of a variable as strings without surrounding blanks."""
     values = np.atleast_1d(variable.values).tolist()
     return [(one.decode() if isinstance(one, bytes) else str(one)).strip() for one in values]
 
@@ -376,7 +376,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return a notice if an attribute of the times or the file names a zone other than UTC."""
+    """Return a notice if an attribute of the times or the file names a time zone other than UTC."""
     for attributes in (dataset[name].attrs, dataset.attrs):
         for key in _ZONED:
             zone = str(attributes.get(key, "")).strip()

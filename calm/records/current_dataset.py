@@ -146,9 +146,9 @@ class CurrentDataset:
         return np.asarray(np.maximum.reduce(every), np.int8)
 
     def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
-        """Return the card of the profiles at the given times, and doubts about their values.
+        """Return the summary card of the profiles at the given times, and doubts about them.
 
-        Large records are sampled evenly.
+        From a large record, evenly spaced profiles are used.
 
         Parameters
         ----------

@@ -351,7 +351,7 @@ class CurrentHeader:
     ) -> Floats:
         """Convert rows to an array (n, 4) of depth [m], u, v and w [m/s].
 
-        If any row is wrong, the array is empty and the mistakes are added to `problems`.
+        If any row has a mistake, the array is empty and the mistakes are added to `problems`.
 
         Parameters
         ----------

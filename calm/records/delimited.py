@@ -86,7 +86,7 @@ class Dialect:
         return placed[cell][0] + 1 if cell < len(placed) else 1
 
     def with_point(self, cell: str) -> str:
-        """Replace the decimal comma of a number by a point, and return other cells unchanged."""
+        """Replace the decimal comma of a number with a point, and return other cells unchanged."""
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
@@ -111,7 +111,7 @@ class CellRow(NamedTuple):
     path : path of the file
     number : line number
     line : original text of the line
-    cells : cells of the line after the skipped ones
+    cells : cells of the line, without the skipped cells at its start
     dialect : dialect of the table
     skipped : number of cells skipped at the start of the line
     """
@@ -129,7 +129,7 @@ class CellRow(NamedTuple):
         return Problem(str(self.path), self.number, at, message)
 
     def mixed_decimals(self) -> list[Problem]:
-        """Return a mistake for each number with a decimal point in a table of decimal commas."""
+        """Return a mistake for each number with a decimal point in a table with decimal commas."""
         if self.dialect.decimal != ",":
             return []
         mixed = "has a decimal point, and the numbers before it have commas"
@@ -140,7 +140,7 @@ class CellRow(NamedTuple):
         ]
 
     def below(self, number: int, line: str) -> CellRow:
-        """Split a line of the table, whose header this row is, into cells.
+        """Split a line of the table below this header row into cells.
 
         In tables separated by blanks, a time may consist of two words: a date and a clock time.
         """
@@ -325,7 +325,10 @@ def is_gap(cell: str | None) -> bool:
 
 
 def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
-    """Convert cells to numbers, NaN for missing values; None if a cell is not a plain number."""
+    """Convert cells to numbers, with NaN for missing values.
+
+    Return None if a cell is neither a plain number nor a missing value.
+    """
     try:
         found = np.array([float(cell) for cell in cells], np.float64)  # type: ignore[arg-type]
     except (TypeError, ValueError):

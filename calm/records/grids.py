@@ -292,7 +292,7 @@ class SeabedGrid:
 
     @classmethod
     def of_file(cls, path: Path, latitude: float, longitude: float, reach: float) -> SeabedGrid:
-        """Open the seabed grid in a file around a position.
+        """Open a file with a grid of seabed depths around a position.
 
         Raise InputError if the file is unreadable, or has no positive depth at the position.
         """
@@ -345,7 +345,7 @@ class SeabedGrid:
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Depth gradient towards east and towards north at the point [-], by central difference."""
+        """Depth gradient to the east and to the north at the point [-], by central differences."""
         east, north = self._falls.mean(axis=1).tolist()
         return east, north
 

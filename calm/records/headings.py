@@ -91,7 +91,7 @@ def column_unit(
 
 
 def is_time(column: str) -> bool:
-    """Return whether a heading names the time column."""
+    """Return whether a heading is that of the time column."""
     return heading(column)[0].lower() == "time"
 
 

@@ -401,7 +401,7 @@ class _SeriesFile:
 
 
 def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the names of the variables from which salinity can be computed, by quantity.
+    """Return the names of the variables from which salinity can be computed, by quantity name.
 
     The quantities are conductivity, temperature and, if present, pressure. The result is empty
     unless the dataset has both conductivity and temperature.
@@ -521,7 +521,7 @@ class Readings:
 
 
 def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -> Readings:
-    """Read several variables that share their dimensions.
+    """Read several variables that have the same dimensions.
 
     Parameters
     ----------
@@ -594,7 +594,7 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
     Parameters
     ----------
     along : dimension of the instruments; None for a file of one instrument
-    seabed : water depth, for heights above the seabed [m]
+    seabed : water depth, to convert heights above the seabed [m]
     source : name of the file
     """
     if along is None:

@@ -237,9 +237,9 @@ _IN_TABLES = {
 
 
 def read_plain_table(path: Path) -> xr.Dataset:
-    """Read a time table of one instrument, with columns such as ``temperature[degC]``.
+    """Read a table over time of one instrument, with columns such as ``temperature[degC]``.
 
-    Raise InputError if the table has mistakes, or a column that is not a known quantity.
+    Raise InputError if the table has mistakes, or a column for an unknown quantity.
     """
     table = read_time_columns(path, tuple(_IN_TABLES), "temperature[degC]")
     names = {archive: what for what, (archive, _) in _WHAT.items()}

@@ -46,7 +46,7 @@ class QuantityTable:
     problems: list[Problem]
 
     def refuse(self, place: Sequence[str | int], message: str) -> None:
-        """Add a mistake at a place of the table."""
+        """Add a mistake at a place in the table."""
         self.problems.append(self.report(place, message))
 
 
@@ -159,8 +159,8 @@ def check_depths(
 
     Parameters
     ----------
-    table : table that collects the mistakes
-    values : columns in SI by name
+    table : table to whose `problems` the mistakes are added
+    values : values in SI units, by name of the column
     rows : indices of the rows to check
     profile : index of the profile of each row; None if all rows form one profile
     """
@@ -435,7 +435,7 @@ def components(speed: float, toward: float) -> tuple[float, float]:
     Parameters
     ----------
     speed : speed of the flow
-    toward : direction towards which it flows, clockwise from north [degrees]
+    toward : direction of the flow, clockwise from north [degrees]
     """
     angle = math.radians(toward)
     return speed * math.sin(angle), speed * math.cos(angle)

@@ -233,7 +233,7 @@ _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """Return the synthetic record as bytes of a classic NetCDF file, identical on all platforms."""
+    """Return a synthetic record as a classic NetCDF file, with equal bytes on all platforms."""
     import xarray as xr
 
     hours = np.arange(24 * DAYS)

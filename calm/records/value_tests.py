@@ -146,7 +146,7 @@ def _median(values: Floats) -> float:
 
 
 def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
-    """Return a message on the part of the water column that a profile does not cover, if any.
+    """Return a message if a profile does not cover the whole water column, else "".
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Itera
 
 
 def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield a doubt if all currents flow towards a narrow sector that begins at north.
+    """Yield a doubt if the directions of all currents are in a narrow sector that begins at north.
 
     Parameters
     ----------
@@ -318,7 +318,7 @@ FAR_APART = np.timedelta64(12, "h")
 
 
 def step_doubts(times: Times) -> Iterator[str]:
-    """Yield a doubt if profiles are too far apart in time to resolve tides and peaks."""
+    """Yield a doubt if the time between profiles is too long to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
             f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "

@@ -191,11 +191,12 @@ def _fitted(fit: Fit) -> str:
 def write_summary(result: Path, mooring: Design) -> Summary:
     """Write the summary of a finished batch as JSON and HTML files next to the batch file.
 
-    The batch file is only read, so its summary can be written again at any time.
+    The batch file is not changed, so its summary can be written again at any time.
 
     Parameters
     ----------
-    result : RESULT.nc; RESULT.summary.json and RESULT.summary.html are written
+    result : path of the batch file RESULT.nc, next to which RESULT.summary.json and
+        RESULT.summary.html are written
     mooring : mooring of the batch
 
     Raises
@@ -213,7 +214,7 @@ def write_summary(result: Path, mooring: Design) -> Summary:
 
 
 def summary_paths(result: Path) -> tuple[Path, Path]:
-    """Return the paths of a summary's JSON file and HTML page."""
+    """Return the paths of the JSON file and the HTML page with the summary of a result."""
     return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")
 
 

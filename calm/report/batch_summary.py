@@ -235,7 +235,7 @@ def extent(summary: Summary) -> str:
 
 
 def standing(summary: Summary) -> str:
-    """Format the number of profiles by status of the solver."""
+    """Format the number of profiles for each status of the solver."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)
 
@@ -266,7 +266,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Tabulate percentiles of the depth of each profiler stop, in dbar and in metres."""
+    """Tabulate percentiles of pressure [dbar] and depth [m] at each stop of a profiler."""
     if not summary.stops:
         return
     shares = (*(f"{share:g} %\ndbar" for share in statistics.STOP_SHARES),

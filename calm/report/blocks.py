@@ -97,7 +97,7 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Remove columns without text, unless the table is filled in by hand."""
+        """Return the table without empty columns; a table to be filled in by hand keeps them."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -143,7 +143,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Part of a sentence in the colour of a state, or in the type of secondary text (`quiet`)."""
+    """Part of a sentence, in the colour of a state or, if `quiet`, styled as secondary text."""
 
     text: str
     state: State | None = None
@@ -156,7 +156,7 @@ Line = str | tuple[Span, ...]
 
 @dataclass(frozen=True)
 class Prose:
-    """Paragraphs of a single sentence each, highlighted if they have a `state`."""
+    """Paragraphs of one sentence each; all are highlighted if `state` is set."""
 
     lines: tuple[Line, ...]
     state: State | None = None
@@ -202,11 +202,11 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class SignOff:
-    """Revisions, and boxes for signatures, at the foot of a page.
+    """Table of revisions, and boxes for signatures, at the foot of a page.
 
     Attributes
     ----------
-    revisions : revision, date, author and reason
+    revisions : revision, date, author and reason of each revision
     roles : role of each signatory, and the name if known
     note : text next to the boxes
     """
@@ -218,7 +218,7 @@ class SignOff:
 
 @dataclass(frozen=True)
 class OpenItem:
-    """Open item, with its state, number, heading and text (value and suggested action)."""
+    """Open item, with its state, number, heading, and text (value and suggested action)."""
 
     state: State
     number: int
@@ -295,7 +295,7 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a report on one mooring or tow, with its name and its parts.
+    """Section of a report, on one mooring or tow, with its name and its parts.
 
     A section with its own `running` header starts a new page without a title. Sections may be built
     in separate processes.
@@ -468,5 +468,5 @@ def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]
 
 
 def quiet(*texts: str) -> Prose:
-    """Create paragraphs in the type of secondary text."""
+    """Create paragraphs in the style of secondary text."""
     return Prose(tuple((Span(text, quiet=True),) for text in texts))

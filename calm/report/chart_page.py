@@ -203,7 +203,7 @@ class Labels:
     """Ticks and labels that do not overlap.
 
     A label without a free position is omitted. The axes must have their final limits, and the
-    figure a canvas.
+    figure must have a canvas.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -223,7 +223,7 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick at a point of a curve, to the right of its direction.
+        """Draw a tick at a point of a curve, to the right of the direction of the curve.
 
         Parameters
         ----------
@@ -334,7 +334,7 @@ def answer_document(answer: ChartAnswer) -> dict[str, Any]:
 
 
 def answer_part(answer: ChartAnswer) -> ReportPart:
-    """Build a table with one column per cable."""
+    """Build a table of the solutions, with one column per cable."""
     figures = [_figures(solution) for solution in answer.solutions]
     several = len(figures) > 1
 

@@ -127,7 +127,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
 
 
 def limit_document(key: LimitKey) -> dict[str, Any]:
-    """Return the JSON object of a limit, with the value used in this check."""
+    """Return the JSON object that describes a limit, with the value used in the design check."""
     return members(key, "name", "value", "default", "source", "departs")
 
 

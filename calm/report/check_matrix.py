@@ -214,7 +214,7 @@ def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
 
 
 def mooring_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the one-page report of a mooring: verdict, load cases, and every rule."""
+    """Yield the blocks of the one-page report on a mooring: verdict, load cases, and every rule."""
     findings = [*signed.assessment.every_finding()]
     yield title_block(signed)
     yield verdict_box(signed)

@@ -74,7 +74,7 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
 
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
-    """Create the card of a definition, with all values in display units and their source.
+    """Create the card of a definition, with all values in display units and with their sources.
 
     Derived values follow the specified values. If the catalogue has several definitions of the same
     product, the card ends with a comparison that recommends the best definition.
@@ -213,7 +213,7 @@ def in_words(missing: MissingFigures) -> str:
 
 
 def summarised(missing: Sequence[MissingFigures]) -> str:
-    """Return a sentence on how many components lack values, and how many lack each value."""
+    """Return a sentence with the number of components with missing values, in all and by value."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack values: {figures}"

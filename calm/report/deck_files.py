@@ -62,7 +62,7 @@ def deck_workbook(deck: Deck) -> bytes:
 
 
 def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
-    """Return header and rows of each sheet by name, in SI units; unknown values are None."""
+    """Return the header and rows of each sheet, by name, in SI units; unknown values are None."""
     stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
     lifts = [(stage, one) for stage, each in stages.items() for one in each]
     rows: dict[str, Sequence[Any]] = {

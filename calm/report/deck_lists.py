@@ -119,7 +119,7 @@ def _length() -> Field:
 
 
 def hardware_part(deck: Deck) -> ReportPart:
-    """Build the hardware bill with spares."""
+    """Build the list of hardware, with spares."""
     rows: list[Any] = []
     for kind, stocks in groupby(deck.hardware, lambda one: one.kind):
         rows += [Cell(kind), *stocks]

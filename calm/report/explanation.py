@@ -204,7 +204,7 @@ _ROWS = (
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """Report the change that meets a target, and the other effects of this change."""
+    """Report the change by which a target is met, and the other effects of this change."""
     assert sizing.after is not None
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:

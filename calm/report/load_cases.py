@@ -109,7 +109,7 @@ class LoadCase:
 
     @cached_property
     def tension(self) -> tuple[float, str]:
-        """Maximum tension, and the piece that carries it."""
+        """Maximum tension [N], and the piece that carries this tension."""
         return max((row.tension, row.label) for row in self._pieces())
 
     @cached_property
@@ -143,7 +143,7 @@ class LoadCase:
 
     @cached_property
     def tilt(self) -> tuple[float, str] | None:
-        """Maximum tilt of an instrument, and the instrument with this tilt."""
+        """Maximum tilt of any instrument [degrees], and the instrument with this tilt."""
         tilts = (
             (row.tilt, label)
             for label, row in self.rows.items()
@@ -189,13 +189,13 @@ def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
 
 @dataclass(frozen=True)
 class PieceEnvelope:
-    """Extreme loads on a piece over all cases, and its strength.
+    """Extreme loads on a piece over all load cases, and the strength of the piece.
 
     Attributes
     ----------
     number : number in the line, from 1
     row : results for the piece in the first case
-    tension, case : maximum tension [N], and the code of its case
+    tension, case : maximum tension [N], and the code of the load case in which it occurs
     least, tilt : minimum tension [N] and maximum tilt [degrees]
     standing, launch : strength finding in equilibrium, and during launch; None if there was no
         check

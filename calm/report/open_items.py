@@ -61,7 +61,7 @@ def short(text: str, most: int) -> str:
 
 
 def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
-    """Format the value or the limit of a finding, in a unit that suits both; "" if missing."""
+    """Format the value or the limit of a finding, in a unit that suits both; "" if unknown."""
     value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
     if value is None or quantity is None:
         return ""
@@ -113,7 +113,12 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
 
 
 def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
-    """Group open findings by cause; `use` maps labels of pieces and clamps to component ids."""
+    """Group open findings by cause.
+
+    Parameters
+    ----------
+    use : component id of each piece and clamp, by label
+    """
 
     def cause(finding: Finding) -> Hashable:
         if finding.state is State.ACCEPTED and finding.accept is not None:
@@ -176,7 +181,7 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
 
     Parameters
     ----------
-    use : component ids of pieces and clamps by label
+    use : component id of each piece and clamp, by label
     """
     found = [*findings]
     conclusion = conclusion_of(found)

@@ -274,9 +274,10 @@ def cases_table(signed: SignedMooring) -> Table:
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
-    """List the governing finding of each rule, by decreasing utilisation.
+    """List the governing finding of each rule, in order of decreasing utilisation.
 
-    Rules without a utilisation are omitted, and so is `release-load` if it repeats `strength`.
+    Rules without a utilisation are omitted. The rule `release-load` is also omitted if its finding
+    repeats that of `strength`.
     """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
@@ -288,7 +289,7 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def governing_table(signed: SignedMooring) -> Table:
-    """Tabulate the checks with the largest utilisation, as bars."""
+    """Tabulate the checks with the largest utilisations, which are drawn as bars."""
     rows = governing_rows(signed.assessment.every_finding())
     over, half = (
         sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, SHOWN_USE)
@@ -326,7 +327,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
 
 
 def sign_off(signed: SignedMooring) -> SignOff:
-    """Create the table of revisions, latest first, and the boxes for signatures."""
+    """Create the table of revisions, with the latest first, and the boxes for signatures."""
     given = signed.assessment.file.document
 
     def field(name: str) -> str:
@@ -348,7 +349,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
 
 
 def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield the blocks of page one; the figure takes the height that the tables leave free."""
+    """Yield the blocks of page one; the figure has the height that remains below the tables."""
     cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE

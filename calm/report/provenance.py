@@ -53,7 +53,7 @@ def moment() -> datetime | None:
 
 
 def date() -> str | None:
-    """Return the day of `moment`, such as 2026-11-21, or None."""
+    """Return the date of `moment`, such as 2026-11-21; None if `moment` returns None."""
     when = moment()
     return None if when is None else when.date().isoformat()
 
@@ -190,7 +190,7 @@ def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
-    """Return names and values for the title block: document data, position and water depth."""
+    """Return pairs of name and value for the title block: document, position and water depth."""
     document = file.document
     names = ("revision", "date", "project", "ship", "cruise", "author", "checked", "approved")
     pairs = [("mooring", file.name)]

@@ -82,7 +82,7 @@ def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:
 
 
 def quality_of(result: LegResult) -> Prose:
-    """Describe the numerical error of the solution, and the effort of the solver."""
+    """Describe the numerical error of the solution, and the convergence of the solver."""
     good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
     if result.towed:
         end = "tow point"

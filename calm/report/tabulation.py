@@ -39,7 +39,7 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """Result of a tow at one ship speed over the ground [m/s], or the failure at this speed."""
+    """Result of a tow at one ship speed over the ground [m/s], or the reason why there is none."""
 
     speed: float
     outcome: Result | NoEquilibrium

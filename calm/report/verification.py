@@ -23,11 +23,11 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """Return the JSON object of a verification.
 
-    The keys are `calm`, the number of values `checked`, and the number of values `out` of
-    tolerance. `kinds` counts the values of each kind; values that agree by construction are not
-    counted in `checked`. `cases` has one object per value: `source`, `name`, `kind`, `expected`,
-    `got`, `difference`, `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and
-    `reason` if no value was computed.
+    The keys are `calm`; `checked`, the number of checked values; `out`, the number of values out of
+    tolerance; `kinds`, the number of values of each kind; and `cases`. Values that agree by
+    construction are not counted in `checked`. `cases` has one object per value, with the keys
+    `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`, `unit`, `why` (the
+    reason for the tolerance), `within`, and `reason` if no value was computed.
     """
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)

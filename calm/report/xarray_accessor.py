@@ -32,7 +32,7 @@ class BatchAccessor:
         self._dataset = dataset
 
     def depth(self, label: str) -> xr.DataArray:
-        """Return the depth of a clamp, or of a component's upper end, over time [m]."""
+        """Return the depth of a clamp, or of the upper end of a component, over time [m]."""
         return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
@@ -81,8 +81,9 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
     """Draw the line from the side, in the profile nearest to a given time.
 
-    The picture is in the vertical plane of the anchor and the top. The line is straight between the
-    upper ends of successive components. Raise UsageError if the profile has no equilibrium.
+    The picture is in the vertical plane through the anchor and the top of the line. The line is
+    drawn straight between the upper ends of successive components. Raise UsageError if the profile
+    has no equilibrium.
     """
     row = _nearest(dataset, time)
     names = ("depth_top", "x_top", "y_top")

@@ -242,8 +242,8 @@ def cable(
     ----------
     length, diameter : unstretched length and diameter [m]
     weight : weight in water [N/m]
-    cn, ct : normal drag coefficient, which refers to the diameter D, and tangential drag
-        coefficient, which refers to the surface π D
+    cn : normal drag coefficient, referred to the diameter D
+    ct : tangential drag coefficient, referred to the surface π D
     compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
@@ -380,9 +380,9 @@ def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> 
     Parameters
     ----------
     line : the line, from the ship to the free end
-    water : the water in which it is towed
+    water : the water in which the line is towed
     speed : speed of the ship [m/s]
-    settings : settings of the march
+    settings : settings of the integration along the line
     """
     solution = solve_tow(line, water, Towing(speed, 0.0), settings)
     x, _, z = solution.position[0].tolist()

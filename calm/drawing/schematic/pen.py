@@ -125,7 +125,7 @@ def picture(width: float, height: float, title: str, size: tuple[str, str] | Non
 
 
 def svg_text(picture: Pen) -> str:
-    """Convert the picture to text, one element per line."""
+    """Convert a picture to SVG text, with one element per line."""
     ElementTree.indent(picture.element)
     return ElementTree.tostring(picture.element, encoding="unicode") + "\n"
 

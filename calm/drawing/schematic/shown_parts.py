@@ -86,7 +86,7 @@ class Schematic:
 def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schematic:
     """Build the contents of the schematic of a line.
 
-    With a result, the depths are those of the solution.
+    If a result is given, the depths are those of the solution.
     """
     levels = levels_of(file, result)
     bottom = file.environment.depth

@@ -18,7 +18,7 @@ from calm.physics.materials import fibre_of
 
 
 class Symbol(StrEnum):
-    """Symbol in a schematic, with its name for a legend."""
+    """Symbol in a schematic; the value is the name of the symbol in a legend."""
 
     SPHERE = "float"
     BALL = "ball"
@@ -151,7 +151,7 @@ _BEAM = 11.0
 
 @dataclass(frozen=True)
 class SymbolFigure:
-    """Height of a symbol, and the function that draws it about the origin of a pen."""
+    """Height of a symbol, and the function that draws the symbol about the origin of a pen."""
 
     height: float
     draw: Callable[[Pen], None]
@@ -345,7 +345,7 @@ def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
 
 
 def draw_water(pen: Pen, width: float, top: float, bottom: float) -> None:
-    """Draw the water in the background of the line."""
+    """Draw the water behind the line."""
     height = bottom - top
     pen.box(width / 2, (top + bottom) / 2, width, height, fill=_WATER, stroke="none")
 

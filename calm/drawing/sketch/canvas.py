@@ -35,7 +35,7 @@ class Canvas:
         self._signs: list[list[str | None]] = [[None] * width for _ in range(height)]
 
     def dot(self, x: float, y: float, style: str) -> None:
-        """Draw a dot, and set the style of its cell."""
+        """Draw a dot, and set the style of the cell that contains it."""
         column, row = int(x // DOTS_ACROSS), int(y // DOTS_DOWN)
         if 0 <= column < self.width and 0 <= row < self.height:
             self._bits[row][column] |= _BITS[int(y) % DOTS_DOWN][int(x) % DOTS_ACROSS]
@@ -61,7 +61,7 @@ class Canvas:
                 drawn += 1
 
     def text(self, column: int, row: int, text: str, style: str = "") -> None:
-        """Write characters over the dots; text outside the canvas is clipped."""
+        """Write a text over the dots; characters outside the canvas are clipped."""
         if not 0 <= row < self.height or column >= self.width:
             return
         if column < 0:
@@ -79,7 +79,7 @@ class Canvas:
             column += width
 
     def sign(self, column: int, row: int) -> str | None:
-        """Return the character that was written in a cell, if any."""
+        """Return the character that was written in a cell; None if there is none."""
         return self._signs[row][column]
 
     def rows(self) -> list[Text]:

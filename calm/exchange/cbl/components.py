@@ -39,7 +39,7 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """Convert a material to a cable, with its drag at one depth and speed.
+        """Convert a material to a cable, with the drag at a given depth and speed.
 
         Parameters
         ----------

@@ -59,7 +59,7 @@ class TokenStream:
         return self.tokens[self.at]
 
     def ahead(self, count: int) -> Token:
-        """Return the token `count` places after the next one, without consuming it."""
+        """Return the token `count` places after the next token, without consuming any token."""
         return self.tokens[min(self.at + count, len(self.tokens) - 1)]
 
     def take(self) -> Token:
@@ -103,12 +103,12 @@ class Expression:
     token: Token
 
     def at(self, **values: float) -> float:
-        """Evaluate the formula for values of its names.
+        """Evaluate the formula for given values of the names in it.
 
         Raises
         ------
         UnknownNameError
-            The formula contains other names.
+            The formula contains names without a value.
         InputError
             The formula has no value, for example because it divides by zero.
         """

@@ -98,7 +98,7 @@ class CableDefinition:
 
     @property
     def name(self) -> str:
-        """Name by which the layout refers to this definition."""
+        """Name by which the layout of the problem refers to this definition."""
         return self.token.text
 
 
@@ -175,7 +175,7 @@ class CableProblem:
 
     @property
     def segments(self) -> list[CableSegment]:
-        """Segments of the line, from its first end to its last."""
+        """Segments of the line, from its first terminal to its last."""
         return [each for each in self.layout if isinstance(each, CableSegment)]
 
     @property

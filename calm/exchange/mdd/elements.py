@@ -30,7 +30,7 @@ polypropylene, polyethylene, Kevlar, aluminium, Dyneema.
 
 
 def piece_of(element: MddElement) -> model.ImportedPiece:
-    """Convert an element other than the anchor to a piece."""
+    """Convert an element, which must not be the anchor, to a piece."""
     if element.is_line:
         return model.ImportedPiece(_flexible(element), element.length)
     return model.ImportedPiece(rigid(element))

@@ -183,8 +183,8 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
     Parameters
     ----------
-    sheets : rows of each sheet by its name
-    given : headings by the name of the column
+    sheets : rows of each sheet, by name of the sheet
+    given : heading given by the user for each column, by name of the column in CALM
     path : path of the list
 
     Raises
