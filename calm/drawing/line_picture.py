@@ -349,9 +349,9 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
     """Shift positions so that they are at least `gap` apart, but as little as possible.
 
     The positions `wanted` are in ascending order. The new positions are between `start` and `end`,
-    and the sum of the squared shifts is minimal. If not all positions fit, they extend beyond the
-    end. If the gaps before each position are subtracted from it, this is an isotonic regression, in
-    which each descending run is replaced by its mean.
+    and the sum of the squared shifts is minimal. If there is not enough room, the positions extend
+    beyond `end`. The method subtracts the gaps from the positions and applies isotonic regression,
+    which replaces each descending run by its mean.
     """
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):

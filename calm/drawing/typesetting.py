@@ -70,8 +70,8 @@ def legible(text: str) -> str:
 def signs() -> frozenset[int]:
     """Return the code points of the characters in the regular font.
 
-    They are read from the `cmap` table of the font, in format 12. Source: OpenType 1.9, chapters
-    `otff` and `cmap`.
+    The code points are read from the `cmap` table of the font, which has format 12. Source:
+    OpenType 1.9, chapters `otff` and `cmap`.
     """
     font = (FONTS / "DejaVuSans.ttf").read_bytes()
     tables = int.from_bytes(font[4:6], "big")

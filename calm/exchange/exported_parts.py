@@ -39,7 +39,7 @@ class ExportedPart:
     ----------
     use, label, role : as in the mooring file
     component : definition of the component
-    flexible : whether it is a cable or chain, whose values are per metre
+    flexible : whether the part is a cable or chain, whose values are per metre
     length : unstretched length [m]
     buoyancy : net buoyancy in reference water, positive up [N or N/m]
     net, density : net buoyancy [N or N/m] of the part and density of the water [kg/m³], at the
@@ -152,7 +152,7 @@ class PartLoad:
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     """Register values under a name, and return this name.
 
-    If other values are already registered under the preferred name, a number is appended to it.
+    If the preferred name is already registered with other values, a number is appended to the name.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def export_file(
     ----------
     to : name of a registered format that can be written
     environment : name of an environment in the file, or path of an environment file
-    catalogs : see `calm.load`
+    catalogs : component catalogues, as in `calm.load`
 
     Raises
     ------

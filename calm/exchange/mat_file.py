@@ -303,7 +303,7 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array; empty if it does not hold real numbers."""
+        """Return a variable as a one-dimensional array, which is empty without real numbers."""
         try:
             return self.reals(name).ravel()
         except ValueError:

@@ -88,7 +88,7 @@ class ImportedComponent:
         ----------
         name : name in the file
         weight : weight in water per metre, negative for a line that floats [N/m]
-        figures : diameter, drag and other values by field; the weight or buoyancy is added to them
+        figures : diameter, drag and other values by field, to which the weight or buoyancy is added
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"

@@ -56,7 +56,7 @@ def is_long(name: str, length: float, across: float) -> bool:
 
     Parameters
     ----------
-    length, across : length and diameter of the piece [m]; `across` is 0 if it is unknown
+    length, across : length and diameter of the piece [m]; an unknown diameter is 0
     """
     if is_called(name, "release", "connector"):
         return False

@@ -100,7 +100,7 @@ def fixed_slopes(common: Floats) -> Floats:
 
 
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
-    """Return the increase (n, s) in the depth of each sensor if it slips one metre down the line.
+    """Return the increase (n, s) in the depth of each sensor per metre of slip down the line.
 
     Parameters
     ----------
@@ -157,8 +157,9 @@ class LinearLaw:
     time, share : (n,) times, and the share of the record that has elapsed (0 to 1)
     known : (n, s) whether a reading exists
     raw : (n, s) measured minus computed depths [m], with all unknowns zero
-    left : (n, s) the same differences with the unknowns at the state of linearisation
-    expected : (n, s, s) covariance of `left`
+    left : (n, s) measured minus computed depths [m], with the unknowns at the state of
+        linearisation
+    expected : (n, s, s) expected covariance of `left` [m²]
     fixed : (n, s, q) derivatives of the readings with respect to the logarithms of the factors, the
         datum and the offsets
     fall : (n, s) increase in the depth of each sensor per metre that it slips down the line

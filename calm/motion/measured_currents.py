@@ -115,7 +115,7 @@ FURTHEST = 0.7
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths (knots) at which the current is estimated, and interpolation from them to the levels.
+    """Depths (knots) at which the current is estimated, and interpolation from knots to levels.
 
     Attributes
     ----------
@@ -502,7 +502,7 @@ class CurrentSmoother:
         ----------
         slips : steps in sensor readings with which to begin, each as index of the sensor, index of
             the time, and size [m]; without them, the iterations for two or three sensors may
-            attribute the step of one sensor to an offset of another
+            attribute the step of one sensor to an offset of another sensor
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:

@@ -51,7 +51,8 @@ class MooringMeasurements:
     tide : (n,) height of the sea surface above mean sea level [m]; None if unknown
     false : (n,) whether an impossible current was removed at this time; None if no current was
         removed
-    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
+    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if the mooring
+        never moved
     """
 
     time: NDArray[np.datetime64]

@@ -265,7 +265,7 @@ def plausible(
     or a fill value), if it is far below the seabed, or if the sensor is stuck. Only the first of
     several readings at the same time is kept. Depths are corrected if the readings on deck show
     that the pressures are absolute. If most readings are too shallow or too deep, no reading is
-    removed, because the sensor itself is wrong: see `unusable`.
+    removed, because the sensor itself is wrong; `unusable` then reports the sensor.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A withheld sensor, and the errors of the depths estimated without it.
+    """A withheld sensor, and the errors of the depths estimated without this sensor.
 
     Attributes
     ----------
@@ -53,8 +53,8 @@ class HeldOut:
     bias : mean of estimated minus measured depth [m]
     rms : root mean square of estimated minus measured depth, after subtraction of its mean over the
         calm times [m]
-    linear_rms, pchip_rms : the same for depths interpolated between the sensors in use, by `linear`
-        and `pchip` of `calm.motion.remarks` [m]
+    linear_rms, pchip_rms : `rms` of depths that are interpolated between the sensors in use by
+        `linear` and `pchip` of `calm.motion.remarks`, instead of estimated [m]
     coverage : share of the differences within the 95 % interval of the estimate
     """
 

@@ -153,8 +153,8 @@ def _is_magnetic_text(text: str) -> bool:
 def sense_of_direction(variable: xr.DataArray) -> str | None:
     """Return whether a current flows ``"to"`` a direction or comes ``"from"`` it.
 
-    The answer is based on the long name, standard name and comment of the direction variable. It is
-    None if these texts do not give the sense of the direction, or contradict each other.
+    The answer is based on the long name, standard name and comment of the direction variable.
+    Return None if these texts do not give the sense of the direction, or contradict each other.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

@@ -146,7 +146,7 @@ class CurrentDataset:
         return np.asarray(np.maximum.reduce(every), np.int8)
 
     def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
-        """Return the summary card of the profiles at the given times, and doubts about them.
+        """Return the summary card of the profiles at the given times, and doubts about the values.
 
         From a large record, evenly spaced profiles are used.
 

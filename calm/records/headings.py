@@ -153,7 +153,7 @@ class NamedColumns:
     header: delimited.CellRow
 
     def lacks(self, name: str, unit: str) -> Problem:
-        """Return the mistake that the column `name` is missing; the message suggests a unit."""
+        """Return a mistake for the missing column `name`; the message suggests a unit."""
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
         return self.header.problem(message)
 

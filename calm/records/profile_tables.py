@@ -240,7 +240,7 @@ class CurrentTable:
 
 @dataclass(frozen=True)
 class DepthTable:
-    """A quantity at increasing depths [m], linear between them and constant beyond the ends."""
+    """A quantity at increasing depths [m]; linear between depths, constant beyond the ends."""
 
     depth: tuple[float, ...]
     value: tuple[float, ...]

@@ -183,7 +183,7 @@ def part(index: Index, start: int, stop: int) -> Index:
     Parameters
     ----------
     index : indices in the file of all chosen profiles
-    start, stop : first profile of the range, and the profile after the last, among those chosen
+    start, stop : range of the chosen profiles, from `start` up to but not including `stop`
     """
     if not isinstance(index, slice):
         return index[start:stop]

@@ -82,7 +82,7 @@ class SeaState:
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
-    share : share of the time for which this sea state lasts, if it is one of several
+    share : share of the time for which this sea state lasts, in a set of several sea states
     longest, shortest : longest and shortest peak period of a sea with several components [s]; for a
         measured sea, `longest` is the period of the longest relevant waves
     """
@@ -212,8 +212,8 @@ def _impossible(height: float, period: float) -> str | None:
 def doubted(sea: SeaState) -> str | None:
     """Return a remark if a sea is steeper than measured seas, else None.
 
-    The limit applies to the ratio of Hs to the wavelength at Tp. It is 1/15 up to a Tp of 8 s, and
-    falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
+    The steepness is the ratio of Hs to the wavelength at Tp. The limit on the steepness is 1/15 up
+    to a Tp of 8 s, and falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
     """
     height, period = sea.significant_height, sea.peak_period
     steepness = 2.0 * pi * height / (9.80665 * period**2)

@@ -36,7 +36,7 @@ def listed_findings(
 ) -> Iterator[tuple[Finding, bool]]:
     """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
-    Among several findings, the one with the largest utilisation governs. The list contains the
+    Among several findings, the finding with the largest utilisation governs. The list contains the
     governing finding of each rule; its flag is true. The list also contains the governing finding
     of each rule on each component over all environments, unless this finding passes with a
     utilisation below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment.

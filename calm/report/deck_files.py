@@ -31,7 +31,7 @@ def deck_workbook(deck: Deck) -> bytes:
     """Write the sheets into one Excel workbook that is ready to print, with units in the headings.
 
     Texts are stored as texts, even if they begin with a symbol that marks a formula. The date of
-    the workbook is that of `provenance.moment`.
+    the workbook comes from `provenance.moment`.
     """
     from xlsxwriter import Workbook
 

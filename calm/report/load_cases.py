@@ -41,7 +41,7 @@ def load_text(value: float | None) -> str:
 
 
 def length_text(value: float | None) -> str:
-    """Format a cut length for print, without decimals if it is in whole metres."""
+    """Format a cut length for print; a length in whole metres has no decimals."""
     return QUANTITIES["length"].format(value).removesuffix(".00")
 
 

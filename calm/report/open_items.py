@@ -103,10 +103,10 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
     Failures, unknowns and warnings share a cause if they differ only in component and values.
-    Estimates share a cause if they concern the same component; they are omitted if a missing value
-    of this component is already listed as an item. Acceptances share a cause if they concern the
-    same component and have the same reason. Findings without a judgement share a cause if they
-    belong to the same rule.
+    Estimates share a cause if they concern the same component; such estimates are omitted if a
+    missing value of this component is already listed as an item. Acceptances share a cause if they
+    concern the same component and have the same reason. Findings that are not judged share a cause
+    if they belong to the same rule.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)

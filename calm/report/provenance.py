@@ -39,7 +39,7 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 
 
 def moment() -> datetime | None:
-    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if it is unset.
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if the variable is not set.
 
     Reports contain no other date. Raise UsageError if the value of SOURCE_DATE_EPOCH is not a
     number of seconds, or if it is outside the range of the calendar.
@@ -67,7 +67,7 @@ def report_of(title: str, subtitle: str, *parts: ReportPart, name: str = "") -> 
 
 
 def source_text(file: MooringFile) -> str | None:
-    """Read the text of the mooring file; None if it can no longer be read."""
+    """Return the text of the mooring file; None if the file can no longer be read."""
     try:
         return read_text(Path(file.path))
     except InputError:

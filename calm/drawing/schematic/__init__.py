@@ -51,8 +51,8 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     external references, identifiers or style sheets, so that several pictures can be placed on a
     page. Long texts are wrapped and never cut. The same line always gives the same picture. If a
     result is given, the depths are those of the loaded line in the current. Without a result, the
-    depths are those of the upright, unstretched line; they are unknown for a tow and for a line
-    with a float at the surface.
+    depths are those of the upright, unstretched line; for a tow, and for a line with a float at the
+    surface, they are unknown.
     """
     (drawn,) = _drawn(schematic_of(file, result), inf)
     return drawn

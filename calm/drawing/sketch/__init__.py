@@ -50,7 +50,7 @@ _NEED = ("float", "release", "anchor", "instrument")
 def elevation(
     result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()
 ) -> list[Text]:
-    """Draw a line in the vertical plane of its excursion or tow direction.
+    """Draw a line in the vertical plane of its excursion or of the tow.
 
     Distances are from the anchor towards the free end, or from the ship backward. Distances and
     depths have different scales. The line in still water is dotted. If the drawing is at least 50

@@ -79,7 +79,7 @@ class Canvas:
             column += width
 
     def sign(self, column: int, row: int) -> str | None:
-        """Return the character that was written in a cell; None if there is none."""
+        """Return the character that was written in a cell; None for a cell without a character."""
         return self._signs[row][column]
 
     def rows(self) -> list[Text]:
@@ -230,7 +230,7 @@ def scaled_frame(
     Parameters
     ----------
     size : total numbers of columns and rows
-    caption : text above the frame, if there is a row for it
+    caption : text above the frame, omitted if the canvas has too few rows
     across : values at the left and the right edge
     down : values at the upper and the lower edge
     units : alternative texts for the unit of the horizontal scale (see `PlotFrame.scale_across`)

@@ -145,8 +145,8 @@ class MddElement:
     Attributes
     ----------
     length, width, diameter : sizes [m]; a sphere has a diameter, other elements have a width
-    is_line : whether it is a wire, rope or chain, whose values are per metre
-    is_fastener : whether it is a shackle, link or swivel
+    is_line : whether the element is a wire, rope or chain, whose values are per metre
+    is_fastener : whether the element is a shackle, link or swivel
     lift : net buoyancy [kg], or per metre [kg/m] if the element is a line
     mass : mass in air [kg]; None if the file has none
     modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if the line does not

@@ -56,7 +56,7 @@ def read_library(path: Path) -> Library:
 def is_library(sheets: Mapping[str, SheetRows]) -> bool:
     """True if the sheets form a library of elements.
 
-    They do if several sheets have headings, or if a sheet is the element table of moords.
+    A library has several sheets with headings, or a sheet that is the element table of moords.
     """
     headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
     moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
