@@ -86,7 +86,7 @@ def elevation(
 
     Parameters
     ----------
-    cases : load cases, all drawn in the vertical plane of the first one
+    cases : load cases, all drawn in the vertical plane of the first case
     labels : labels, from the top down
     size : width and height of the drawing
     """

@@ -32,7 +32,7 @@ class Scale:
     ----------
     low : value at the left or the lower edge; may be larger than `high`
     high : value at the right or the upper edge
-    logarithmic : whether the scale is logarithmic; both values are then positive
+    logarithmic : whether the scale is logarithmic; `low` and `high` are then positive
     """
 
     low: float
@@ -52,7 +52,7 @@ class Scale:
 
 
 def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
-    """Return a linear scale for all finite values, with a margin; without any, from 0 to 1."""
+    """Return a linear scale for all finite values, with a margin; 0 to 1 if none is finite."""
     every = np.concatenate([np.ravel(np.asarray(each, dtype=np.float64)) for each in values])
     every = every[np.isfinite(every)]
     if not every.size:

@@ -20,7 +20,7 @@ def _kebab(name: str) -> str:
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
     """Choose an id in the mooring file for each component.
 
-    The ids are returned by the identity of the component object, as given by `id()` of Python.
+    Return the chosen ids in a dictionary whose keys are the Python `id()` of the component objects.
     Components with equal values share an id. Ids in `taken` are not used.
     """
     components = list(components)

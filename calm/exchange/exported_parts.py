@@ -47,7 +47,7 @@ class ExportedPart:
     kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre if flexible]
     directional : whether the drag depends on the direction of the flow relative to the axis
     stiffness : EA [N]; 0 if inextensible
-    clamps : clamps on the part, with their distances from its upper end [m]
+    clamps : clamps on the part, with their distances from the upper end of the part [m]
     """
 
     use: str

@@ -76,8 +76,8 @@ def import_file(
     Raises
     ------
     InputError
-        The file is damaged, or has a feature that CALM cannot represent; the message names this
-    feature.
+        The file is damaged, or has a feature that CALM cannot represent. The message names the
+        feature.
     UsageError
         There is no such format.
     """

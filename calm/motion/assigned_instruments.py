@@ -45,8 +45,8 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    Instruments are matched to parts of the line by name or serial number. Those without a match are
-    assigned by nominal depth, in order down the line. The rest of the file is unchanged.
+    Instruments are matched to parts of the line by name or serial number. Instruments without a
+    match are assigned by nominal depth, in order down the line. The rest of the file is unchanged.
 
     Raises
     ------

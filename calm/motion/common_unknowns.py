@@ -217,7 +217,7 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
-    """Return (n,) change in the reading of a sensor per metre of offset, slip or drift.
+    """Return the change (n,) in the reading of a sensor per metre of offset, slip or drift.
 
     Parameters
     ----------

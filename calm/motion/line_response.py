@@ -39,7 +39,7 @@ class LineResponse:
 
         Parameters
         ----------
-        read : currents before multiplication
+        read : currents before they are multiplied by the factors
         logs : (n, k) logarithms of the factors on the currents
         forward : mooring to solve; by default the mooring of this object
         """
@@ -51,7 +51,7 @@ class LineResponse:
 
         Parameters
         ----------
-        read : currents before multiplication
+        read : currents before they are multiplied by the factors
         logs : (n, k) logarithms of the factors
         """
         factor = np.exp(logs)

@@ -187,7 +187,7 @@ class Columns:
     tide : tide
     factor : logarithms of the factors
     datum : correction common to all depths
-    zero, place : errors of the sensors in zero and in place on the line
+    zero, place : errors in the zeros of the sensors, and in their positions on the line
     """
 
     current: slice
@@ -688,7 +688,7 @@ class CurrentSmoother:
 
     @property
     def offset(self) -> Floats:
-        """Errors (n, s) in the depths of the sensors, due to wrong zeros and places [m]."""
+        """Depth errors (n, s) of the sensors, due to wrong zeros and wrong positions [m]."""
         at = self.columns
         return np.asarray(self.state[:, at.zero] + self.state[:, at.place] * self.fall)
 

@@ -203,7 +203,7 @@ SPIKE, ALIKE = 6.0, 3.0
 def without_spikes(
     measured: MooringMeasurements, hidden: Sequence[str] = ()
 ) -> tuple[MooringMeasurements, list[str]]:
-    """Remove readings far from those before and after, if other sensors show no change.
+    """Remove readings far from the readings before and after, if other sensors show no change.
 
     The deviation of a reading from the straight line between the two adjacent readings is compared
     with the usual deviation and with a quarter of the difference between the adjacent readings.
@@ -211,7 +211,7 @@ def without_spikes(
 
     Parameters
     ----------
-    hidden : labels of sensors that neither judge others nor are judged
+    hidden : labels of sensors that are neither tested nor used to test others
     """
     hours = (measured.time - measured.time[:1]) / np.timedelta64(1, "h")
     step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0

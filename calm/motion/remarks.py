@@ -206,7 +206,7 @@ def alone_remarks(common: Common) -> list[str]:
     """Return a remark if the line is inconsistent with the pressures even in inferred currents.
 
     The pressures do not reveal the cause, because suitable currents bring most lines into agreement
-    with pressures.
+    with the pressures.
     """
     length = common.factors.get("length", 1.0)
     far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"]

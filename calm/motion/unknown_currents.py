@@ -296,7 +296,10 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time, starting from the nearest stored model."""
+    """Find the most likely currents at each time.
+
+    The search starts from the stored model whose depths are closest to the measured depths.
+    """
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -75,7 +75,7 @@ class RangeModel:
         return found
 
     def jacobian(self, x: Floats) -> Floats:
-        """Return the derivatives of the n residuals with respect to the unknowns, as an array."""
+        """Return the derivatives (n, u) of n residuals with respect to the u unknowns."""
         step = 0.01
         steps = step * np.eye(self.unknowns)
         columns = [self.residuals(x + change) - self.residuals(x - change) for change in steps]

@@ -80,7 +80,7 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Return a message if velocities are not components to the east and north, else None.
+    """Return a message if velocities are not eastward and northward components, else None.
 
     The message quotes the coordinate system that the attributes state.
 

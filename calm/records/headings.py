@@ -70,7 +70,7 @@ def column_unit(
     ------
     QuantityError
         The unit is missing, unknown or of another dimension. The text of the error is a complete
-    message.
+        message.
     """
     name = heading(column, dimensions)[0]
     if not unit and dimensions[0] in HEMISPHERES:

@@ -328,7 +328,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Limits of a sea-water quantity, its unit, and other units in which it is often given.
+    """Limits of a sea-water quantity, its unit, and other units that are common for it.
 
     Each value of `likely` is the factor and the offset that convert another unit to `unit`.
     """

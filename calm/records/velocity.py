@@ -108,7 +108,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     """Find the velocity variables of a dataset.
 
     Raise UnreadableError if there is no current, if there are several currents, or if the
-    components are not to the east and north.
+    components are not eastward and northward.
 
     Parameters
     ----------

@@ -79,7 +79,7 @@ class Table:
     note : text below the table
     totals : number of rows at the end that are sums
     sortable : whether the rows can be sorted and filtered
-    dense : whether the columns are so many that their spacing is reduced
+    dense : whether the spacing of the columns is reduced because there are many
     by_hand : whether the table is filled in by hand, and has rules and room to write
     aside : text in smaller letters next to the title
     ruled : whether there is a hairline below each row

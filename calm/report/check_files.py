@@ -77,9 +77,10 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         Keys: `verdict`, the conclusion from all findings, and `state`, the worst state;
         `estimated`, the number of findings based on estimates; `accepted`, the accepted findings
         with reasons; `findings`, the listed findings, and `findings_in_all`, their total number;
-        `situations`, the solved situations of each mooring in each environment; and by name of each
-        mooring, the `key_figures` of page one, `launch`, `recovery`, `backup`, `inventory` with its
-        `totals`, and the `document` if a mooring file has one.
+        `situations`, the solved situations of each mooring in each environment; the `key_figures`
+        of page one; `launch`, `recovery` and `backup`; `inventory`, and the `totals` of the
+        inventory; and `document` if a mooring file has one. The values from `situations` on are
+        objects whose keys are the names of the moorings.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:

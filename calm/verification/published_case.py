@@ -116,7 +116,7 @@ class Source:
 
     Attributes
     ----------
-    title : title of the source, a few words
+    title : short title of the source
     text : who published or derived the values, which part of CALM is compared with them, and why
         published values differ, if they do; Markdown, with blank lines between paragraphs
     cases : the cases
@@ -317,7 +317,8 @@ class Ends:
 
     Attributes
     ----------
-    x, z : distance of the free end downstream of the lower end, and its height above it [m]
+    x, z : distance downstream of the free end from the lower end, and height of the free end above
+        the lower end [m]
     horizontal, vertical : components of the force at the lower end, downstream and upward [N]
     """
 
@@ -361,7 +362,7 @@ class Wake:
 
     Attributes
     ----------
-    aft, depth : distance of the free end behind the tow point, and below it [m]
+    aft, depth : distances of the free end behind and below the tow point [m]
     tension : tension at the tow point [N]
     angle : angle of the line at the tow point from the horizontal [degrees]
     frequency : strumming frequency [Hz]

@@ -217,7 +217,7 @@ class ComponentMaker:
 def counts_on_depth(value: KeyValue) -> bool:
     """True if a drag coefficient depends on depth rather than on speed.
 
-    If the last argument of a table is a realistic speed, the arguments are speeds.
+    The arguments of a table are taken to be speeds if the last argument is a realistic speed.
     """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 

@@ -40,7 +40,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     ------
     InputError
         No headings are recognised, a value is missing, or there is no anchor at either end of the
-    list.
+        list.
     """
     columns, elements = options.columns, options.elements
     sheets, hidden = read_sheets(path)
