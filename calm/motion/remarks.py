@@ -334,7 +334,10 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Return the share of differences within their 95 % interval; NaN without any difference."""
+    """Return the share of the differences that are within their 95 % interval.
+
+    The result is NaN if there are no differences.
+    """
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")

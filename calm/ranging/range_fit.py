@@ -144,8 +144,8 @@ def locate(
     survey : ranges, or the path of their file; a file is read with the transducer at the surface
     sound : speed of sound that converts times to ranges, as a profile or a constant [m/s]
     depth : depth of the transponder [m]; None to estimate the depth
-    near : planned latitude and longitude [degrees]; if two positions fit, the likelier one is
-        chosen by its distance from the planned position, given the usual fallback of an anchor
+    near : planned latitude and longitude [degrees], used to choose between two positions that fit
+        the ranges; the choice allows for the usual fallback of an anchor
 
     Raises
     ------

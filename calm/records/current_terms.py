@@ -28,7 +28,7 @@ class Terms:
     Attributes
     ----------
     water_depth : water depth, to convert heights above the seabed [m]; inf if unknown
-    place : position; of a gridded file, the column nearest to this position is read
+    place : position for which the nearest column of a gridded file is read
     declination : magnetic declination, positive to the east [degrees], by which currents relative
         to magnetic north are rotated to true north
     maximum_speed : speed above which a current is treated as a mistake in the file [m/s]

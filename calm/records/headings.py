@@ -214,7 +214,7 @@ def read_named_columns(
 
 
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
-    """Read a table of times and quantities; each heading has a label and its unit.
+    """Read a table of times and quantities; the heading of a quantity has a label and a unit.
 
     Parameters
     ----------

@@ -73,11 +73,11 @@ class Record(ABC):
 
     @abstractmethod
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of m profiles, NaN in gaps.
+        """Return the depths and velocities of the m profiles from `start` to `stop`.
 
-        The profiles are those from `start` to `stop`. Depths are positive down, and may be in any
-        order. w is None if the record has no vertical velocity.
-        Raise InputError if the file is damaged in this range.
+        The depths (k,) or (m, k) [m] are positive down, and may be in any order. The velocities u,
+        v and w, each (m, k) [m/s], are NaN in gaps. w is None if the record has no vertical
+        velocity. Raise InputError if the file is damaged in this range.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
