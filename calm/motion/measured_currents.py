@@ -184,7 +184,7 @@ class Columns:
     ----------
     current : currents at the knots
     share : relative errors of the stretches of the line
-    tide : tide
+    tide : height of the tide
     factor : logarithms of the factors
     datum : correction common to all depths
     zero, place : errors in the zeros of the sensors, and in their positions on the line

@@ -354,7 +354,8 @@ class SensorSeries:
 
     Attributes
     ----------
-    hidden : whether the estimate uses no pressure of the sensor: it was withheld, or has none
+    hidden : True if the estimate uses no pressure of this sensor, because the sensor was withheld
+        or has no pressure
     time : (n,) times
     measured : (n,) measured depths [m]; NaN if not measured
     estimated, spread : (n,) estimated depths and their standard deviations [m]
