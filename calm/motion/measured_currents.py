@@ -413,7 +413,10 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return a state-space model of the currents at the knots, read by current meters only."""
+        """Return a state-space model of the currents at the knots.
+
+        The readings of this model are those of the current meters, without the pressures.
+        """
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)

@@ -323,7 +323,12 @@ def is_line(ships: Floats) -> bool:
 
 
 def widest_gap(away: Floats) -> float:
-    """Return the widest angle between neighbours among horizontal directions (n, 2) [degrees]."""
+    """Return the largest angle between neighbouring directions [degrees].
+
+    Parameters
+    ----------
+    away : (n, 2) horizontal directions
+    """
     bearing = np.sort(np.degrees(np.arctan2(away[:, 0], away[:, 1])))
     return float(np.diff(np.append(bearing, bearing[0] + 360.0)).max())
 

@@ -85,7 +85,7 @@ def find_levels(
 ) -> LevelDepths:
     """Find the levels of a velocity.
 
-    If a file describes both, levels that move with time are preferred to fixed levels.
+    If a file describes both moving and fixed levels, the moving levels are used.
 
     Parameters
     ----------

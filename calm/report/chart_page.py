@@ -228,7 +228,7 @@ class Labels:
         Parameters
         ----------
         angle : direction of the curve [rad]
-        size : length of the tick in points; a negative size draws to the left
+        size : length of the tick in points; if negative, the tick is drawn to the left of the curve
         """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
