@@ -76,7 +76,7 @@ class PageBuilder(BuildApp):
 
 
 class WebPage:
-    """The page as seen from Python: a folder in memory, and the builder that edits a file.
+    """Python side of the page, which runs the builder on a file in a folder in memory.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class WebPage:
 
     @property
     def app(self) -> PageBuilder | None:
-        """Builder that is running; None if there is none."""
+        """The running builder, or None if no builder is running."""
         return self._app
 
     def receive(self, message: Mapping[str, Any]) -> None:

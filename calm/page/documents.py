@@ -75,7 +75,7 @@ def document(kind: str, view: live.View) -> tuple[str, bytes]:
     Parameters
     ----------
     kind : a kind of `DOCUMENTS`
-    view : the line in the builder, whose solutions are reused
+    view : results of the line in the builder; its solutions are reused
 
     Raises
     ------

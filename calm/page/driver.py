@@ -45,7 +45,7 @@ class PageTerminal:
     driver: PageDriver | None = None
 
     def resize(self, columns: int, rows: int) -> None:
-        """Set the size."""
+        """Set the size of the terminal."""
         self.columns, self.rows = columns, rows
         if self.driver is not None:
             self.driver.show_size()
@@ -86,7 +86,7 @@ class PageDriver(Driver):
             self._terminal.driver = None
 
     def disable_input(self) -> None:
-        """Do nothing: the page sends the input."""
+        """Do nothing, because the page sends the input."""
 
     def show_size(self) -> None:
         """Send the size of the terminal to the application."""

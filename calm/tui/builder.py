@@ -62,7 +62,10 @@ class BuilderScreen(ComparingScreen):
         self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
-        """Suspend to the shell; undo instead if a value is being typed or if there is no shell."""
+        """Suspend the builder to the shell.
+
+        If a value is being typed or if there is no shell, undo the last change instead.
+        """
         if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
@@ -98,7 +101,7 @@ class BuilderScreen(ComparingScreen):
         self.verdict.focus()
 
     def action_figures(self) -> None:
-        """Ask for all missing values of components, and write the answers to the file."""
+        """Ask the user for all missing component values, and write the answers to the file."""
         session = self.session
         if not self.settle():
             return

@@ -49,7 +49,7 @@ class DraftScreen(Screen[None]):
 
     @property
     def is_typing(self) -> bool:
-        """Whether text was typed that is not in the draft yet."""
+        """Whether the user has typed text that is not in the draft yet."""
         raise NotImplementedError
 
     def settle(self) -> bool:
@@ -60,7 +60,7 @@ class DraftScreen(Screen[None]):
         raise NotImplementedError
 
     def show_draft(self) -> None:
-        """Show the draft again, as after undo or redo."""
+        """Show the draft again, for example after undo or redo."""
         raise NotImplementedError
 
     def replaced(self) -> None:
@@ -123,7 +123,7 @@ class TitleBar(Widget):
         self._texts = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
-        """Replace the texts; `old` dims the right one."""
+        """Replace both texts; `old` dims the right text."""
         if (left, right, old) != self._texts:
             self._texts = left, right, old
             self.refresh()
@@ -161,7 +161,7 @@ class KeyBar(Static):
     def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
         """Show the keys of actions.
 
-        With `beside_message` they stay next to a message, unless it reports a mistake.
+        With `beside_message`, the keys remain next to a message, unless the message is an error.
         """
         if ((chosen := list(actions)), beside_message) != (self._actions, self._beside_message):
             self._actions, self._beside_message = chosen, beside_message

@@ -89,7 +89,7 @@ class DrawnRows(Scrolled, can_focus=False):
 
 
 class ScrolledText(DrawnRows):
-    """Texts below each other, wrapped to the width of the widget."""
+    """Texts one below the other, wrapped to the width of the widget."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
@@ -157,8 +157,8 @@ class TableColumn:
 class TableCells(Scrolled, inherit_bindings=False):
     """Table with a fixed heading, in which a cursor moves from cell to cell.
 
-    Subclasses define the `columns`, which of them the cursor can enter (`editable`), and the text
-    of cells, before rows and below the table.
+    Subclasses define the `columns`, the columns that the cursor can enter (`editable`), the text of
+    each cell, and the texts in front of rows and below the table.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"table--heading", "table--cursor"}
@@ -238,7 +238,7 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
-        """Limit the cursor to the rows."""
+        """Limit the cursor to existing rows."""
         return max(0, min(cursor, len(self.rows) - 1))
 
     def validate_column(self, column: int) -> int:
@@ -284,10 +284,10 @@ class TableCells(Scrolled, inherit_bindings=False):
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the cell under the mouse; if it is already there, post `Pressed`.
+        """Move the cursor to the cell under the mouse, or post `Pressed` if it is already there.
 
-        The press is used rather than the release, because the layout may change in between when
-        text typed elsewhere is accepted.
+        The table reacts to the press of the mouse button, not to the release, because the layout
+        may change between the two when text typed elsewhere is accepted.
         """
         place = event.get_content_offset(self)
         number = None if place is None else self.row_at(place.y)

@@ -36,8 +36,8 @@ def open_session(
     Raises
     ------
     InputError, UsageError
-        The file, an environment file or a catalogue cannot be read; the folder of a new file does
-        not exist; the file has no such environment.
+        The file, an environment file or a catalogue cannot be read, the folder of a new file does
+        not exist, or the file has no such environment.
     """
     file = WorkingFile(path)
     if path is not None and file.stamp is not None:

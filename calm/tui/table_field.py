@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns, with numbers as names because headings may be equal."""
+        """Columns, which are named by numbers because several headings may be equal."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -59,7 +59,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """Names of the editable columns: all columns."""
+        """Names of all columns, since every column is editable."""
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
@@ -67,7 +67,7 @@ class GridCells(TableCells, can_focus=True):
         return self.rows[number][int(column.name)]
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the cursor sign in front of a row, if the table has the focus."""
+        """Return the cursor symbol in front of a row, if the table has the focus."""
         here = number == self.cursor and self.has_focus
         return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
@@ -96,7 +96,7 @@ class Grid(cell_editor.EditableTable):
 
     Parameters
     ----------
-    changed : called with the table and a label after a change of its rows
+    changed : function called after the rows change, with the table and a label for the change
     """
 
     BINDINGS = key_table.bindings("grid")
@@ -124,7 +124,7 @@ class Grid(cell_editor.EditableTable):
         self._before: Rows | None = None  # rows without the row that Enter added
 
     def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
-        """Replace the rows."""
+        """Replace the columns and the rows."""
         self._columns = tuple(columns)
         self.cells.show([column.heading for column in columns], rows)
 
@@ -134,7 +134,7 @@ class Grid(cell_editor.EditableTable):
         self._changed(self, label)
 
     def write(self, text: str) -> None:
-        """Write a valid text to the edited cell, if it still exists."""
+        """Write a valid text to the edited cell, if the cell still exists."""
         rows, (row, column) = self.cells.rows, self._place
         if row < len(rows) and column < len(self.cells.headings):
             values = (*rows[row][:column], text, *rows[row][column + 1 :])
@@ -145,17 +145,17 @@ class Grid(cell_editor.EditableTable):
         return ("",) * len(self._columns)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether no row should be proposed at index `at`."""
+        """Return whether the table is complete, so that no row at index `at` is proposed."""
         return False
 
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable row actions while a value is typed."""
+        """Disable all actions while a value is typed."""
         return not self.editor.is_open
 
     def action_move_row(self, by: int) -> None:
-        """Move up or down, and leave the table at its ends."""
+        """Move to the row above or below; beyond the first or last row, leave the table."""
         if 0 <= self.cells.cursor + by < len(self.cells.rows):
             self.cells.cursor += by
         elif by > 0:
@@ -176,7 +176,7 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_next()
 
     def on_key(self, event: events.Key) -> None:
-        """Start editing at a digit."""
+        """Start editing when a digit, a sign or a decimal point is typed."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
             event.stop()
             self._edit(event.character)
@@ -217,7 +217,7 @@ class Grid(cell_editor.EditableTable):
     # typed text
 
     def go_on(self, then: cell_editor.Then, text: str | None) -> None:
-        """Move up, down, or to the next value.
+        """Move the cursor up, down, or to the next value.
 
         After the last value of an added row, another row is added.
         """
@@ -287,13 +287,13 @@ class TableField(Grid):
 
     @property
     def text(self) -> str:
-        """Rows as text, or the initial text if unchanged."""
+        """Rows as text, or the initial text if the rows are unchanged."""
         rows = self.cells.rows
         return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
 
     @property
     def reading(self) -> Reading:
-        """Interpretation of the rows, with the first invalid cell as error."""
+        """Interpretation of the rows, which reports the first invalid cell."""
         for number, row in enumerate(self.cells.rows, 1):
             for column, text in zip(self._columns, row, strict=True):
                 reading = column.check(text)

@@ -55,7 +55,7 @@ _NOISE = 1e-12  # rounding of speed and direction in doubles, with a margin
 def import_sheet(folder: Path) -> InputSheet:
     """Create the sheet for importing a current file.
 
-    It asks for the name of the file, a time, and whether to refer to the file or to copy its
+    The sheet asks for the name of the file, a time, and whether to refer to the file or to copy its
     profile.
     """
     return InputSheet(
@@ -75,8 +75,8 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
     Parameters
     ----------
-    path : CSV, NetCDF or zarr
-    time : time of the profile in a record, as ISO 8601; empty for a single profile
+    path : CSV, NetCDF or zarr file
+    time : time of the profile, in ISO 8601 format; empty if the file has a single profile
     depth : water depth [m]
 
     Returns
@@ -147,7 +147,8 @@ class UnknownColumns(NoRows):
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
     """Return headings for copied rows.
 
-    They are the headings of the copied text, with missing units added, or those of the table.
+    The headings are those of the copied text, with missing units added. If the text has no
+    headings, they are those of the table.
     """
     if headings is None:
         return list(columns)
@@ -166,7 +167,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
     Raises
     ------
     UnknownColumns
-        The headings are not those of such a table.
+        The columns of the table cannot be derived from the headings.
     NoRows
         A row has an invalid value.
     """
@@ -277,7 +278,7 @@ _KINDS: dict[str, QuantityRange] = {
 def check_of(column: str) -> Check:
     """Return the check for the texts of a column.
 
-    They must be numbers if the heading has a unit, else quantities with units.
+    The texts must be numbers if the heading has a unit, otherwise quantities with units.
     """
     name, unit = heading(column)
     kind = _KINDS.get(name)
