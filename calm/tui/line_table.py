@@ -170,7 +170,7 @@ class LineTable(TableCells, can_focus=True):
         return style
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the symbols in front of a row: cursor, mark or state, and role of the component."""
+        """Return the symbols in front of a row: cursor, mark or state, and role."""
         row = self.rows[number]
         sign = Segment(" ", style)
         if row.spot in self.marked:
