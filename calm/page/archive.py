@@ -31,7 +31,7 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """Create the ZIP archive and return its content. Equal files give equal bytes.
+    """Create the ZIP archive and return its content. The same files always give the same bytes.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ Post = Callable[[str, str, bytes | None], object]
 
 
 class Button(NamedTuple):
-    """A button of the page: its title and the name of its action."""
+    """A button of the page, with its title and the name of its action."""
 
     title: str
     action: str

@@ -199,7 +199,7 @@ class BuildApp(App[int]):
         return [*super().get_line_filters(), own]
 
     def get_driver_class(self) -> type[Driver]:
-        """Return a driver for this terminal that sends only changed cells."""
+        """Return a driver class for this terminal; the driver sends only changed cells."""
         return self.output.driver_class(super().get_driver_class())
 
     @cached_property
@@ -300,7 +300,7 @@ class BuildApp(App[int]):
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
         """Open the text editor if the draft cannot be parsed.
 
-        With `as_judged`, also open it if the last view has mistakes.
+        With `as_judged`, the editor also opens if the last view has mistakes.
         """
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
@@ -367,7 +367,7 @@ class BuildApp(App[int]):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Save a backup copy unless the user has quit; set `not_kept` if this fails."""
+        """Save a backup copy unless the user has quit; if this fails, `not_kept` is the reason."""
         if not self._is_left:
             self.not_kept = self.keep()
 

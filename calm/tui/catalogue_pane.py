@@ -127,7 +127,7 @@ class ComponentList(TableCells, can_focus=False):
         return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
-        """Return the style of a row; the cursor row is marked even if the list lacks the focus."""
+        """Return the style of a row; the row under the cursor is always marked."""
         if number != self.cursor:
             return self.rich_style
         return self.rich_style + self.look("component-list--cursor")
@@ -157,7 +157,7 @@ _TITLES = {
 class CataloguePane(Vertical):
     """Pane with a search field, the list of components found, and the card of one component.
 
-    When a cable or a clamp is added, the pane asks for its length or its position.
+    When a cable is added, the pane asks for the length; when a clamp is added, for the position.
 
     Parameters
     ----------
@@ -230,8 +230,8 @@ class CataloguePane(Vertical):
     ) -> None:
         """Open the search for a component.
 
-        Favourites are listed first. Until words are typed, they are followed by components with the
-        given role, recent components, and components of the line.
+        Favourites are listed first. Until the user types words, the favourites are followed by
+        components with the given role, recent components, and components of the line.
 
         Parameters
         ----------

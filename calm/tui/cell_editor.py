@@ -48,7 +48,7 @@ class EditableTable(Vertical):
         raise NotImplementedError
 
     def abandoned(self) -> None:
-        """React to the cancellation of editing; does nothing by default."""
+        """React when the user cancels editing; by default, do nothing."""
 
     def action_move_column(self, by: int) -> None:
         """Move the cursor to the left or the right."""
@@ -166,12 +166,12 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_typing(self) -> bool:
-        """Whether the text differs from the previous value."""
+        """Whether the text differs from the previous value of the cell."""
         return self.is_open and self.value != self._before
 
     @property
     def text(self) -> str | None:
-        """Text to write; None if it is unchanged or invalid."""
+        """Text to write to the cell; None if the text is unchanged or invalid."""
         reading = self._check(self.value)
         # an untouched value only gets its unit, no tidying
         is_completed = reading.text.startswith(f"{self.value.strip()} ")

@@ -95,7 +95,7 @@ def quantity(
 ) -> Check:
     """Return a check that accepts a quantity.
 
-    A bare number gets the unit `usual_unit`, by default the SI unit.
+    A bare number gets the unit `usual_unit`; the default is the SI unit.
     """
 
     def check(text: str) -> Reading:

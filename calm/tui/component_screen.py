@@ -27,7 +27,7 @@ Defined = tuple[str, dict[str, str]]
 class ComponentScreen(dialogs.Form[Defined]):
     """Screen to define or change a component.
 
-    The screen returns the id and the values of the component, or None if it is cancelled.
+    The screen returns the id and the values of the component, or None if the user cancels.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ class Answer:
 
 
 def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
-    """Create answers from pairs of title and action; their keys are numbers from 1."""
+    """Create answers from pairs of title and action, with keys numbered from 1."""
     return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
@@ -175,7 +175,7 @@ class Form(Screen[T | None]):
 
     @property
     def texts(self) -> dict[str, str]:
-        """Entered texts by key."""
+        """Entered texts, by key of the field."""
         return {part.key: part.text for part in self.all_parts}
 
     def parts_of(self, fields: Iterable[FormField]) -> Iterator[Widget]:

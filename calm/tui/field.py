@@ -157,7 +157,7 @@ class Field(Horizontal):
         return self.check(self.input.value)
 
     def reset(self, text: str) -> None:
-        """Set another initial text."""
+        """Set and show another initial text."""
         self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
@@ -199,7 +199,7 @@ class Field(Horizontal):
             self.post_message(self.Entered(self))
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Accept a valid text when the focus leaves."""
+        """Accept a valid text when the focus leaves the field."""
         if self.reading.is_good:
             self.settle()
 
@@ -261,7 +261,7 @@ class Cycle(Widget, can_focus=True):
         self.refresh()
 
     def next_word(self, by: int) -> str:
-        """Return the word `by` places after the selected one; the list is circular."""
+        """Return the word `by` places after the selected word; the list is circular."""
         here = self.words.index(self.word) if self.word in self.words else 0
         return self.words[(here + by) % len(self.words)]
 

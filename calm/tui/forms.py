@@ -255,7 +255,7 @@ def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
 def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
     """Write the texts of a form to the file, and return the changed draft.
 
-    A blank text deletes its key.
+    A key is deleted if its text is blank.
     """
     for key, text in texts.items():
         place = (*below, *key.split("."))

@@ -310,7 +310,7 @@ class LinePane(LineSearch):
             self._show_edited()
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Move the cursor to the next value of the row, or to another row."""
+        """Move the cursor to the next value of the row, or to another row, as `then` requests."""
         onward = self._cell.onward() if self._cell and then == "edit next" else None
         if onward is not None:
             self._edit(onward)

@@ -161,7 +161,7 @@ class LineCell:
 
     @property
     def listed(self) -> Listed | None:
-        """Component of the row, or None if it is not in the catalogue or none is loaded."""
+        """Catalogue entry for the component of the row; None if there is no entry or catalogue."""
         index = self.workspace.index
         return None if index is None else index.get(self._values.get("use", ""))
 

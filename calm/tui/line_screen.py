@@ -82,7 +82,7 @@ class LineScreen(screen.DraftScreen):
         self.show_title()
 
     def show_view(self) -> None:
-        """Show the last view, dimmed if it belongs to an earlier draft."""
+        """Show the last view, dimmed if the view belongs to an earlier draft."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_side_panes()

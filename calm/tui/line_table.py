@@ -106,7 +106,7 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def chosen(self) -> tuple[Place, ...]:
-        """Positions of the marked rows; if no row is marked, that of the row under the cursor."""
+        """Positions of the marked rows, or of the row under the cursor if no row is marked."""
         if self.marked:
             return tuple(row.spot for row in self.rows if row.spot in self.marked)
         return (self.spot,) if self.spot else ()
@@ -230,7 +230,7 @@ def layout_for(
     *,
     planned: bool = False,
 ) -> tuple[TableColumn, ...]:
-    """Return the columns that fit a width; a narrow table omits the least important ones.
+    """Return the columns that fit a width; a narrow table omits the least important columns.
 
     Parameters
     ----------
@@ -302,7 +302,7 @@ class LineSearch(cell_editor.EditableTable):
         dialogs.enter(self.app, "Find in the line", "", fields, take)
 
     def action_find_next(self, by: int) -> None:
-        """Move to the next or previous row whose id, label, serial or maker contains all words."""
+        """Move to the next or previous row whose id, label, serial and maker contain all words."""
         wanted = self.words.casefold().split()
         if not wanted:
             self.workspace.tell("/ finds words in the line first")

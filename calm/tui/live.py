@@ -57,13 +57,12 @@ class View:
     result : the solution, or None
     failure : reason why the line has no equilibrium, or None
     findings : findings of the design check; empty for a tow
-    tighter : findings as severe as those in `findings`, but with a higher utilisation in another
-        situation
+    tighter : findings in other situations, with a higher utilisation than in `findings`
     environments : names of the environments besides the default environment
     rows : results of all rows in file order; each piece is followed by its clamps
     complete : whether the findings are all those of `calm check` (see `judge_fully`); also true for
         a solved tow, which has no findings
-    cases : results in each environment, after the full check
+    cases : results in each environment; empty before the full check
     elsewhere : mistakes in other environments
     held : solutions of a line without an anchor in every environment and situation
     memory : previous solutions, which are reused for the next text
@@ -116,7 +115,7 @@ def judge(
 ) -> View:
     """Solve the line that a text describes, and apply the design rules to its equilibrium.
 
-    This may be called in any thread.
+    The function may be called in any thread.
 
     Parameters
     ----------
@@ -152,8 +151,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     """Return a view with the complete findings of `calm check`.
 
     The check covers every environment and situation, waves, launch, recovery and breaks. For a tow
-    or a line without equilibrium, the view is returned unchanged. A line without an anchor is only
-    solved in every environment and situation.
+    or a line without equilibrium, the view is returned unchanged. A line without an anchor is
+    solved in every environment and situation, but not checked.
     """
     if view.complete or view.result is None or view.result.towed:
         return view
@@ -190,7 +189,7 @@ class HeldLine:
         return float(required_weight(load.vertical, load.horizontal, factor, file.anchor_friction))
 
     def weight(self, anchor: Anchor) -> float:
-        """Return the weight of a given anchor and its clamps in this water [N]."""
+        """Return the weight in water of a given anchor and its clamps, in this environment [N]."""
         leg = self.result.leg
         return Leg(_anchored_by(leg.file, anchor), given_water=leg.water).anchor_weight
 
@@ -324,7 +323,7 @@ class FoundRow:
 
     Attributes
     ----------
-    place : position in the line as read
+    place : position of the piece or instrument in the parsed file
     label : label of the piece or instrument in results
     length : cut length [m]; None for a clamp, and for a fitted length that is not solved yet
     figures : values in the columns of the builder, by column name; empty if there is no solution

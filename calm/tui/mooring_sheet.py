@@ -58,7 +58,7 @@ def settings() -> list[str]:
 
 
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
-    """Create a sheet with the values in the file.
+    """Create a sheet with the values in the file, and return it as a `Sheet`.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the piece or clamp of a row, or None unless the row has exactly one in `file`."""
+    """Return the only piece or clamp of a row; None if the row has several or none."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -181,7 +181,7 @@ def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) 
 def entered(
     draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
 ) -> Draft:
-    """Write texts to an entry of a list in the file (see `entry_text`), and return the draft.
+    """Write texts to an entry of a list in the file (see `entry_text`); return the new draft.
 
     A missing entry is added. An entry that has only its identifying key left is deleted.
     """
@@ -306,7 +306,7 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 def with_figures(
     draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
 ) -> Draft:
-    """Return the file with the entered component values.
+    """Write the entered component values to the file, and return the new draft.
 
     Parameters
     ----------

@@ -73,7 +73,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells that a terminal output contains; return what must be sent at once."""
+        """Store the cells in a terminal output; return the rest, which must be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -179,7 +179,7 @@ class TerminalOutput:
         self._lock = RLock()  # the thread that reads the keyboard also switches modes
 
     def driver_class(self, terminal: type[Driver]) -> type[Driver]:
-        """Return a subclass of a terminal driver that writes through this output."""
+        """Return a subclass of the driver class `terminal`, which writes through this output."""
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
@@ -211,7 +211,7 @@ class TerminalOutput:
             self.send_frame()
 
     def clear(self) -> None:
-        """Discard all cells, at the end or after the terminal has changed its size."""
+        """Discard all cells, when the application ends or the terminal has changed its size."""
         with self._lock:
             self._painted.clear()
             if self._late is not None:

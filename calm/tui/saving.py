@@ -225,7 +225,7 @@ class Saving:
     # quitting
 
     def quit(self) -> None:
-        """Quit the builder, after a question if there is unsaved work."""
+        """Quit the builder; if there is unsaved work, ask the user first."""
         self.check_external_change()
         if not self._session.changed:
             self._leave()

@@ -18,8 +18,8 @@ from calm.tui.workspace import Workspace
 class DraftScreen(Screen[None]):
     """Screen that displays and edits the draft of a workspace.
 
-    The application calls `settle` on the top screen before it saves or quits. It calls `replaced`
-    on all screens after another text has replaced the draft.
+    The application calls `settle` on the top screen before saving or quitting, and `replaced` on
+    all screens after another text has replaced the draft.
     """
 
     def __init__(self, workspace: Workspace) -> None:
@@ -159,7 +159,7 @@ class KeyBar(Static):
         self._beside_message = False
 
     def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
-        """Show the keys of actions.
+        """Show the keys of the given actions.
 
         With `beside_message`, the keys remain next to a message, unless the message is an error.
         """

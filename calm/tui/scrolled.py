@@ -25,7 +25,7 @@ Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
-    """Scrollable lines, which `render_line` draws.
+    """Widget with scrollable lines, which `render_line` draws.
 
     `virtual_size` holds the width and the number of the lines.
     """
@@ -272,7 +272,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         return wanted != top
 
     def row_at(self, y: int) -> int | None:
-        """Return the number of the row on a line of the widget; None outside the rows."""
+        """Return the number of the row on line `y` of the widget; None if there is no row."""
         row = y - self.HEADING + self.scroll_offset.y
         return row if y >= self.HEADING and row < len(self.rows) else None
 

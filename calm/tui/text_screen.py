@@ -48,7 +48,7 @@ class YamlArea(TextArea):
 
 
 class TextScreen(screen.DraftScreen):
-    """Screen with the text of the file, which is judged after each pause in typing.
+    """Screen with the text of the file; the text is checked after each pause in typing.
 
     Unchanged lines keep their line breaks.
     """

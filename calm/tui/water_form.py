@@ -55,7 +55,7 @@ class WaterForm:
 
     Parameters
     ----------
-    draft : the file
+    draft : draft of the file
     variant : name of an environment, merged with the default environment; None for the default
 
     Raises
@@ -92,7 +92,7 @@ class WaterForm:
 
     @property
     def depth(self) -> float | None:
-        """Water depth [m]; None if it is unset or not a positive depth."""
+        """Water depth [m]; None if the depth is not set or not positive."""
         return _read(POSITIVE_LENGTH, self.text("depth"))
 
     def form(self, *keys: str) -> str:
@@ -140,7 +140,7 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """Write a table to the file, in which unchanged rows keep their text."""
+        """Write a table to the file; unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
@@ -271,7 +271,7 @@ class FormChoice(Cycle):
 
     @property
     def hint(self) -> str:
-        """Text that names the key to accept the form shown or, for the current form, all keys."""
+        """Text that names the keys; while another form is shown, only the key to accept it."""
         return _ACCEPT_HINT if self.word != self._given else super().hint
 
 

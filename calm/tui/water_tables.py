@@ -147,8 +147,8 @@ class UnknownColumns(NoRows):
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
     """Return headings for copied rows.
 
-    The headings are those of the copied text, with missing units added. If the text has no
-    headings, they are those of the table.
+    The headings are those of the copied text, with missing units added. If the copied text
+    has no headings, the headings of the table are used.
     """
     if headings is None:
         return list(columns)
@@ -162,7 +162,9 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Convert copied rows to the columns of a table; if the columns are the same, keep the texts.
+    """Convert copied rows to the columns of a table.
+
+    If the copied rows have the same columns, the texts are kept.
 
     Raises
     ------

@@ -27,7 +27,7 @@ def is_elsewhere(problem: Problem, path: Path) -> bool:
 def place_of(problem: Problem, path: Path) -> str:
     """Format the position of a mistake, such as ``line 4:2``.
 
-    If the mistake is in a file other than the edited file, its name precedes the position.
+    If the mistake is in a file other than the edited file, the file name precedes the position.
     """
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
@@ -191,7 +191,7 @@ class Judging:
             self._show()
 
     def ask(self) -> None:
-        """Judge the draft now, or once the worker is free; only the latest draft is judged then."""
+        """Judge the draft now or, if the worker is busy, judge the latest draft once it is free."""
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:
