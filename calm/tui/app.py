@@ -43,7 +43,7 @@ class BuildApp(App[int]):
     of the field that the first key opens.
 
     A key counts as handled once all message queues that it may have filled are empty. Each widget
-    handles messages in the order of its queue, so a call that is posted after the key returns once
+    handles messages in the order of its queue, so a call that is posted after the key is made once
     the key is handled. A second round waits for messages that the widgets sent to each other.
     Rounds are repeated until all queues are empty.
 
@@ -212,7 +212,7 @@ class BuildApp(App[int]):
         self.output.answered()
 
     def on_resize(self) -> None:
-        """Send the whole screen, since the terminal may have moved its text."""
+        """Send the whole screen, since the terminal may have moved the displayed text."""
         self.output.clear()
 
     def action_repaint(self) -> None:

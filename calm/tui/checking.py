@@ -21,7 +21,7 @@ class Reading:
     Attributes
     ----------
     text : text to write, with a missing unit added
-    complaint : reason why the text is invalid; empty if valid
+    complaint : reason why the text is invalid; empty if the text is valid
     offer : corrected text, if known
     explained : meaning of a valid text, unless the meaning is obvious
     """

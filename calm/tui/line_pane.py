@@ -169,7 +169,7 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Edit one column of the marked rows, or of all rows with the component of this row."""
+        """Edit one column of the marked rows, or of all rows with the same component."""
         table = self.table
         spots = table.chosen
         if not table.marked:

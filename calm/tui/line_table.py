@@ -235,8 +235,8 @@ def layout_for(
     Parameters
     ----------
     width : width of the table [cells]
-    component, label : width of the longest text in each of these two columns [cells], which share
-        the width that the other columns leave
+    component, label : width of the longest text in the column [cells]; the two columns share the
+        width that the other columns leave
     length : width of the longest text in the length column [cells]
     leg : width of the longest name of a leg in a net [cells]; 0 for a single line
     planned : whether any row has a planned depth

@@ -319,7 +319,7 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 
 @dataclass(frozen=True)
 class FoundRow:
-    """Results of a piece, or of an instrument clamped on the piece above.
+    """Results of a piece, or of an instrument that is clamped to a piece.
 
     Attributes
     ----------

@@ -159,7 +159,7 @@ def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check the serial numbers of a row, separated by commas."""
+    """Check a text that contains the serial numbers of a row, separated by commas."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
@@ -242,9 +242,9 @@ class Missing:
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
     targets : locations in the file to which each missing value is written, by key. If the file
-        defines the component, the location is the definition. Otherwise it is every row that lacks
-        the value; for a part of an assembly, it is the row of the assembly. There is no location if
-        the row cannot take the value.
+        defines the component, the location is the definition. Otherwise the locations are all rows
+        that lack the value or, for a part of an assembly, the row of the assembly. There is no
+        location if the row cannot take the value.
     estimates : estimates for the class of component, by key, as texts without their source
     """
 

@@ -112,7 +112,7 @@ _GAP = "  "
 
 
 class TitleBar(Widget):
-    """Bar with name and file at the left, environment and verdict at the right."""
+    """Title bar with a text at the left, such as the file name, and the verdict at the right."""
 
     DEFAULT_CSS = """
     TitleBar { height: 1; background: $panel; color: $foreground; padding: 0 1; text-style: bold; }

@@ -58,7 +58,7 @@ class Scrolled(ScrollView, inherit_bindings=False):
 
 
 class DrawnRows(Scrolled, can_focus=False):
-    """Rows drawn for the size of the widget, and drawn again when the size changes."""
+    """Widget whose rows are drawn for its size, and drawn again when the size changes."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -284,7 +284,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the cell under the mouse, or post `Pressed` if it is already there.
+        """Move the cursor to the cell under the mouse; on the cell of the cursor, post `Pressed`.
 
         The table reacts to the press of the mouse button, not to the release, because the layout
         may change between the two when text typed elsewhere is accepted.

@@ -32,7 +32,7 @@ class Session:
     standing : the chosen environment
     after_save : function called with the path and text of a saved file
     added : rows added by the last change
-    followed : messages on references to labels that the last change updated
+    followed : messages about the references to labels that were updated in the last change
 
     Raises
     ------
@@ -142,7 +142,7 @@ class Session:
         return Place(index)
 
     def clamp(self, spot: Place, values: Mapping[str, Value]) -> Place:
-        """Add a clamp to the piece of a row, below its other clamps."""
+        """Add a clamp to the piece of a row, below the other clamps of this piece."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
         at = Place(spot.item, clamp=index)

@@ -92,7 +92,8 @@ class GridCells(TableCells, can_focus=True):
 class Grid(cell_editor.EditableTable):
     """Table with editable cells and rows.
 
-    Values are texts as in the file. Without columns, the table is empty and cannot be edited.
+    The cells contain texts as written in the file. A table without columns is empty and cannot be
+    edited.
 
     Parameters
     ----------
@@ -145,7 +146,7 @@ class Grid(cell_editor.EditableTable):
         return ("",) * len(self._columns)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether the table is complete, so that no row at index `at` is proposed."""
+        """Return whether the table ends before index `at`, so that no row is proposed there."""
         return False
 
     # keys

@@ -149,7 +149,7 @@ class WaterForm:
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
-        """Replace the current, density, temperature or salinity; a `value` of None deletes it."""
+        """Replace the value of a property, such as the current; None deletes the property."""
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
@@ -250,7 +250,7 @@ class FormChoice(Cycle):
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
-        """Accept the form shown, or move to the next field."""
+        """Accept the form shown; if it is the current form, move to the next field instead."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:
@@ -271,7 +271,7 @@ class FormChoice(Cycle):
 
     @property
     def hint(self) -> str:
-        """Text that names the keys; while another form is shown, only the key to accept it."""
+        """Text that names the keys of this widget, or the key that accepts another form shown."""
         return _ACCEPT_HINT if self.word != self._given else super().hint
 
 

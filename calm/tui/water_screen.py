@@ -117,7 +117,7 @@ class WaterScreen(screen.DraftScreen):
         return f"The water of {self.workspace.called}", state
 
     def show_view(self) -> None:
-        """Show the current profile of the last view, dimmed if it belongs to an earlier draft."""
+        """Show the current profile of the last view; the profile is dimmed if it is out of date."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
         self.query_one(pictures.ProfilePicture).show(view, old=self.workspace.is_old)
@@ -436,7 +436,7 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Discard typed text if it is invalid, else undo the last change."""
+        """Discard typed text if the text is invalid; otherwise undo the last change."""
         if self.settle():
             super().action_undo()
         else:
@@ -444,7 +444,7 @@ class WaterScreen(screen.DraftScreen):
             self.show_draft()
 
     def action_back(self) -> None:
-        """Return to the line; typed text is accepted if valid, else discarded."""
+        """Return to the line; valid typed text is accepted, invalid text is discarded."""
         self.settle()
         self.dismiss()  # not awaited, because this ends the loop that would wait
 

@@ -84,7 +84,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
         velocity [m/s], whichever needs fewer digits (usually as in the file). If the current has
         an upward velocity, all three components of the velocity follow the depth.
-    rows : one row per level, from the top, with all digits of the file
+    rows : one row for each level, from the top; the values keep all digits of the file
 
     Raises
     ------

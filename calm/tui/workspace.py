@@ -38,7 +38,7 @@ def place_of(problem: Problem, path: Path) -> str:
 
 
 def problem_text(problem: Problem, path: Path) -> Content:
-    """Format a mistake as a symbol, its position and its message."""
+    """Return a text with the symbol, the position and the message of a mistake."""
     parts = filter(None, (place_of(problem, path), problem.message))
     return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")
 
@@ -64,7 +64,7 @@ class Workspace:
     session : editing session of the file
     tell : function that shows a message in the last line of the screen until the next key; its
         argument `wrong` marks an error
-    edited : function called after a change, which checks the draft and keeps a backup copy
+    edited : function that checks the draft and keeps a backup copy; called after each change
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change; return whether the change succeeded, and the row that it returned, if any.
+        """Make a change; return whether the change succeeded, and the row that `change` returned.
 
         If the change fails, a message shows the reason.
         """
@@ -152,7 +152,7 @@ _FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and 
 
 
 class Judging:
-    """Workers that judge the draft of a workspace.
+    """Workers that solve and check the draft of a workspace.
 
     Parameters
     ----------
@@ -172,12 +172,12 @@ class Judging:
 
     @property
     def is_idle(self) -> bool:
-        """Whether the draft has been judged and no worker is running."""
+        """Whether the draft has been solved and checked, and no worker is running."""
         busy = self._is_judging or self._is_stale or self._checked is not None
         return not busy and self._workspace.view is not None
 
     def after_an_edit(self) -> None:
-        """Judge the new draft, once the screen has shown the typed text."""
+        """Solve and check the new draft, after the screen has shown the typed text."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
@@ -191,7 +191,10 @@ class Judging:
             self._show()
 
     def ask(self) -> None:
-        """Judge the draft now or, if the worker is busy, judge the latest draft once it is free."""
+        """Solve and check the draft.
+
+        If the worker is busy, wait until it is free, and then check only the latest draft.
+        """
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:
@@ -206,7 +209,7 @@ class Judging:
             )
 
     def ask_fully(self) -> None:
-        """Judge the draft with all checks, including launch, recovery and breaks."""
+        """Apply all checks to the draft, including launch, recovery and breaks."""
         self._stop_waiting()
         view = self._workspace.view
         is_free = not self._is_judging and self._checked is None
