@@ -306,13 +306,13 @@ class CataloguePane(Vertical):
             self._search_again()
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor of the list."""
+        """Move the cursor of the list by `by` rows."""
         self.listing.cursor += by
 
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
-        """Use the component under the cursor in the line, after asking for required values."""
+        """Put the component under the cursor into the line, after asking for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return

@@ -177,7 +177,7 @@ class LineCell:
 
     @property
     def text(self) -> str:
-        """Text at the start of editing."""
+        """Text of the cell at the start of editing."""
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":

@@ -269,7 +269,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the missing component values that make findings unknown, in the order of the line."""
+    """Return the missing component values that the findings need, in the order of the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}

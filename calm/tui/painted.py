@@ -73,7 +73,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells in a terminal output; return the rest, which must be sent at once."""
+        """Store the cells that a text contains; return the rest of it, to be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -183,7 +183,7 @@ class TerminalOutput:
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
-        """Store the cells that a terminal output contains, and send everything else at once."""
+        """Store the cells that a text contains, and send the rest of the text at once."""
         with self._lock:
             self._send = send
             if at_once := self._painted.take(text):

@@ -177,7 +177,7 @@ class Pictures(Vertical):
 
 
 class ProfilePicture(scrolled.DrawnRows):
-    """Picture of current speed and direction against depth, in the current environment."""
+    """Picture of current speed and direction against depth, in the selected environment."""
 
     DEFAULT_CSS = """
     ProfilePicture { height: 1fr; overflow: hidden; }

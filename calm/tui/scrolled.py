@@ -284,10 +284,11 @@ class TableCells(Scrolled, inherit_bindings=False):
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the cell under the mouse; on the cell of the cursor, post `Pressed`.
+        """Move the cursor to the cell under the mouse.
 
-        The table reacts to the press of the mouse button, not to the release, because the layout
-        may change between the two when text typed elsewhere is accepted.
+        If the cursor is already in this cell, post `Pressed`. The table reacts to the press of the
+        mouse button, not to the release, because the layout may change between the two when text
+        typed elsewhere is accepted.
         """
         place = event.get_content_offset(self)
         number = None if place is None else self.row_at(place.y)

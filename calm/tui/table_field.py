@@ -184,7 +184,7 @@ class Grid(cell_editor.EditableTable):
 
     @on(GridCells.Pressed)
     def action_edit(self) -> None:
-        """Edit the cell."""
+        """Edit the cell under the cursor."""
         if self.cells.rows:
             self._edit()
 
@@ -198,7 +198,7 @@ class Grid(cell_editor.EditableTable):
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
-        """Add a row above or below."""
+        """Add a row above or below the cursor."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
@@ -210,7 +210,7 @@ class Grid(cell_editor.EditableTable):
         self._edit()
 
     def action_drop_row(self) -> None:
-        """Delete the row."""
+        """Delete the row under the cursor."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "delete a row")

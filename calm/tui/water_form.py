@@ -271,7 +271,10 @@ class FormChoice(Cycle):
 
     @property
     def hint(self) -> str:
-        """Text that names the keys of this widget, or the key that accepts another form shown."""
+        """Text that names the keys of this widget.
+
+        While a new form is shown, the text names only the key that accepts this form.
+        """
         return _ACCEPT_HINT if self.word != self._given else super().hint
 
 
