@@ -76,7 +76,7 @@ class PageBuilder(BuildApp):
 
 
 class WebPage:
-    """Python side of the page, which runs the builder on a file in a folder in memory.
+    """Python side of the page, which runs the builder on a file that is kept in memory.
 
     Parameters
     ----------

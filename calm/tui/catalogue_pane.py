@@ -120,7 +120,7 @@ class ComponentList(TableCells, can_focus=False):
         return figure.shown(figures.get(column.name))
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the symbols in front of a row, which mark the cursor, a favourite and the role."""
+        """Return the symbols in front of a row for the cursor, a favourite and the role."""
         each: Listed = self.rows[number]
         cursor = theme.CURSOR if number == self.cursor else " "
         star = theme.FAVOURITE if each.id in self._favourites else " "

@@ -225,7 +225,7 @@ class TableCells(Scrolled, inherit_bindings=False):
     # rows and cursor
 
     def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
-        """Replace the rows; the number of the row under the cursor stays the same if possible.
+        """Replace the rows; the cursor stays at the same row number if possible.
 
         If the numbers of `changed` rows are given, only these rows are drawn again.
         """

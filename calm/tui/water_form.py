@@ -83,7 +83,7 @@ class WaterForm:
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """Return the value of a key as typed text."""
+        """Return the value of a key as the text that a user would type."""
         return text_of(self.value(*keys))
 
     def is_own(self, key: str) -> bool:
