@@ -96,12 +96,12 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def spot(self) -> Place | None:
-        """Position of the row under the cursor in the line; None if the line is empty."""
+        """Position of the row under the cursor; None if the line is empty."""
         return self.row.spot if self.row else None
 
     @property
     def chosen_here(self) -> Place:
-        """Position of the row under the cursor in the line, which must not be empty."""
+        """Position of the row under the cursor; the line must not be empty."""
         return self.rows[self.cursor].spot
 
     @property

@@ -78,7 +78,7 @@ class GridCells(TableCells, can_focus=True):
         return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
 
     def go_on(self, by: int) -> bool:
-        """Move to the next or previous value, across rows.
+        """Move to the next or previous value, if necessary in the next or previous row.
 
         Return whether there is such a value.
         """
