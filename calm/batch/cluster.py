@@ -36,13 +36,13 @@ def on_cluster(
     Parameters
     ----------
     address : address of the scheduler, such as ``tcp://10.0.0.1:8786``
-    tell : called with a message when the scheduler has no worker
+    tell : function called with a message when the scheduler has no worker
 
     Raises
     ------
     UsageError
-        The scheduler does not answer or is lost; CALM is not installed on the workers; or one block
-        loses its worker again and again.
+        The scheduler does not answer or is lost, CALM is not installed on the workers, or the
+        workers of one block are lost repeatedly.
     """
     from distributed import CancelledError, Client, KilledWorker
 

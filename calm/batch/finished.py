@@ -31,10 +31,10 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Replace exceptions that occur while a finished result is read with helpful messages (context
-    manager).
+    """Context manager that replaces exceptions raised while a finished result is read by helpful
+    messages.
 
-    Raises UsageError instead of any exception of the libraries.
+    Any exception raised by the libraries becomes a UsageError.
     """
     try:
         yield
@@ -56,8 +56,7 @@ def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Find the prefix of the variable names and the column number for a part of the line in a
-    result.
+    """Find a part of the line in a result: the prefix of its variable names, and its column number.
 
     Parameters
     ----------
@@ -80,7 +79,7 @@ def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
 
 
 def status_names(dataset: Dataset) -> tuple[str, ...]:
-    """Return the names of the status numbers in a result, beginning with status 0.
+    """Return the names of the statuses in a result; the position in the list is the status number.
 
     Raises UsageError if the dataset is not a result of `calm batch`.
     """

@@ -155,8 +155,9 @@ class Design:
         return self.water_of(self.environment) if self.several else self.legs[0].water
 
     def water_of(self, environment: Environment) -> Water:
-        """Return the water of an environment. If a leg of a net is held above the surface, there is
-        still air above the water.
+        """Return the water of an environment.
+
+        If a leg of a net is held above the surface, the levels extend into motionless air.
         """
         if not self.several:
             return assemble_water(environment)
@@ -190,8 +191,8 @@ class Design:
 
         Parameters
         ----------
-        label : label of the piece or clamp whose keys are changed; by default, keys of the file are
-            changed
+        label : label of the piece or clamp whose keys are changed; without it, top-level keys of
+            the file are changed
         environment : name of an entry of `environments` in the file, an environment file, or
             changed keys of the default environment
 
@@ -247,14 +248,14 @@ class Design:
 
     @cached_property
     def standing(self) -> NetSolution:
-        """Equilibrium of several legs in the water of the file. Raises NoEquilibrium if there is
-        none.
+        """Equilibrium of several legs in the water of the file.
+
+        Raises NoEquilibrium if there is no equilibrium.
         """
         return self.together(self.water, self.near)
 
     def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
-        """Solve several legs in given water. The search starts from another solution if one is
-        given.
+        """Solve several legs in given water; the search starts from the solution `near` if given.
 
         Raises NoEquilibrium if there is no equilibrium.
         """
@@ -271,7 +272,7 @@ class Design:
 
     @cached_property
     def typed_legs(self) -> tuple[Leg, ...]:
-        """Legs with `for_surface` set, which is true for a leg that floats at the surface in still
+        """Legs of which each knows, as `for_surface`, whether it floats at the surface in still
         water.
         """
         if not self.several:
@@ -379,7 +380,7 @@ def _upside_down(result: LegResult) -> str:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Result:
-    """A converged design. Lengths and depths [m], forces [N], angles [degrees].
+    """Result of a converged design. Lengths and depths are in m, forces in N, angles in degrees.
 
     x and y are distances to the east and north. Their origin is the anchor, the tow point or, for
     several legs, the origin in the file. A result with one leg also has the attributes of this leg,
@@ -525,7 +526,10 @@ class Result:
 
     @property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the leg if strumming increases the drag of its cables; solved on first use."""
+        """Results of the leg for the case that strumming increases the drag of its cables.
+
+        The leg is solved when the attribute is first used.
+        """
         return self.leg.strumming_band
 
     @property
@@ -706,8 +710,10 @@ def load_in(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> list[Design]:
-    """Read a file as `load` does, once for each environment. None selects the default environment
-    and all environments that the file names.
+    """Read a file as `load` does, once for each environment.
+
+    If `environments` is None, these are the default environment and all environments that the file
+    names.
 
     Raises InputError with the mistakes of all environments.
     """

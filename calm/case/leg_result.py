@@ -32,7 +32,7 @@ from calm.solve.solution import OtherEquilibrium
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class LegResult:
-    """Result of a leg in equilibrium. Lengths and depths [m], forces [N], angles [degrees].
+    """Result of a leg in equilibrium. Lengths and depths are in m, forces in N, angles in degrees.
 
     The components of a tow are listed from the ship down, and its shape begins at the free end.
     Tables are computed when they are first used.
@@ -40,8 +40,8 @@ class LegResult:
     Attributes
     ----------
     leg : the solved leg
-    solution : solution for its line
-    still : solution in still water; None without a unique shape
+    solution : solution for the line of the leg
+    still : solution in still water; None if the shape in still water is not unique
     profilers : results for each profiler at several positions; all other results are for profilers
         at their upper stops
     """
@@ -206,10 +206,10 @@ class LegResult:
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Depth of the free end in another equilibrium; None if none was found.
+        """Values of another equilibrium, such as the depth of the free end; None if none was found.
 
-        For a mooring, also the length on the seabed, the used fraction of the buoyancy, and the
-        anchor load.
+        For a mooring, the values include the length on the seabed, the used fraction of the
+        buoyancy, and the anchor load.
         """
         if self.other is None:
             return None
@@ -222,8 +222,9 @@ class LegResult:
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the line if strumming increases the drag of its cables, solved on first use;
-        None for a leg of a net.
+        """Results of the line for the case that strumming increases the drag of its cables.
+
+        The line is solved when the attribute is first used. None for a leg of a net.
         """
         if self.leg.of_several:
             return None

@@ -25,8 +25,9 @@ class LineFigures:
     ----------
     solution, still : solutions in the current, and in still water for the knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
-    upper, lower : (n,) nodes at the ends of each piece, in the order of the file
-    top, bottom : (n, 3) positions of these ends: east, north, up [m]
+    upper, lower : (n,) indices of the nodes at the ends of each piece: the end that the file lists
+        first, and the other end
+    top, bottom : (n, 3) positions of these nodes: east, north, up [m]
     """
 
     def __init__(
@@ -98,7 +99,7 @@ class LineFigures:
         [degrees].
 
         A piece without length has the angle of the tension. The pieces at the head of the line form
-        one rod and have its angle.
+        one rod and have the angle of this rod.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -123,7 +124,9 @@ class LineFigures:
 
     @property
     def reynolds(self) -> Floats:
-        """(n,) largest Reynolds number, from flow speed and diameter; NaN for unknown diameters."""
+        """(n,) largest Reynolds number along each piece, based on its diameter; NaN if this is
+        unknown.
+        """
         solution = self.solution
         middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
         speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
@@ -138,7 +141,7 @@ class ClampFigures:
     Attributes
     ----------
     clamps : (m,) clamps of the file
-    index : (m,) index of the piece under each clamp
+    index : (m,) index of the piece that carries each clamp
     position : (m, 3) east, north, up [m]
     """
 
@@ -163,8 +166,10 @@ class ClampFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(m,) tilt [degrees]. On a rigid piece this is the tilt of the piece; elsewhere it is the
-        angle of the mean of the tensions above and below the clamp.
+        """(m,) tilt [degrees].
+
+        On a rigid piece, this is the tilt of the piece. On a cable or chain, it is the angle of the
+        mean of the tensions above and below the clamp.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]

@@ -46,7 +46,7 @@ _KEPT_BEGIN = ("creator_", "platform_", "site_", "principal_investigator", "publ
 
 
 def written() -> str:
-    """Return the time of writing in ISO 8601, or the time in SOURCE_DATE_EPOCH if set."""
+    """Return the current time in ISO 8601 format, or the time in SOURCE_DATE_EPOCH if set."""
     return f"{source_date() or datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
@@ -72,7 +72,7 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 def coverage(
     time: NDArray[np.datetime64], depth: NDArray[np.floating[Any]], place: Sequence[float]
 ) -> Attributes:
-    """Return the attributes for the coverage in time, depth and position.
+    """Return the global attributes that describe the coverage in time, depth and position.
 
     Parameters
     ----------
@@ -106,8 +106,9 @@ def coverage(
 
 
 def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
-    """Return the attributes for the range of depths [m]. The result is empty if all depths are
-    NaN.
+    """Return the global attributes that describe the range of depths [m].
+
+    The result is empty if all depths are NaN.
     """
     known = depth[np.isfinite(depth)]
     if not known.size:
@@ -153,8 +154,8 @@ def with_flags(
     Parameters
     ----------
     variables : variables of the result
-    names : for each variable to be flagged, the names of its other ancillary variables, such as
-        standard deviations
+    names : names of the flagged variables, each with the names of its other ancillary variables,
+        such as standard deviations
     cell_methods : CF attribute `cell_methods` of the flagged variables
     """
     found = []

@@ -38,7 +38,9 @@ the hash of the complete input.
 
 @dataclass(frozen=True)
 class PartDistributions:
-    """Distributions for a component or a clamp; a quantity without values has None."""
+    """Distributions of the quantities of a component or a clamp; None for a quantity without
+    values.
+    """
 
     label: str
     clamped: bool
@@ -137,7 +139,9 @@ class Summary:
 
     @property
     def known_responses(self) -> Sequence[Response]:
-        """Responses with a value in at least one profile, or all responses if there are no values.
+        """Responses with a value in at least one profile, or all responses if no response has a
+        value.
+
         Most nets, for example, have no offset.
         """
         return [one for one in self.responses if one.distribution is not None] or self.responses
@@ -149,9 +153,7 @@ class Summary:
 
     @property
     def unsolved(self) -> int:
-        """Number of profiles that have a current but no values: no equilibrium, or no
-        convergence.
-        """
+        """Number of profiles with a current for which no equilibrium exists or was found."""
         return self.count - self.solved - self.endings[Ending.NO_DATA]
 
 
@@ -362,11 +364,11 @@ class Distribution:
     ----------
     count : n
     mean : mean over the profiles
-    percentiles : values at `PERCENTILES`, interpolated linearly between the sorted values, where
-        rank 1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
+    percentiles : values at `PERCENTILES`, interpolated linearly between the sorted values; the p
+        quantile has the rank 1 + (n - 1) p (definition 7 of Hyndman and Fan 1996)
     maximum, time : the maximum, and the time at which it is first reached
     share, value : exceedance curve. A fraction `share` of the profiles reaches or exceeds `value`,
-        which is the quantile 1 - share; the shares are `SHARES` down to a single profile
+        which is the quantile 1 - share. The shares are those in `SHARES` that exceed 1/n, and 1/n
     """
 
     count: int
