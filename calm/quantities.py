@@ -275,7 +275,7 @@ def rounded(value: float, digits: int, *, up: bool) -> float:
 
 
 def bearing_of(east: float, north: float) -> float:
-    """Return the direction of a vector [degrees], clockwise from north, 0 to 360."""
+    """Return the direction of a vector, measured clockwise from north, 0 to 360 [degrees]."""
     return degrees(atan2(east, north)) % 360.0
 
 
@@ -294,7 +294,7 @@ def duration(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class MeasuredQuantity:
-    """A quantity measured by moored instruments, which can be interpolated to fixed levels.
+    """A quantity that moored instruments measure and that can be interpolated to fixed levels.
 
     Attributes
     ----------

@@ -294,7 +294,7 @@ def unit_factor(text: str, dimension: str) -> float:
 
 
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
-    """Return the factor and the offset that convert a value x: ``factor * x + offset``.
+    """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
     Factor and offset come from the library pint, which also converts temperature scales.
 

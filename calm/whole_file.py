@@ -85,7 +85,9 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Delete old temporary files in a folder: those of the file `name`, or all if it is empty."""
+    """Delete old temporary files of the file `name` in a folder, or of all files if `name` is
+    empty.
+    """
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
         for part in folder.glob(f"{begin}*{UNFINISHED}"):
@@ -94,7 +96,7 @@ def sweep(folder: Path, name: str = "") -> None:
 
 
 def flush_to_disk(paths: Iterable[Path]) -> None:
-    """Flush files to the disk, and the directory entries of folders.
+    """Flush files, and the directory entries of folders, to the disk.
 
     Raises
     ------
@@ -221,9 +223,7 @@ class FileCache(Generic[T]):
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return the cached value; call `read` if other files are listed or one of them has
-        changed.
-        """
+        """Return the cached value, or call `read` if `paths` or one of the files has changed."""
         stamp = _stamp(paths)
         last = self._last
         if stamp is not None and last is not None and last[0] == stamp:

@@ -66,7 +66,7 @@ class Catenary:
     vertical : vertical tension V at the upper end [N]; must be positive if `seabed` is set
     length : unstretched length L > 0 [m]
     weight : weight in water per unstretched metre, > 0 [N/m]
-    stiffness : EA [N]; infinite (the default) for an inextensible line
+    stiffness : axial stiffness EA [N]; infinite (the default) for an inextensible line
     seabed : whether the lower part of the line may lie on a level seabed without friction
 
     Fields may be arrays that broadcast against each other.
@@ -93,7 +93,7 @@ class Catenary:
 
     @property
     def grounded(self) -> Floats:
-        """Unstretched length on the seabed [m]."""
+        """Unstretched length of the part of the line that lies on the seabed [m]."""
         length = np.asarray(self.length, float)
         if not self.seabed:
             return np.zeros_like(length)
@@ -147,7 +147,7 @@ class Catenary:
 
     @property
     def end(self) -> tuple[Floats, Floats]:
-        """Horizontal distance and height of the upper end, from the lower end [m]."""
+        """Horizontal distance and height of the upper end, relative to the lower end [m]."""
         return self.position(self.length)
 
 
@@ -174,7 +174,7 @@ def between(
     Raises
     ------
     ValueError
-        A value is outside its range, or the line is too short or slack.
+        A value is outside its range, or the line is too short or, with a seabed, too slack.
 
     Notes
     -----

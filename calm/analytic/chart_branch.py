@@ -45,8 +45,8 @@ _NODES = _NODES + 0.5
 def critical_angle(k: ArrayLike) -> Floats:
     """Return the angle to the current at which a cable is straight [rad]; it is π/2 for K = 0.
 
-    K ≥ 0 is the drag per metre of a cable normal to the current, divided by the weight per metre.
-    It may be an array.
+    K ≥ 0 is the drag per metre of a cable normal to the current, divided by the weight per metre. K
+    may be an array.
     """
     return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
 

@@ -206,7 +206,7 @@ class Hodograph:
         return [0.0, *(cuts if step > 0.0 else reversed(cuts)), step]
 
     def advance(self, start: float, arc: float) -> float:
-        """Return the step of m over a given arc length in units of T₀/R.
+        """Return the step of m that covers a given arc length, in units of T₀/R.
 
         The arc is positive up the line, and `start` must be finite. The result is −`start` if the
         line becomes horizontal before the arc ends.

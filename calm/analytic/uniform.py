@@ -67,7 +67,7 @@ def neutral_line(
 
 
 def critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """Return the angle φc at which a line is straight: cos φc = √(1 + p²/4) − p/2 [rad].
+    """Return the angle φc [rad] at which a line is straight, from cos φc = √(1 + p²/4) − p/2.
 
     Parameters
     ----------
@@ -86,7 +86,9 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
 
 
 def critical_weight_ratio(angle: ArrayLike) -> Floats:
-    """Return the weight ratio p = w/R = sin φc tan φc [-], as the inverse of `critical_angle`.
+    """Return the weight ratio p = w/R = sin φc tan φc [-].
+
+    This function is the inverse of `critical_angle`.
 
     Parameters
     ----------
@@ -256,7 +258,7 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
         belongs to a towed line with its body at 90°. An angle above 90° belongs to a moored line;
         its arc length is counted downwards and therefore negative, and the tangential drag and the
         term f σ change sign.
-    weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` gives it for a critical angle
+    weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` computes p from a critical angle
     friction : f = F/R ≥ 0 [-]
 
     Raises

@@ -130,7 +130,7 @@ def quadratic_cable(
     ----------
     arc : distance s ≥ 0 along the cable from the body [m]; array of any shape
     tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body, −π to π; ignored at a free end [rad]
+    angle : α₀ at the body, −π to π [rad]; ignored at a free end
     weight : μg > 0 [N/m]
     normal_drag : k_n V² > 0 [N/m]
     tangential_drag : k_t V² ≥ 0 [N/m]

@@ -18,7 +18,7 @@ from calm.units import QuantityError, parse_quantity
 
 
 def net_buoyancy(component: files.Component, gravity: float) -> float:
-    """Return the net buoyancy in reference water, positive up [N, N/m].
+    """Return the net buoyancy in reference water, positive up [N; N/m for a cable or chain].
 
     The value is the specified buoyancy or weight. Without either, it is computed from the mass and
     the acceleration of gravity [m/s²].
@@ -32,7 +32,8 @@ def mass_in_air(component: files.Component) -> float | None:
     cable or chain].
 
     The conversion uses the displaced volume or, if that is unknown, the density of the material.
-    The default material of a chain or an anchor is steel. Return None if neither is known.
+    The default material of a chain or an anchor is steel. Return None if both the volume and the
+    density are unknown.
     """
     if component.mass is not None:
         return component.mass

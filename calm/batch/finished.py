@@ -31,10 +31,9 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Context manager that replaces exceptions raised while a finished result is read by helpful
-    messages.
+    """Context manager for reading a finished result.
 
-    Any exception raised by the libraries becomes a UsageError.
+    Any exception raised by the libraries becomes a UsageError with a helpful message.
     """
     try:
         yield
@@ -49,8 +48,9 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
-    """Return the labels in a variable of a result, such as `clamp_label`; empty if the result has
-    no such variable.
+    """Return the labels in a variable of a result, such as `clamp_label`.
+
+    The sequence is empty if the result has no such variable.
     """
     return tuple(map(str, dataset[name].values)) if name in dataset else ()
 

@@ -135,8 +135,8 @@ def solve_net_rows(
 def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
     """Return whether a solution is valid.
 
-    No leg may be above the surface or below the seabed, no anchor may be lifted, and the net must
-    be held horizontally.
+    In a valid solution, no leg is above the surface or below the seabed, no anchor is lifted, and
+    the net does not drift.
     """
     near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
@@ -259,7 +259,7 @@ class NetProfiles:
         Parameters
         ----------
         current : depth (1 or n, k) of levels [m], and u, v, w (n, k) at these levels [m/s]
-        status : (n,) index in `STATUSES`
+        status : (n,) status of each profile, as an index in `STATUSES`
         """
         count, pieces = len(status), self.net.file.pieces
         shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)

@@ -57,13 +57,13 @@ class Profiles(Columnar):
     in the order of the file, with the anchor last, and the m clamps are listed down the line.
 
     Further attributes are the batch columns, which `Profiles.columns` lists. Columns of
-    `Components` have the shape (n, p), columns of `Clamps`, such as ``clamp_depth``, the shape (n,
-    m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
+    `Components` have the shape (n, p), and columns of `Clamps`, such as ``clamp_depth``, have the
+    shape (n, m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
 
     Attributes
     ----------
-    component_label, clamp_label : labels (p,) and (m,)
-    status : (n,) index in `STATUSES`
+    component_label, clamp_label : labels of the components (p,) and of the clamps (m,)
+    status : (n,) status of each profile, as an index in `STATUSES`
     """
 
     component_label: tuple[str, ...]
@@ -162,17 +162,18 @@ def solve_profiles(
     """Solve a mooring for many current profiles.
 
     Each profile replaces the current of the file; everything else, such as density and wind, stays
-    the same. Profiles are independent: neither their order, nor other profiles, nor `workers`
-    changes a single bit of their results. The results agree with `calm run` to 1e-4 of the water
-    depth and 2e-4 of the tension.
+    the same. Not a single bit of the results of a profile depends on the order of the profiles, on
+    the other profiles or on `workers`. The results agree with `calm run` to 1e-4 of the water depth
+    and 2e-4 of the tension.
 
     Parameters
     ----------
-    u, v, w : (..., k) current to the east, to the north, upward [m/s]; w is 0 by default. Levels
-        with NaN and levels above the surface are ignored. The current is linear between levels, and
-        constant above the first and below the last. Instead of the arrays, `u` may be a record of
-        currents that `calm batch` can read: a path, an `xarray.Dataset`, or a `pandas.DataFrame`
-        with the columns of a CSV file. The profiles of a record are in chronological order.
+    u, v, w : (..., k) components of the current to the east, to the north and upward [m/s]; w is 0
+        by default. Levels with NaN and levels above the surface are ignored. The current is linear
+        between levels, and constant above the first and below the last. Instead of the arrays, `u`
+        may be a record of currents that `calm batch` can read: a path, an `xarray.Dataset`, or a
+        `pandas.DataFrame` with the columns of a CSV file. The profiles of a record are in
+        chronological order.
     depth : depths of the levels, in any order, with the shape (k,) or the shape of u [m]
     workers : number of threads; by default one per available processor
 

@@ -264,7 +264,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of the pieces at the head of the line, which form one rod."""
+    """Set the tilt of those pieces at the head of the line that form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]

@@ -47,7 +47,7 @@ OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
 
 
 def status_of(leg: Leg, ending: int) -> int:
-    """Convert an outcome of the solver for a profile of a mooring to the index in `STATUSES`."""
+    """Convert the outcome of the solver for a profile to an index in `STATUSES`."""
     if ending == LIES_ON_SEABED:
         return STATUSES.index(leg.grounded_error("a piece").status)
     return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)

@@ -149,7 +149,7 @@ class Design:
 
     @cached_property
     def water(self) -> Water:
-        """Water depth, and current and density by level."""
+        """Water depth, and current and density at each level."""
         if self.given_water is not None:
             return self.given_water
         return self.water_of(self.environment) if self.several else self.legs[0].water
@@ -212,7 +212,7 @@ class Design:
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
-        """Return a copy of the design whose legs have the given lines, and optionally with other
+        """Return a copy of the design whose legs have the given lines and, optionally, another
         water.
         """
         near = self.standing if self.several else None
@@ -272,9 +272,7 @@ class Design:
 
     @cached_property
     def typed_legs(self) -> tuple[Leg, ...]:
-        """Legs of which each knows, as `for_surface`, whether it floats at the surface in still
-        water.
-        """
+        """Legs whose `for_surface` states whether the leg floats at the surface in still water."""
         if not self.several:
             return self.legs
         try:
@@ -454,7 +452,7 @@ class Result:
 
     @property
     def water(self) -> Water:
-        """Water depth, and current and density by level."""
+        """Water depth, and current and density at each level."""
         return self.design.water
 
     @property
@@ -568,7 +566,7 @@ class Result:
         }
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the line from the side on matplotlib axes, and return the axes.
+        """Draw a side view of the line on matplotlib axes, and return the axes.
 
         Without `ax` the axes are those of a new figure. Raises UsageError if matplotlib is not
         installed.

@@ -102,7 +102,7 @@ def _factors(spread: Spread, normal: Floats) -> Floats:
 
 
 def drawn_line(line: Line, draw: Draw) -> Line:
-    """Return the line with the values of one random draw of its inputs."""
+    """Return the line for one random draw of the uncertain inputs."""
     cable, rises = line.flexible, line.buoyancy > 0.0
     drag = np.where(cable, draw.cable_drag, draw.rigid_drag)
     lift = np.where(cable, draw.cable_weight, np.where(rises, draw.buoyancy, 1.0))
@@ -130,7 +130,7 @@ def drawn_line(line: Line, draw: Draw) -> Line:
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:
-    """Return the water with the inputs of a draw.
+    """Return the water for one random draw of the uncertain inputs.
 
     If the water depth changes, the depths of the levels below the surface stay the same.
     """

@@ -47,7 +47,7 @@ class Causes(ColumnTable[Cause]):
     Attributes
     ----------
     index : (p,) index of the piece, or of the piece that carries the clamp
-    label : (p,) label
+    label : (p,) label of the part
     clamped : (p,) whether the part is a clamp
     drag : (p,) horizontal drag force [N]
     knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities of the

@@ -101,8 +101,8 @@ class Leg:
 
     @cached_property
     def water(self) -> Water:
-        """Water of the leg: current over the ground and density by level, and the water depth at
-        the anchor.
+        """Water of the leg: depth at the anchor, and density and current over the ground at each
+        level.
         """
         return self.given_water or assemble_water(self.file.environment)
 

@@ -224,7 +224,7 @@ class LegResult:
     def strumming_band(self) -> StrummingBand | None:
         """Results of the line for the case that strumming increases the drag of its cables.
 
-        The line is solved when the attribute is first used. None for a leg of a net.
+        The line is solved when the attribute is first used. The value is None for a leg of a net.
         """
         if self.leg.of_several:
             return None

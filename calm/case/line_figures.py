@@ -23,7 +23,8 @@ class LineFigures:
 
     Attributes
     ----------
-    solution, still : solutions in the current, and in still water for the knockdown
+    solution, still : solutions in the current and in still water; `still` is needed for the
+        knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
     upper, lower : (n,) indices of the nodes at the ends of each piece: the end that the file lists
         first, and the other end
@@ -64,13 +65,13 @@ class LineFigures:
 
     @property
     def tension_top(self) -> Floats:
-        """(n,) tensions at the end that the file lists first [N]."""
+        """(n,) tensions at the `upper` nodes of the pieces [N]."""
         tension: Floats = self.solution.tension[self.upper]
         return tension
 
     @property
     def tension_bottom(self) -> Floats:
-        """(n,) tensions at the end that the file lists last [N]."""
+        """(n,) tensions at the `lower` nodes of the pieces [N]."""
         tension: Floats = self.solution.tension[self.lower]
         return tension
 
@@ -124,7 +125,7 @@ class LineFigures:
 
     @property
     def reynolds(self) -> Floats:
-        """(n,) largest Reynolds number along each piece, based on its diameter; NaN if this is
+        """(n,) largest Reynolds number of each piece, based on the diameter; NaN if this is
         unknown.
         """
         solution = self.solution
@@ -142,7 +143,7 @@ class ClampFigures:
     ----------
     clamps : (m,) clamps of the file
     index : (m,) index of the piece that carries each clamp
-    position : (m, 3) east, north, up [m]
+    position : (m, 3) positions: east, north, up [m]
     """
 
     def __init__(

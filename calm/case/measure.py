@@ -31,7 +31,7 @@ def components_of(
     Parameters
     ----------
     pieces : pieces in file order; the anchor is not included
-    still : solution in still water, for the knockdown
+    still : solution in still water, from which the knockdown is computed
     """
     line = LineFigures(solution, still, pieces)
     return Components.made(pieces, lambda column: column.found and column.found(line))

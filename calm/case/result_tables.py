@@ -170,7 +170,10 @@ class ColumnTable(Columnar, Generic[Row]):
         return pandas.DataFrame({name: getattr(self, name) for name in names})
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset along the dimension `label`, including units and meanings."""
+        """Return a dataset along the dimension `label`.
+
+        The variables have their units and meanings as attributes.
+        """
         return _dataset(self.to_pandas(), self.columns(), "label")
 
 
@@ -611,7 +614,10 @@ class Shape:
         return pandas.DataFrame(vars(self))
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset along the dimension `node`, including units and meanings."""
+        """Return a dataset along the dimension `node`.
+
+        The variables have their units and meanings as attributes.
+        """
         return _dataset(vars(self), self.columns(), "node")
 
 

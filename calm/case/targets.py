@@ -165,7 +165,8 @@ class Figures:
     ----------
     depth, knockdown, excursion : values at the line's top or at another part
     used_buoyancy : used fraction of the surface float's buoyancy; 1 if the float is submerged
-    tension, vertical, horizontal, required_weight : anchor load; None without an anchor
+    tension, vertical, horizontal, required_weight : load on the anchor, and required weight of the
+        anchor; None if there is no anchor
     """
 
     depth: float

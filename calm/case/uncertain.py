@@ -88,7 +88,7 @@ class Uncertain:
 
     @property
     def clamped(self) -> list[tuple[int, str]]:
-        """For each clamp, the index of the component that carries it, and its label."""
+        """Index of the component that carries each clamp, and label of the clamp."""
         given = self.result.clamps
         return list(zip(given.index, given.label, strict=True))[: self.clamps.shape[2]]
 

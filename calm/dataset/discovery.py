@@ -51,7 +51,10 @@ def written() -> str:
 
 
 def hashed(path: Path) -> str:
-    """Return a file name with the SHA-256 hash of the file; a folder is returned without a hash."""
+    """Return the name of a file, followed by the SHA-256 hash of the file.
+
+    For a folder, only the name is returned.
+    """
     if not path.is_file():
         return path.name
     with path.open("rb") as file:
@@ -122,14 +125,12 @@ def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
 
 
 def mooring_in(title: str) -> str:
-    """Return the name of the mooring from the title of a file, which has the form ``NAME:
-    CONTENTS``.
-    """
+    """Return the name of the mooring in the title of a file; the title is ``NAME: CONTENTS``."""
     return title.rpartition(": ")[0] or title
 
 
 def archive_id(name: str, start: np.datetime64, product: str) -> str:
-    """Return an `id` in the OceanSITES form: site, month of the first time, product."""
+    """Return an `id` in the OceanSITES form, which contains site, first month and product."""
     site = "".join(letter if letter.isalnum() else "-" for letter in name)
     return f"OS_{site}_{np.datetime_as_string(start, 'M').replace('-', '')}_D_{product}"
 

@@ -136,7 +136,8 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the chunk shape of a time-dependent variable. The last chunk has the same shape.
+    """Return the chunk shape of a time-dependent variable, which also applies to an incomplete last
+    chunk.
 
     Parameters
     ----------

@@ -63,8 +63,7 @@ class RecoveredItem:
 
 @dataclass(frozen=True)
 class Lift:
-    """One lift: the piece at the rail with its clamps. The line already over the side is also
-    described.
+    """One lift: the piece at the rail with its clamps.
 
     Attributes
     ----------
@@ -73,7 +72,7 @@ class Lift:
         is paid out instead
     weight : weight of the lift in water, positive down [N]; None if a length is unknown
     hanging : weight in water of everything over the side, including the lift [N], positive down and
-        negative if this floats. It is the load on a winch that carries everything over the side
+        negative if buoyant. This is the load on a winch that carries everything over the side
     """
 
     index: int
@@ -145,7 +144,7 @@ class Deck:
 
     @property
     def file(self) -> MooringFile:
-        """File as read, in the environment of the sheets."""
+        """The mooring file as read, with the environment of the sheets."""
         return self.result.file
 
     @cached_property

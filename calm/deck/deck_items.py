@@ -117,7 +117,7 @@ class DeckItem:
 
     @property
     def is_connector(self) -> bool:
-        """Whether the item is in-line connecting hardware, not a cable, chain or clamp."""
+        """Whether the item is connecting hardware in the line, but not a cable, chain or clamp."""
         return self.role == "connector" and self.on is None and self.is_rigid
 
     @property

@@ -54,8 +54,8 @@ class Cut:
     tolerance : allowed error of the length [m]
     effect : increase in depth of the top of the line or leg if the piece is longer by the fraction
         `LENGTH_ERROR` [m]; None if the longer line has no equilibrium
-    over, onto : sequence number with which a wire or rope goes over the side, and sequence number
-        with which it is spooled onto the drum, in reverse order; None for a chain
+    over, onto : sequence number in which a wire or rope goes over the side, and sequence number in
+        which the wire or rope is spooled onto the drum, which is the reverse; None for a chain
     """
 
     item: DeckItem
@@ -178,8 +178,9 @@ class Stock:
 
     @property
     def spares(self) -> int:
-        """Number of spares: one tenth of `count`, rounded up, and at least two small parts or one
-        other part.
+        """Number of spares: one tenth of `count`, rounded up.
+
+        There are at least two spares for a small part, and at least one for any other part.
         """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 

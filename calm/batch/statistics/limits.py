@@ -190,7 +190,7 @@ class Exceedance:
     `count` is the number of profiles in which the limit can be evaluated, and `share` the fraction
     of these profiles that exceed the limit.
 
-    If the limit is an estimate, a profile that exceeds it is not counted in either number.
+    If the limit is an estimate, profiles that exceed it are left out of both numbers.
 
     `worst` is the value farthest beyond the limit, or the closest to it if none is beyond, and
     `time` is the time of this value. Both are None if there is no limit or no value.

@@ -50,7 +50,7 @@ class LegSeats(NamedTuple):
     Attributes
     ----------
     components, clamps : ranges of columns
-    number : number of the leg, from 0
+    number : number of the leg, counted from 0
     """
 
     components: slice

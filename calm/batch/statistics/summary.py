@@ -110,8 +110,8 @@ class Summary:
     begin, end : times of the first and the last profile
     years : years represented by the solved profiles
     parts : the components in the order of the file, then the clamps
-    responses : one for each of `RESPONSES`
-    worst : worst profiles by the names in `RANKED`, in order
+    responses : statistics of each of the `RESPONSES`
+    worst : worst profiles, the worst first, for each response in `RANKED`
     rules : the equilibrium rule, and the rules that can be evaluated in every profile
     not_judged : reasons why the remaining rules are not evaluated, by the names of the rules
     source : origin of the result, by the names in `SOURCE`
@@ -153,7 +153,9 @@ class Summary:
 
     @property
     def unsolved(self) -> int:
-        """Number of profiles with a current for which no equilibrium exists or was found."""
+        """Number of profiles that have a current but no solution, because none exists or none was
+        found.
+        """
         return self.count - self.solved - self.endings[Ending.NO_DATA]
 
 
@@ -381,7 +383,9 @@ class Distribution:
 
 
 def distribution_of(values: Column, time: Times) -> Distribution | None:
-    """Compute the distribution of (n,) values without NaN; None if all values are NaN."""
+    """Compute the distribution of the values that are not NaN; return None if all (n,) values are
+    NaN.
+    """
     known = values[np.isfinite(values)]
     known.sort()
     count = len(known)
