@@ -138,7 +138,7 @@ def how_to_install(missing: ModuleNotFoundError) -> str | None:
 
 
 def unexpected(error: Exception) -> str:
-    """Describe an exception that was not raised by CALM, in one line."""
+    """Return a one-line description of an exception that was not raised by CALM."""
     advice = how_to_install(error) if isinstance(error, ModuleNotFoundError) else None
     return advice or f"{type(error).__name__}: {error}"
 

@@ -201,7 +201,7 @@ class NetProfiles:
 
     @cached_property
     def still(self) -> NetSolution | None:
-        """Solution of the net in still water; None if there is no equilibrium."""
+        """Solution of the net in still water, or None if there is no equilibrium."""
         settings = replace(self.net.settings, compiled=True)
         try:
             return solve_together(self.net.legs, self.net.water.still(), settings, None)
@@ -210,7 +210,7 @@ class NetProfiles:
 
     @cached_property
     def at_rest(self) -> Result | None:
-        """Results of the net in still water; None if there is no valid equilibrium."""
+        """Results of the net in still water, or None if there is no valid equilibrium."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return result_together(self.net, self.still, self.still.legs)

@@ -226,7 +226,7 @@ def lies_on_seabed(problem: LineProblem, arrays: ProfileArrays) -> bool:
 
 
 def tilt_of(x: float, y: float, z: float) -> float:
-    """Return the angle of a vector from the vertical [degrees], 0 for a zero vector."""
+    """Return the angle between a vector and the vertical [degrees]; it is 0 for a zero vector."""
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 

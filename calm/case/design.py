@@ -117,13 +117,13 @@ class Design:
 
     @property
     def leg(self) -> Leg:
-        """The only leg of a mooring or a tow; raises UsageError for several legs."""
+        """The only leg of a mooring or a tow. Raises UsageError if there are several legs."""
         refuse_several(self.file)
         return self.legs[0]
 
     @property
     def moored(self) -> Leg:
-        """The only leg of a mooring; raises UsageError for a tow and for several legs."""
+        """The only leg of a mooring. Raises UsageError for a tow and for several legs."""
         refuse_all_but_moorings(self.file)
         return self.legs[0]
 
@@ -472,7 +472,9 @@ class Result:
 
     @property
     def leg(self) -> LegResult:
-        """Result for the only leg of a mooring or a tow; raises UsageError for several legs."""
+        """Result for the only leg of a mooring or a tow. Raises UsageError if there are several
+        legs.
+        """
         if self.several:
             raise UsageError(
                 f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
@@ -487,19 +489,19 @@ class Result:
 
     @property
     def anchor(self) -> AnchorLoad:
-        """Load on the anchor of the leg; raises UsageError for a tow."""
+        """Load on the anchor of the leg. Raises UsageError for a tow."""
         if self.leg.anchor is None:
             raise UsageError(f"{self.name} has no anchor")
         return self.leg.anchor
 
     @property
     def tow_point(self) -> TowPoint:
-        """Load of a tow on the ship; raises UsageError for a leg that is not towed."""
+        """Load of a tow on the ship. Raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.tow_point, self.name)
 
     @property
     def body(self) -> TowedBody:
-        """Values at the towed body; raises UsageError for a leg that is not towed."""
+        """Values at the towed body. Raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.body, self.name)
 
     @property
@@ -509,7 +511,7 @@ class Result:
 
     @property
     def still_shape(self) -> Shape | None:
-        """Shape of the leg in still water; None if this shape is not unique."""
+        """Shape of the leg in still water, or None if this shape is not unique."""
         return self.leg.still_shape
 
     @property
@@ -519,7 +521,7 @@ class Result:
 
     @property
     def strumming(self) -> Strumming | None:
-        """Strumming of the cables; None if the file sets no strumming law."""
+        """Strumming of the cables, or None if the file sets no strumming law."""
         return self.leg.strumming
 
     @property
@@ -532,7 +534,7 @@ class Result:
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Another equilibrium of the leg; None if none was found."""
+        """Values of another equilibrium of the leg, or None if none was found."""
         return self.leg.other_equilibrium
 
     @cached_property

@@ -295,7 +295,7 @@ class Leg:
 
     @cached_property
     def at_rest(self) -> Solution | None:
-        """Solution of the line without current and wind; None if the shape is not unique."""
+        """Solution of the line without current and wind, or None if the shape is not unique."""
         line, floating = self.line, self.line.floating
         if floating is not None:
             line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))

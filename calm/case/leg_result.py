@@ -83,7 +83,7 @@ class LegResult:
 
     @property
     def miss(self) -> float:
-        """Height error of the lower end in the solution [m]."""
+        """Vertical distance between the lower end of the solution and its required position [m]."""
         return self.solution.miss
 
     @property
@@ -108,17 +108,17 @@ class LegResult:
 
     @cached_property
     def anchor_load(self) -> AnchorLoad:
-        """Load on the anchor; NaN for a leg without an anchor."""
+        """Load on the anchor, or NaN for a leg without an anchor."""
         return anchor_load(self.leg, self.solution)
 
     @cached_property
     def tow_point(self) -> TowPoint | None:
-        """Load of a tow on the ship; None for other legs."""
+        """Load of a tow on the ship, or None for other legs."""
         return tow_point_of(self.solution) if self.towed else None
 
     @cached_property
     def body(self) -> TowedBody | None:
-        """Values at the towed body; None for other legs."""
+        """Values at the towed body, or None for other legs."""
         return body_of(self.solution) if self.towed else None
 
     @cached_property
@@ -128,7 +128,7 @@ class LegResult:
 
     @cached_property
     def strumming(self) -> Strumming | None:
-        """Strumming of the cables; None if the file sets no strumming law."""
+        """Strumming of the cables, or None if the file sets no strumming law."""
         return strumming_of(self.file.solver, self.solution)
 
     @cached_property
@@ -161,7 +161,7 @@ class LegResult:
 
     @cached_property
     def still_shape(self) -> Shape | None:
-        """Shape of the leg in still water; None if this shape is not unique."""
+        """Shape of the leg in still water, or None if this shape is not unique."""
         if self.still is self.solution:
             return self.shape
         return None if self.still is None else shape_of(self.still)
@@ -178,7 +178,7 @@ class LegResult:
 
     @property
     def anchor(self) -> AnchorLoad | None:
-        """Load on the anchor; None for a leg without an anchor."""
+        """Load on the anchor, or None for a leg without an anchor."""
         return self.anchor_load if self.leg.anchored else None
 
     @property
@@ -198,7 +198,7 @@ class LegResult:
 
     @property
     def other_used_buoyancy(self) -> float:
-        """Used fraction of the surface float's buoyancy in another equilibrium; NaN if none was
+        """Used fraction of the surface float's buoyancy in another equilibrium, or NaN if none was
         found.
         """
         afloat = self.other is not None and self.other.used_buoyancy < 1.0

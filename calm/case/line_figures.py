@@ -85,8 +85,8 @@ class LineFigures:
 
     @property
     def least_tension(self) -> Floats:
-        """(n,) minimum tension in the suspended part of each piece [N]; NaN for a piece entirely on
-        the seabed.
+        """(n,) minimum tension in the suspended part of each piece [N], or NaN for a piece entirely
+        on the seabed.
         """
         tension = self.solution.tension
         hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
@@ -116,7 +116,7 @@ class LineFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(n,) knockdown [m]; NaN if there is no solution in still water."""
+        """(n,) knockdown [m], or NaN if there is no solution in still water."""
         if self.still is None:
             return np.full(self.count, np.nan)
         before = self.still.piece_nodes[self._ahead, 1 if self.solution.line.towed else 0]
@@ -125,9 +125,7 @@ class LineFigures:
 
     @property
     def reynolds(self) -> Floats:
-        """(n,) largest Reynolds number of each piece, based on the diameter; NaN if this is
-        unknown.
-        """
+        """(n,) largest Reynolds number of each piece, or NaN if the diameter is unknown."""
         solution = self.solution
         middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
         speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
@@ -182,7 +180,7 @@ class ClampFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(m,) knockdown [m]; NaN if there is no solution in still water."""
+        """(m,) knockdown [m], or NaN if there is no solution in still water."""
         if self.still is None:
             return np.full(len(self._elements), np.nan)
         before = self.still.position[np.flatnonzero(self.still.element_clamp >= 0)]
@@ -231,6 +229,6 @@ def leaning_of(vector: Floats) -> Floats:
 
 
 def catalogue_figures(parts: Sequence[Piece | Clamp], name: str) -> Floats:
-    """Return (n,) values of a catalogue field for pieces or clamps; NaN for unknown values."""
+    """Return (n,) values of a catalogue field for pieces or clamps, or NaN for unknown values."""
     values = [getattr(part.component, name, None) for part in parts]
     return np.array([np.nan if value is None else value for value in values])

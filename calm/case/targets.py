@@ -67,7 +67,7 @@ class Target:
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
     def value(self, result: Result) -> float | None:
-        """Return the value of the quantity in a result; None if the knockdown is undefined."""
+        """Return the value of the quantity in a result, or None if the knockdown is undefined."""
         if self.quantity == "required_weight":
             (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
             return anchor.required_weight

@@ -38,7 +38,7 @@ def is_synthetic(component: Component) -> bool:
 
 
 def counted_working_load(component: Component) -> float | None:
-    """Return the working load used to check a component [N]; None if there is none.
+    """Return the working load used to check a component [N], or None if there is none.
 
     Tables of synthetic ropes list a working load for lifting, which is a twelfth to a seventh of
     the breaking load. Therefore, if the breaking load of such a rope is known, only the breaking

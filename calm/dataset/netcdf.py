@@ -366,7 +366,7 @@ def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Varia
 
 
 def source_date() -> datetime | None:
-    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if it is not set."""
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC, or None if it is not set."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     return datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else None
 

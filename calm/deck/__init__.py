@@ -44,7 +44,7 @@ _Listed = TypeVar("_Listed")
 
 @dataclass(frozen=True)
 class RecoveredItem:
-    """A piece or clamp in the list of parts to recover, which is in the order of surfacing.
+    """A piece or clamp that rises after release; a list of such items is in order of surfacing.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Lift:
     index, label : index and label of the piece
     mass : mass of the lift in air [kg]; None if a mass is unknown, and for a cable or chain, which
         is paid out instead
-    weight : weight of the lift in water, positive down [N]; None if a length is unknown
+    weight : weight of the lift in water [N], positive down; None if a length is unknown
     hanging : weight in water of everything over the side, including the lift [N], positive down and
         negative if buoyant. This is the load on a winch that carries everything over the side
     """

@@ -76,7 +76,7 @@ class DeckItem:
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth in still water [m]; None if there is none."""
+        """Planned depth in still water [m], or None if there is none."""
         return self.part.planned_depth
 
     @property

@@ -330,7 +330,7 @@ def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
 
 
 def volume_of(component: Component, length: float | None) -> float | None:
-    """Return the volume of a piece [m³]; None if unknown.
+    """Return the volume of a piece [m³], or None if unknown.
 
     The volumes of spheres, cylinders and cables are computed from their dimensions; for other
     pieces, the displaced volume is returned.

@@ -41,7 +41,7 @@ class CountedLimit:
     criterion : criterion of the rule
     leg : leg to which the criterion applies; values missing from the catalogue are replaced by the
         lower bounds of their estimates
-    seats : columns of the leg, if there are several legs
+    seats : column numbers of the leg in the batch result, if there are several legs
     on_estimate : whether the limit is the lower bound of an estimate; exceeding such a limit is not
         certain to be a failure
     """
