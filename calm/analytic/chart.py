@@ -229,8 +229,9 @@ def check(known: Mapping[str, float], weight: float) -> None:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the quantities of a cable mirrored vertically, which turns a buoyant cable into a
-    sinking one and vice versa.
+    """Return the quantities of the vertical mirror image of a cable.
+
+    Mirroring turns a buoyant cable into a sinking one, and vice versa.
     """
     swapped = {"a": "b", "b": "a"}
     mirrored = {}
@@ -256,7 +257,7 @@ def family(what: str) -> NoEquilibrium:
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Return a contradiction between the quantities of a sinking cable, which exists for every K.
+    """Return a contradiction, independent of K, between the quantities of a sinking cable.
 
     Return None if there is no contradiction. For a buoyant cable, the caller passes the mirrored
     quantities. The messages suit both kinds of cable.

@@ -163,8 +163,8 @@ def assemble_floating(
 
     The hull is the one that the component specifies as `hull`; by default, a sphere or a cylinder
     has a hull of its own shape. If the volume is unknown, the draft is unknown too, and only
-    `k_surface` has an effect. Return None if there is no float, or if both its draft and its drag
-    at the surface are unknown.
+    `k_surface` has an effect. Return None if there is no float, or if both the draft and the
+    surface drag of the float are unknown.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)

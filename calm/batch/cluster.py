@@ -31,7 +31,7 @@ def on_cluster(
     """Solve blocks on the workers of a dask scheduler, and yield the results in order.
 
     The function waits for the first worker. Workers may join and leave; the blocks of a lost worker
-    are solved by another one.
+    are solved by other workers.
 
     Parameters
     ----------

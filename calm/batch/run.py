@@ -40,7 +40,7 @@ def run_batch(
 
     Parameters
     ----------
-    output : a .nc file; an existing one is replaced
+    output : a .nc file; an existing file is replaced
     workers : number of threads; by default one for each processor
     block : number of profiles in a block, which is one chunk of the result; by default `BLOCK` or,
         for a net, `BLOCK_OF_NET`

@@ -244,7 +244,7 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes; a numeric variable also has the ACDD attribute `coverage_content_type`."""
+        """Attributes, to which a numeric variable adds the ACDD attribute `coverage_content_type`."""
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"

@@ -231,7 +231,7 @@ class RuleShare:
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
     """Compute the fraction of profiles without equilibrium.
 
-    Profiles that did not converge are excluded.
+    Profiles that did not converge are left out of this fraction.
     """
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
