@@ -244,7 +244,9 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes, to which a numeric variable adds the ACDD attribute `coverage_content_type`."""
+        """Attributes; those of a numeric variable include the ACDD attribute
+        `coverage_content_type`.
+        """
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
