@@ -77,7 +77,8 @@ def chart_solve(
 ) -> ChartAnswer:
     """Find every cable that has three given quantities, or the reason why there is none.
 
-    The cables have the given quantities to a relative accuracy of 1e-9.
+    The cables have the given quantities to 1e-9: angles in rad, distance relative to the length,
+    other quantities relative to their own size.
 
     A cable that turns by less than a hundredth of a radian is almost straight, so its tension is
     less accurate than the given shape (angles, height, distance, length).

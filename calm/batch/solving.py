@@ -187,7 +187,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return a copy of a problem with the water of the profile in the work arrays."""
+    """Return a copy of a problem whose water is that of the profile in the work arrays."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):

@@ -278,7 +278,7 @@ class ShippedComponent:
 
     Attributes
     ----------
-    use, name, count : id, name and number of the component
+    use, name, count : id and name of the component, and number of items
     units : number of units; larger than `count` if the component has several units, such as a pair
         of releases
     length : total length of cable or chain [m]
