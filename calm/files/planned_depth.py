@@ -58,7 +58,7 @@ _LEAST_OF_A_FLOAT = 10.0
 
 
 def depth_in_label(label: str, serial: str | None = None, rating: float | None = None) -> float:
-    """Return the depth in a label [m] by the rules above; NaN if there is none.
+    """Return the depth that a label contains [m]; NaN if it contains none.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Return the planned depth in the label of a piece or a clamp [m]; None if there is none."""
+    """Return the planned depth in the label of a piece or clamp [m], or None if it has none."""
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

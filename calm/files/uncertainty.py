@@ -19,7 +19,7 @@ _TOO_WIDE = "above 25 %, the largest standard deviation; give a pair, the 5 and 
 
 @dataclass(frozen=True)
 class Spread:
-    """Uncertainty of a value: relative, or in degrees for an angle.
+    """Uncertainty of a value, relative to the value; for an angle, it is in degrees.
 
     Attributes
     ----------
@@ -33,11 +33,11 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:` with its range of values.
+    """Annotation of a key of `uncertainty:` with the values that are allowed.
 
     Attributes
     ----------
-    one : allowed values of a standard deviation
+    one : allowed values of the standard deviation
     end : allowed values of the 5th and 95th percentile
     """
 
@@ -45,7 +45,7 @@ class SpreadOf:
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Parse a standard deviation, as text with a unit, or a list of two percentiles."""
+        """Parse a standard deviation, or a list of the 5th and 95th percentile."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:
