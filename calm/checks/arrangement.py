@@ -123,11 +123,11 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """Check for a swivel between each wire that is not torque-balanced and the next tilting float.
+    """Check for a swivel between each wire that is not torque-balanced and a float at its end.
 
     Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
-    this rotation, so the wire kinks. A swivel at either end lets the wire turn. Chain and synthetic
-    rope transmit no torque, so they let the wire turn as well.
+    this rotation, so the wire kinks. A swivel at either end lets the wire turn. Chain or synthetic
+    rope at an end also lets the wire turn, because neither transmits torque.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):

@@ -72,10 +72,10 @@ def checked_environment(
 ) -> MooringInEnvironment:
     """Apply the rules to a leg in all its situations.
 
-    In the result, `findings` contains all findings for the unchanged mooring, and those findings
-    for other situations whose state is worse. `tighter` contains findings for other situations
-    whose utilisation is larger. A failure that occurs only with strumming cables becomes a warning,
-    because it is uncertain whether the cables strum.
+    In the result, `findings` contains all findings for the unchanged mooring, and any worse
+    findings for other situations. `tighter` contains findings for other situations that have a
+    larger utilisation. A failure that occurs only with strumming cables becomes a warning, because
+    it is uncertain whether the cables strum.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Check launch, recovery and breaks of a mooring, and combine all findings to an assessment.
+    """Check launch, recovery and breaks of a mooring, and combine all findings in an assessment.
 
     Launch, recovery and breaks are checked in the first environment in which the mooring has an
     equilibrium.
@@ -170,9 +170,9 @@ def assessment_of(
 
 
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
-    """Return the environments with load-case codes and common anchor remedies in all findings.
+    """Return the environments with load-case codes and one required anchor weight in all findings.
 
-    The remedy for an anchor that is too light names the largest weight that any finding requires.
+    All remedies for an anchor that is too light name the largest weight that any finding requires.
     """
     numbers = _numbers(in_environments)
     every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
@@ -407,7 +407,7 @@ Key = tuple[str, "Place | None"]
 def with_probabilities(
     assessment: Assessment, samples: int, seed: int, mapped: Mapped = map
 ) -> Assessment:
-    """Return an assessment with the probability of exceeding the limit in each finding.
+    """Return a copy in which each finding has the probability that its limit is exceeded.
 
     Parameters
     ----------

@@ -158,7 +158,7 @@ class Assessment:
         )
 
     def every_finding(self) -> Iterator[Finding]:
-        """Yield all findings, followed by the findings in `tighter`."""
+        """Yield all findings, followed by the findings in `tighter` of each environment."""
         yield from self.all_findings()
         yield from self.tighter_findings()
 
@@ -170,7 +170,7 @@ class Assessment:
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
-        """Yield the findings in `tighter`, environment by environment."""
+        """Yield the findings in `tighter` of each environment."""
         for stand in self.in_environments:
             yield from stand.tighter
 
@@ -196,8 +196,8 @@ class Handling:
 class Acceptance:
     """Items of `checks: accept:` in a mooring file, applied on a given day.
 
-    They apply to findings that fail or are unknown. `parts` maps labels to the pieces and clamps of
-    the line.
+    The items apply to findings that fail or are unknown. `parts` maps labels to the pieces and
+    clamps of the line.
     """
 
     accepts: tuple[Accept, ...]
@@ -213,8 +213,8 @@ class Acceptance:
     def of(self, finding: Finding) -> Finding:
         """Apply the estimates and acceptances of the file to a finding; return the new finding.
 
-        A pass that relies on an estimate becomes estimated, and such a failure becomes unknown. A
-        failure or an unknown that the file accepts becomes accepted. An acceptance of the rule
+        If a finding relies on an estimate, a pass becomes estimated and a failure becomes unknown.
+        A failure or an unknown that the file accepts becomes accepted. An acceptance of the rule
         `missing` covers every rule that lacks a value of the component.
         """
         finding = self._estimated(finding)

@@ -73,14 +73,16 @@ class Criterion:
     part : part to check; for a quantity of the whole line, the top piece or the anchor
     quantity : a key of `READINGS`
     limit : limit in SI units or degrees; None if the component lacks the value for it
-    words : function of the value (NaN if unknown) and the result that returns message and remedy
+    words : function that takes the value (NaN if unknown) and the result, and returns message and
+        remedy
     least : whether the limit is a lower limit
     beyond : state if the limit is exceeded: fail or warn
     silent : whether a value of NaN means that the criterion does not apply; otherwise it means that
         the value is unknown
     source : source of the limit; "" if it is the source of the rule
     lacks : key of the missing component value, if `limit` is None
-    stated : function of value and result that returns value and limit as a more customary quantity
+    stated : function that takes the value and the result, and returns value and limit of a more
+        customary quantity
     stated_least : whether the limit of that customary quantity is a lower limit
     """
 

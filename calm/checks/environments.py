@@ -41,7 +41,7 @@ _CHECK = "Check its values and units."
 
 @rule("environment")
 def environment(legs: Sequence[Leg]) -> Iterator[Found]:
-    """Yield warnings about the environments of a mooring; `legs` contains one leg for each."""
+    """Yield warnings about the environments of a mooring; `legs` has one leg per environment."""
     reported: set[str] = set()
     for leg in legs:
         for doubt in leg.file.environment.doubts:

@@ -210,7 +210,7 @@ Meteorological buoys in the catalogue have 2.
 def doubtful_figures(component: Component | Outline) -> Iterator[str]:
     """Yield messages about values that are possible but usually wrong.
 
-    These are the buoyancy of an instrument, release or connector, and an unusual wind area.
+    Such values are the buoyancy of an instrument, release or connector, and an unusual wind area.
     """
     if not isinstance(component, Rigid) or isinstance(component, Anchor):
         return
@@ -256,7 +256,7 @@ def _alike(one: Material, other: Material) -> bool:
 
 
 def words_of(component: Component | Outline) -> str:
-    """Join the name, material and note of a component to a single text."""
+    """Join the name, material and note of a component in a single text."""
     return " ".join(filter(None, (component.name, component.material, component.note)))
 
 

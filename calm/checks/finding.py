@@ -312,7 +312,7 @@ class Rule:
     case : code of the load case, for a rule that is evaluated once: L launch, R rise, B break, 0
         still water
     counted : function that replaces `judge` when exceeded limits are counted in random samples
-    criteria : function that yields the criteria for a `Leg`, to evaluate them in many profiles
+    criteria : function that yields the criteria for a `Leg`, which are evaluated in many profiles
     """
 
     name: str

@@ -287,7 +287,7 @@ class LegGraph:
                 )
 
     def release_verdicts(self) -> Iterator[Verdict]:
-        """Yield a verdict on each float that stays anchored after all releases open."""
+        """Check that no float stays attached to an anchor after all releases open."""
         held = [
             self.pieces[one]
             for part in self.parts(self.opened)

@@ -38,7 +38,7 @@ class PlannedPart:
 
     @property
     def off(self) -> float:
-        """Depth error [m], positive if too deep; 0 if the plan is between `least` and `most`."""
+        """Depth error [m], positive if too deep; 0 if `planned` is between `least` and `most`."""
         return min(max(self.planned, self.least), self.most) - self.planned
 
 

@@ -59,8 +59,7 @@ def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
 
 @criteria("tilt")
 def tilt(leg: Leg) -> Iterator[Criterion]:
-    """Check the tilt of instruments and releases against their own limits and the limit of the
-    design.
+    """Check the tilt of instruments and releases against their own limits and the design's limit.
 
     Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 degrees for a
     single-point Doppler current meter, 45 degrees for a release, and 10 degrees for a sediment
@@ -370,7 +369,10 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
 
 @rule("scope")
 def scope(result: LegResult) -> Iterator[Verdict]:
-    """Report the scope of a surface mooring, its cut length over the water depth, without limit."""
+    """Report the scope of a surface mooring, which is its cut length divided by the water depth.
+
+    There is no limit.
+    """
     if not reaches_the_surface(result.leg):
         return
     depth = result.leg.water.depth

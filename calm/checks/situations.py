@@ -51,10 +51,14 @@ def case_of(environment: int, situation: str) -> str:
     Parameters
     ----------
     environment : number of the environment in file order, from 1
-    situation : name of the situation. The code is 0 for still water, and 0l for still low water.
-        For all other situations, the code is the number of the environment with a suffix: s
-        strumming, g growth, h high water, l low water, d as deployed, p profiler at its lower stop,
-        q profiler at the maximum wire angle, no suffix for the unchanged mooring
+    situation : name of the situation
+
+    Notes
+    -----
+    The code is 0 for still water, and 0l for still low water. For the unchanged mooring, the code
+    is the number of the environment. For other situations, the code is this number with a suffix: s
+    for strumming, g for growth, h for high water, l for low water, d for the mooring as deployed, p
+    for a profiler at its lower stop, and q for a profiler at the maximum wire angle.
     """
     if situation in (STILL, STILL_LOW):
         return "0" if situation == STILL else "0l"
@@ -166,7 +170,7 @@ def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, Moor
 
 
 def strumming_file(file: MooringFile) -> MooringFile | None:
-    """Return the file with Cn × 1.5 for all cables, which is the effect of strumming.
+    """Return the file with Cn × 1.5 for all cables, which represents strumming.
 
     Return None if the file has a strumming law or no cables.
     """

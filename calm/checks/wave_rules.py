@@ -54,7 +54,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Check the maximum tension of each piece in waves against its load ratings.
 
     The limits are the working load of the piece, and its breaking load divided by the factor that
-    API RP 2SK requires for a dynamic analysis. The rule is unknown for a surface mooring in an
+    API RP 2SK requires for a dynamic analysis. The result is unknown for a surface mooring in an
     environment without waves.
     """
     leg, waves = evidence.leg, evidence.waves

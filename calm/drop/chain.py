@@ -75,7 +75,7 @@ class Elements:
 
     @cached_property
     def share(self) -> Floats:
-        """(2, k) fractions of each load that act on the upper node and lower node of the bar."""
+        """(2, k) fractions of each load that act on the upper and on the lower node of the bar."""
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:

@@ -89,7 +89,7 @@ def towed(
     NoEquilibrium
         ``not-converged`` if no steady shape is found; ``no-equilibrium`` if neither line nor anchor
         has drag, so that the speed of the fall has no limit.
-        UsageError
+    UsageError
         Even behind a very slow ship, the line extends farther than the required distance.
     """
     across = line.normal_drag[~line.directional]

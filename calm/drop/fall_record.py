@@ -63,8 +63,8 @@ class Pull:
 class ShapeInTime:
     """Shape of the line at one time, given by the nodes.
 
-    `x` is the horizontal distance of each node from the origin, positive towards the float [m].
-    `depth` is the depth of each node [m].
+    `x` is the horizontal distance of each node from the position of the anchor at the release,
+    positive towards the float [m]. `depth` is the depth of each node [m].
     """
 
     time: float
@@ -176,7 +176,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """Return the largest depths of floats and instrument carriers until the line is at rest."""
+    """Return the largest depths that floats and parts with instruments reach before rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     upper, deeper = np.array([_depths(chain, state) for state in states]).swapaxes(0, 1)

@@ -40,9 +40,9 @@ class Launch:
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : two touchdown speeds [m/s], computed with twice and half the tangential drag
-        of cables, chains and cylinders, and of the drag of the anchor, in the last time step; NaN
-        if that step has no solution
+    fall_speed_band : two touchdown speeds [m/s] from a repeated last time step, first with twice
+        and then with half the anchor drag and the tangential drag of cables, chains and cylinders;
+        NaN if the repeated step has no solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,
@@ -81,7 +81,7 @@ def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
     Raises
     ------
     NoEquilibrium
-        As in `fall`.
+        The tow or the fall has no solution; the statuses are those of `towed` and `fall`.
     """
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))
@@ -154,7 +154,7 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
     Raises
     ------
     UsageError
-        The ship does not move through the water, or the line is shorter than `streamed`.
+        The ship is too slow through the water, or the line is shorter than `streamed`.
     """
     east, north = speed * sin(radians(course)), speed * cos(radians(course))
     u, v, _ = leg.water.current_at(np.zeros(()))

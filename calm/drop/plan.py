@@ -52,8 +52,8 @@ class DropPlan:
     """Plan for dropping a mooring anchor last, with the line streamed behind the ship.
 
     Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
-    clockwise from north. Horizontal distances are positive towards the float, the direction in
-    which the line streams behind the anchor.
+    clockwise from north. Horizontal distances are positive towards the float, which is the
+    direction in which the line streams behind the anchor.
 
     Attributes
     ----------
@@ -236,7 +236,7 @@ def drop_plan(
     Raises
     ------
     UsageError
-        The ship does not move through the water, the line is shorter than `streamed`, or the file
+        The ship is too slow through the water, the line is shorter than `streamed`, or the file
         contains a tow or several legs.
     NoEquilibrium
         As in `Design.solve`; also ``anchor-lifts`` if the anchor does not pull the line down, and

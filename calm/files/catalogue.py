@@ -184,9 +184,9 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """Return the ids of all definitions of the product that `id` defines, preferred id first.
+        """Return the ids of all definitions of the same product as `id`, the preferred id first.
 
-        The other definitions of a product give its preferred id under `prefer`.
+        Definitions of the same product name the same preferred id under `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -223,7 +223,7 @@ def define(
     Parameters
     ----------
     entry : catalogue entry of the definition
-    section : section of the entry; with overrides, their section with that of the entry as base
+    section : mapping to validate, which is the entry itself, or overrides with the entry as base
     also_allowed : keys that may be in the section although they do not belong to the component
     context : `IN_AIR` for a component used in air, otherwise None
     """
@@ -264,7 +264,7 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Keys of this entry that override values of its base definition, except documentation."""
+        """Keys of this entry that override its base, without keys such as `source` and `note`."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})
@@ -392,7 +392,7 @@ _LOADED: FileCache[Catalogue] = FileCache()
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """Build a component from its values; return the component and any mistakes in the values.
 
-    The component is None if there are mistakes, or if the values define no single component.
+    The component is None if there are mistakes, or if the values define an assembly or outline.
     """
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)

@@ -50,7 +50,7 @@ _SUGGESTED = 3
 
 @dataclass(frozen=True)
 class Listed:
-    """A component in the catalogue list, with the texts that a search looks at."""
+    """A component in the catalogue list, with its searchable texts."""
 
     id: str
     name: str
@@ -65,7 +65,7 @@ class Listed:
 
     @cached_property
     def own_words(self) -> str:
-        """Searchable text from the component's own values, once with and once without hyphens."""
+        """Searchable text of id, name, maker, kind, role and material, with and without hyphens."""
         every = (self.id, self.name, self.maker, self.kind, self.role, self.material)
         own = " ".join(every).casefold()
         return f"{own} {own.replace('-', '')}"
@@ -145,10 +145,10 @@ class WordIndex:
         """Find the components that contain all words of a text and meet all its limits.
 
         A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
-        spellings vary. A size such as ``8mm`` or ``17 in`` matches in either unit. Complete
-        components precede outlines. Components that contain the words themselves precede components
-        that match through a synonym or their source. Among equally good matches, the components
-        used most often in the shipped lines come first.
+        spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another
+        unit. Complete components precede outlines. Components that contain the words themselves
+        precede components that match through a synonym or their source. Among equally good matches,
+        the components used most often in the shipped lines come first.
 
         Parameters
         ----------

@@ -32,7 +32,7 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation of a key of `checks:` with the source of its default.
+    """Annotation that gives a key of `checks:` the source of its default value.
 
     Attributes
     ----------

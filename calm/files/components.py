@@ -340,7 +340,7 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the keys of a definition that no longer hold once it is overridden.
+    """Return the keys of a definition that an override invalidates, so that they are dropped.
 
     Parameters
     ----------

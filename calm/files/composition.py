@@ -76,7 +76,7 @@ class _TooDeep(Exception):
 
 
 def compose(text: str) -> Composition:
-    """Parse a YAML text, with or without a byte-order mark."""
+    """Parse a YAML text, which may start with a byte-order mark."""
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:

@@ -59,7 +59,7 @@ class QuantityField(QuantityRange):
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of the quantity, as written in a file, without its limits."""
+        """Return the JSON Schema of the quantity as written in a file; the schema omits limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -227,7 +227,7 @@ class EstimatedFigure(Model):
         return _estimated(info.data.get("quantity", "")).read(text)
 
     def bound(self, *, in_waves: bool) -> float:
-        """Return the lower bound; in waves this is `low_in_waves`, if given, otherwise `low`."""
+        """Return the lower bound: `low_in_waves` for a line in waves, if given; otherwise `low`."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
     @property
@@ -382,7 +382,7 @@ def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None
 
 
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
-    """Raise ValueError if the weight in water [N] exceeds the weight in air of the mass [kg]."""
+    """Raise ValueError if a component weighs more in water than its mass weighs in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):
         raise ValueError(
             f"weighs more in water ({-net_buoyancy:.5g} N) than its mass of {mass:g} kg does in air"

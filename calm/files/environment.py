@@ -51,7 +51,7 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return this seabed relative to a new reference point, which does not change a plane.
+        """Return the seabed relative to a new reference point; a plane remains the same.
 
         The new reference point is given in m east and north of the current reference point.
         """
@@ -108,8 +108,8 @@ class Environment:
     maximum_speed : current speed above which a mistake is reported [m/s]; infinite in a tow and in
         air
     seabed : slope of the seabed; None for a level seabed
-    waves : sea states as written
-    seas : sea states as read from `waves`
+    waves : keys of `waves:` as given in the file; None if not given
+    seas : sea states that `waves` describes
     doubts : warnings about values that are possible but probably wrong
     """
 

@@ -91,7 +91,7 @@ Label = Annotated[Text, described("name of the piece in results; by default its 
 
 
 class ClampKeys(Equipment):
-    """An instrument clamped on a piece."""
+    """Keys of a clamp, which is an instrument clamped on a piece."""
 
     use: str = described("id of a component in the catalogue or in `components`", "sbe37")
     label: Label = ""

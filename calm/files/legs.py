@@ -162,8 +162,8 @@ class FileLeg:
 def stand_in_anchor(index: int, item: int) -> Piece:
     """Create a substitute anchor that has no height and practically unlimited weight.
 
-    `index` is its index in the line, and `item` the index of the line item that it represents. Its
-    id is reserved.
+    `index` is the index of the anchor in the line, and `item` is the index of its line item in the
+    file. The id of the anchor is reserved.
     """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))

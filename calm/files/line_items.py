@@ -34,7 +34,7 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Reader that expands the items of a line to pieces.
+    """Reader that expands the items of a line into pieces.
 
     Mistakes are added to the problems of the top-level mapping `top`, and remarks to `notices`.
     `towed` and `in_air` determine which keys and values are allowed.

@@ -125,7 +125,7 @@ class MooringFile:
 
     @property
     def anchor(self) -> Anchor:
-        """Component of the last piece of a mooring, which is its anchor."""
+        """Component that defines the anchor, which is the last piece of a mooring."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
@@ -235,6 +235,6 @@ def refuse_tow(file: MooringFile) -> None:
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError unless a file has a single mooring line, for functions that need one."""
+    """Raise UsageError if a file is a tow or has `legs`; used by functions for a single line."""
     refuse_several(file)
     refuse_tow(file)

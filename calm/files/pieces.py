@@ -21,7 +21,7 @@ STAND_IN = ""
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Position of a piece or clamp in the file, which identifies it after reading.
+    """Position of a piece or clamp in the file, used to identify the part after reading.
 
     `Place(3)` is the fourth item of the line, whatever the `count` of items above it, and `Place(3,
     clamp=0)` is the first clamp of the fourth item.
@@ -93,7 +93,7 @@ class Clamp:
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth in still water [m], if any."""
+        """Planned depth in still water [m]; None if none is planned."""
         return self.equipment.planned_depth
 
 
@@ -147,7 +147,7 @@ class Piece:
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth of the upper end in still water [m], if any."""
+        """Planned depth of the upper end in still water [m]; None if none is planned."""
         return self.equipment.planned_depth
 
     def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
@@ -180,7 +180,7 @@ def _serial(equipment: Equipment) -> str | None:
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """Return a copy of a piece and its clamps with a new place and its own serial numbers."""
+    """Return a copy of a piece and its clamps with a new place and the serial numbers for it."""
 
     def moved(clamp: Clamp) -> Clamp:
         own = replace(place, clamp=clamp.place.clamp)
@@ -252,7 +252,7 @@ def labels_of(pieces: Iterable[Piece]) -> list[str]:
 
 
 def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
-    """Return the pieces with the travel range of each profiler, found from its stops' labels."""
+    """Return the pieces with the travel range of each profiler, derived from its two stops."""
     return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
 
 

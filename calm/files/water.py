@@ -87,7 +87,7 @@ warmer below its surface.
 def read_density(
     given: float | TableKeys | SeaWaterKeys, fluid: str, section: SourceMapping
 ) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
-    """Read the density of the fluid in an environment; return None if it has mistakes.
+    """Read the density of the fluid in an environment; return None if the value has mistakes.
 
     Parameters
     ----------

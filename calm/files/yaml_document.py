@@ -76,7 +76,7 @@ def read_document(path: Path) -> Document:
 
 
 def compose(name: str, text: str) -> Document:
-    """Parse a YAML text to a document; `name` is the path that messages show.
+    """Parse a YAML text into a document; `name` is the path that messages show.
 
     Raises
     ------

@@ -71,7 +71,7 @@ class Page:
         return [writing.set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
-        """Return the patches that remove a key."""
+        """Return the patches that remove the key at a location."""
         outer = self.node(location[:-1])
         assert outer is not None
         if len(outer.keys) == 1:

@@ -38,7 +38,7 @@ line: []                              # top to bottom
 
 
 def clamps_of(item: int) -> Location:
-    """Return the location of the list of clamps of an item."""
+    """Return the location of an item's list of clamps."""
     return (*LINE, item, "clamps")
 
 

@@ -102,8 +102,8 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : position of the item in the text, counted from 1, which is also the position of
-        the pieces that the item produces
+    line, column : line and column of the item in the text, counted from 1; the pieces that the item
+        produces have the same line and column
     values : keys and their plain values, as written; a key without a value has an empty text. The
         mapping `length_at` becomes a text such as `480 m at 2 kN`
     clamps : clamps of the item
@@ -206,7 +206,7 @@ class Items:
         return text
 
     def insert(self, index: int, text: str) -> None:
-        """Insert an item."""
+        """Insert an item at an index."""
         self.texts.insert(index, text)
         self.gaps.insert(index, "")
         if index == 0 and len(self.gaps) > 1:
@@ -220,7 +220,7 @@ class Items:
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Divide a collection into items; return None if it shares lines with other text.
+    """Divide a collection into items; return None if the collection shares lines with other text.
 
     The text must end with a line break.
     """

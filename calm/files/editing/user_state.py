@@ -18,7 +18,7 @@ class Presence:
         self._place: Path | None = None
 
     def announce(self, path: Path | None) -> list[int]:
-        """Record that this process has a file open; return the ids of other processes that do.
+        """Record the file that this process has open; return the ids of others that have it open.
 
         The path None means that this process has no file open.
         """
@@ -75,7 +75,7 @@ class Remembered:
             self._keep()
 
     def mark(self, id: str) -> bool:
-        """Mark a component as a favourite, or unmark a favourite; return the new state.
+        """Mark or unmark a component as a favourite; return whether it is a favourite afterwards.
 
         Raises
         ------

@@ -327,7 +327,7 @@ class KeptWork:
     place : path of the copy
     text : text of the mooring file
     keeper : process that wrote the copy
-    base : `_digest` of the content of the file when the work began
+    base : digest of the content that the file had when the work began
     at : time of the copy [s since 1970]
     """
 

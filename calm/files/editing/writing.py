@@ -284,7 +284,7 @@ def line_start(text: str, place: int) -> int:
 
 
 def line_end(text: str, place: int) -> int:
-    """Return the index after the line that contains the position `place`, and its line break."""
+    """Return the index at which the line after the position `place` begins, or the text ends."""
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
