@@ -281,11 +281,11 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
-    """Check the grip of each clamp against the axial forces on it during launch and recovery.
+    """Check the grip of each clamp against the larger of its axial forces in launch and recovery.
 
-    The larger of the two forces [N] counts. It results from the submerged weight of the clamped
-    item and its drag in flow along the line, at the touchdown speed of the anchor or at the
-    terminal rise speed of the line.
+    Each force [N] results from the submerged weight of the clamped item and its drag in flow along
+    the line. The speed of the flow is the touchdown speed of the anchor in the launch, and the
+    terminal rise speed of the line in the recovery.
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -315,8 +315,8 @@ McLane Moored Profiler, user manual.
 def profiler(result: LegResult) -> Iterator[Verdict]:
     """Check the tension, wire, path and drive force of each profiler at its current position.
 
-    Other positions of the profiler are situations of their own. The flow along the wire past the
-    profiler is at most the speed of the profiler plus the current times the sine of the tilt.
+    Other positions of the profiler are checked as separate situations. The flow along the wire
+    past the profiler is at most its speed plus the current times the sine of the tilt.
     Wheel friction, and the effect of compression on the weight of the profiler, are unknown and
     neglected.
     """

@@ -170,9 +170,10 @@ def assessment_of(
 
 
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
-    """Return the environments with load-case codes and one required anchor weight in all findings.
+    """Return the environments with load-case codes added to all findings.
 
-    All remedies for an anchor that is too light name the largest weight that any finding requires.
+    Remedies for an anchor that is too light are changed to name the largest weight that any finding
+    requires.
     """
     numbers = _numbers(in_environments)
     every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
@@ -204,9 +205,9 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Return the findings; those on currents and drag coefficients get a load-case code.
+    """Return the findings with load-case codes added to those on currents and drag coefficients.
 
-    The code is that of the environment of the finding.
+    Each code is that of the unchanged mooring in the environment of the finding.
     """
     numbers = _numbers(in_environments)
     return [
@@ -407,7 +408,7 @@ Key = tuple[str, "Place | None"]
 def with_probabilities(
     assessment: Assessment, samples: int, seed: int, mapped: Mapped = map
 ) -> Assessment:
-    """Return a copy in which each finding has the probability that its limit is exceeded.
+    """Return a copy of an assessment with the probability that each limit is exceeded.
 
     Parameters
     ----------

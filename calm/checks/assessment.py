@@ -152,7 +152,7 @@ class Assessment:
 
     @property
     def draft(self) -> bool:
-        """Whether a finding is accepted only by the placeholder name that example files use."""
+        """Whether an acceptance bears the placeholder name of example files, not a person's."""
         return any(
             one.accept is not None and one.accept.by == EXAMPLE for one in self.accepted_findings()
         )

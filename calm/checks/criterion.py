@@ -231,7 +231,7 @@ def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
 
 
 def cited(file: MooringFile, *names: str) -> str:
-    """Describe those of the named limits that differ from their defaults; empty if none does."""
+    """Describe the named limits that differ from their defaults; return "" if no limit differs."""
     return "; ".join(
         f"The design's own `{key.name}`, {limit_value_text(key, key.value)} instead of "
         f"{limit_value_text(key, key.default)}"

@@ -210,7 +210,7 @@ Meteorological buoys in the catalogue have 2.
 def doubtful_figures(component: Component | Outline) -> Iterator[str]:
     """Yield messages about values that are possible but usually wrong.
 
-    Such values are the buoyancy of an instrument, release or connector, and an unusual wind area.
+    Examples are an instrument, release or connector that floats, and an unusual wind area.
     """
     if not isinstance(component, Rigid) or isinstance(component, Anchor):
         return

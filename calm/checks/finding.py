@@ -102,7 +102,7 @@ Sense = Literal["<=", ">="]
 
 @dataclass(frozen=True)
 class Lack:
-    """A component value that a rule needs, but that is missing in the file.
+    """A component value that a rule needs, but that is missing from the file.
 
     Attributes
     ----------

@@ -43,8 +43,8 @@ class Recovery:
     tension_top, tension_bottom : (n,) tensions of the pieces above the anchor during the rise [N];
         NaN for pieces that do not rise
     arrival : (n,) time at which each piece surfaces [s]; NaN for a piece that stays below
-    order : pieces that are buoyant enough to surface alone, in order of surfacing
-    tangles : pieces that overtake, entirely or in part, pieces above them in the line
+    order : indices of pieces that are buoyant enough to surface alone, in order of surfacing
+    tangles : indices of pieces that overtake, entirely or in part, pieces above them in the line
     in_still_water : whether the rise was computed in still water, because the line doubles back
         and has no steady motion in the current
     length : (m,) stretched lengths of the rising pieces [m]; empty if the line does not rise

@@ -154,7 +154,7 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the file with changed water, with the name of each situation.
+    """Yield the name of each situation with changed water, and the file for this situation.
 
     The situations are still water, still low water, high water and low water, as applicable.
     """

@@ -62,8 +62,8 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
     """Return whether the line tension passes through a piece.
 
     The top piece, the anchor and a piece at the free end of a leg are loaded at one end only, and
-    the shackle next to them carries their load. A hinge without length and weight, which occurs in
-    designs from other programs, does not count as a real piece.
+    the shackle next to them carries their load. The result is also False for a hinge without length
+    and weight, which occurs in designs from other programs.
     """
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:

@@ -122,7 +122,7 @@ class Catalogue:
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the definition that the first definition of an id hides; None if it hides none."""
+        """Return the second definition of an id, which the first hides; None if there is none."""
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
@@ -223,7 +223,7 @@ def define(
     Parameters
     ----------
     entry : catalogue entry of the definition
-    section : mapping to validate, which is the entry itself, or overrides with the entry as base
+    section : mapping to validate: either that of the entry, or overrides with the entry as base
     also_allowed : keys that may be in the section although they do not belong to the component
     context : `IN_AIR` for a component used in air, otherwise None
     """

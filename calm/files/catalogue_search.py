@@ -117,7 +117,7 @@ class WordIndex:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Return the known values of a component by column key; here this is always empty."""
+        """Return the known values of a component by column key; always empty in this index."""
         return {}
 
     def suggested(self, text: str, near: str | None) -> list[str]:

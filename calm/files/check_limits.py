@@ -187,9 +187,9 @@ class LimitKey:
     name : dotted name of the key
     dimension : dimension, as in `calm.units`
     value : limit in use [SI, degrees]; None if there is no limit
-    default : default [SI, degrees]; None if there is none
+    default : default [SI, degrees]; None without a default
     source : source of the default
-    backed : whether the design gives a source for its own value
+    backed : whether the design gives a source for the value that it sets
     share : whether the value is a fraction, which is displayed in percent
     """
 

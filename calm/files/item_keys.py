@@ -137,7 +137,10 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
-    """Check that serial numbers match the number of pieces, and planned depths are for one piece.
+    """Check the serial numbers and planned depth of an item against its number of pieces.
+
+    A list of serial numbers must match the number of pieces. A planned depth requires a single
+    piece.
 
     Parameters
     ----------

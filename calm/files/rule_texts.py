@@ -18,7 +18,7 @@ class RuleText:
     judges : description of the value that is checked
     limit : description of the limit
     source : source of the rule and of its default limit
-    unseen : reason why the profiles of a batch cannot be checked; "" if they can
+    unseen : reason why the rule cannot check the profiles of a batch; "" if it can
     figures : component keys whose values the rule needs
     has_ratio : whether value and limit are a demand and a capacity, so that their ratio is
         meaningful

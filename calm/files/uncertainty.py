@@ -24,7 +24,7 @@ class Spread:
     Attributes
     ----------
     deviation : standard deviation of a normal distribution; None if `between` is set
-    between : 5th and 95th percentile
+    between : 5th and 95th percentile; None if `deviation` is set
     """
 
     deviation: float | None = None
@@ -45,7 +45,7 @@ class SpreadOf:
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Parse a standard deviation, or a list of the 5th and 95th percentile."""
+        """Parse a standard deviation, or a list of the 5th and the 95th percentiles."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:

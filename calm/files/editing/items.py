@@ -80,7 +80,7 @@ class LineLists:
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
         """Convert an index in the list at `rows` to the location of a list and an index in it.
 
-        If `rows` is `LINE`, this is `place`. An index in another list is returned unchanged.
+        For `LINE`, the result is that of `place`. For another list, the index is unchanged.
         """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 

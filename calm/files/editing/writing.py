@@ -129,7 +129,7 @@ class WritingStyle:
         name : the key
         value : the value
         column : column of the key, from 1
-        open : as for `entry`
+        open : as in `entry`
         """
         if value is None:
             return "", ""
