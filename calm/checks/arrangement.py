@@ -180,7 +180,7 @@ _TOUCH = 0.05
 
 @rule("clamp-place", once=True)
 def clamp_place(handling: Handling) -> Iterator[Verdict]:
-    """Report clamps that overlap, or extend beyond the end of their cable or chain."""
+    """Report clamps that overlap or that extend beyond the end of their cable or chain."""
     leg = handling.leg
     lengths = leg.line.length.tolist()
     remedy = "Move it to a free position, or check its `at` and its length."

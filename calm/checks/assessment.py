@@ -69,12 +69,11 @@ class MooringInEnvironment:
     environment : name of the environment
     leg : leg of the design; a net has one `MooringInEnvironment` per leg and environment
     situations : solved situations, beginning with the unchanged mooring
-    findings : all findings for the unchanged mooring, and the findings for other situations whose
-        state is worse
+    findings : all findings for the unchanged mooring, and any worse findings for other situations
     tighter : for each rule and part, the finding with the largest utilisation in other situations,
         if it is larger than in `findings`
     accepted : accepted findings for all situations, including findings not in `findings`
-    lacking : findings for all situations that lack a component value; not in `findings`
+    lacking : findings that lack a component value, for all situations; they are not in `findings`
     """
 
     environment: str

@@ -182,7 +182,8 @@ class Verdict:
     def but(self, **changed: Any) -> Self:
         """Return a copy of the verdict with changed fields.
 
-        A check has tens of thousands of verdicts, for which `dataclasses.replace` is too slow.
+        The fields are copied directly, because `dataclasses.replace` is too slow for the tens of
+        thousands of verdicts in a check.
         """
         values = vars(self) | changed
         values.pop("utilisation", None)  # a cached property of findings

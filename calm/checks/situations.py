@@ -353,7 +353,7 @@ WEAK_BESIDE_OTHERS = 0.02
 
 @rule("current")
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
-    """Check the strongest current of all environments, and the depth range of current profiles.
+    """Check the strongest current, and report depths that current profiles do not cover.
 
     `legs` contains one leg per environment. Yield each verdict with the leg in the affected
     environment.

@@ -241,7 +241,7 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 
 
 def rest_difference(result: LegResult, rest: Motion) -> float:
-    """Return the largest distance of a piece's end after the fall from its equilibrium [m].
+    """Return the largest distance between a piece's end at rest and its equilibrium position [m].
 
     Pieces on the seabed are excluded. In the equilibrium they lie at the level of the seabed, but
     in the computed rest position they lead up to the top of the anchor.

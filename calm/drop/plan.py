@@ -80,8 +80,8 @@ class DropPlan:
         pieces
     depths : largest depths of floats and of parts that hold an instrument; empty if the line
         settles away from its equilibrium
-    rest_difference : largest distance between a piece's end after the fall and in equilibrium; None
-        if the line is slack in still water and has no unique equilibrium
+    rest_difference : largest distance between a piece's end at rest and its equilibrium position;
+        None if the line is slack in still water and has no unique equilibrium
     """
 
     mooring: Design = field(repr=False)

@@ -38,7 +38,7 @@ class SpreadOf:
     Attributes
     ----------
     one : allowed values of the standard deviation
-    end : allowed values of the 5th and 95th percentile
+    end : allowed values of the 5th and the 95th percentiles
     """
 
     one: QuantityField

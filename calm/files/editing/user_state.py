@@ -18,7 +18,7 @@ class Presence:
         self._place: Path | None = None
 
     def announce(self, path: Path | None) -> list[int]:
-        """Record the file that this process has open; return the ids of others that have it open.
+        """Record the file that this process has open; return ids of other processes with that file.
 
         The path None means that this process has no file open.
         """
