@@ -102,7 +102,10 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 
 
 def solved(name: str, design: Design) -> Situations:
-    """Solve a design, and return the solutions leg by leg as situations called `name`."""
+    """Solve a design; return one situation with the given name for each of its legs.
+
+    Without an equilibrium, the result has a single situation, which contains the reason.
+    """
 
     # environments of equal depth and density share the solution in still water
     environment = replace(design.environment, name=None)

@@ -78,9 +78,9 @@ class LineLists:
         return self.all[-1][0], index
 
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
-        """Convert an index in the list at `rows` to the location of a list and an index in it.
+        """Return the location and the index in the file of an item in the list at `rows`.
 
-        For `LINE`, the result is that of `place`. For another list, the index is unchanged.
+        In `LINE`, the index is a line index, which `place` converts. In other lists, it is unchanged.
         """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
