@@ -80,7 +80,7 @@ class LineLists:
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
         """Return the location and the index in the file of an item in the list at `rows`.
 
-        In `LINE`, the index is a line index, which `place` converts. In other lists, it is unchanged.
+        In `LINE`, the index is a line index, which `place` converts; otherwise it is unchanged.
         """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
