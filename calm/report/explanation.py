@@ -221,7 +221,7 @@ def sizing_part(sizing: Sizing) -> ReportPart:
 
 
 def refusal(sizing: Sizing) -> str:
-    """Return one line with the reason why a target is not met, and advice on what to change."""
+    """Return one line that explains why a target is not met, and advises what to change."""
     return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
 
 

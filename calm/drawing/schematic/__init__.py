@@ -199,7 +199,7 @@ def column_of(
 
     Parameters
     ----------
-    parts : rows of text next to the line
+    parts : rows of text for each part next to the line
     headings : headings of the values
     line_at : distance of the line from the left edge; the symbols take twice this width
     """
