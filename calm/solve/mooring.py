@@ -61,8 +61,8 @@ SLACK_LINE_CURRENT = 1e-3
 def stirred(water: Water) -> Water | None:
     """Return the water with a weak current added at its still levels, or None if no level is still.
 
-    A slack line that ends in a still layer hangs there in a vertical fold, in the limit of a weak
-    current.
+    In a still layer, the end of a slack line hangs in a vertical fold. The shape in a weak current
+    approaches this fold.
     """
     still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
     return replace(water, u=np.where(still, SLACK_LINE_CURRENT, water.u)) if still.any() else None
@@ -74,17 +74,17 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     Parameters
     ----------
     line, water : see `calm.physics.line`
-    settings : angle step and tolerance; 1° and 1e-7 of the depth by default
+    settings : angle step (1° by default) and tolerance (1e-7 of the water depth by default)
 
     Returns
     -------
-    Solution : the highest equilibrium found. At 1°, errors of depths and offsets are at most 5e-5
-        of the water depth, and relative errors of tensions at most 2e-4.
+    Solution : the highest equilibrium found. At an angle step of 1°, errors of depths and offsets
+        are at most 5e-5 of the water depth, and relative errors of tensions are at most 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        No shape passed every check; the status is one of `Status`.
+        No shape passed every check; the status of the exception is one of `Status`.
     """
     settings = settings or Settings()
     refuse_endless(line, water)
@@ -114,7 +114,7 @@ def find_compiled(search: Search, referee: Referee) -> FoundShape:
 
 
 def search_of(problem: LineProblem, compiled: bool) -> Search:
-    """Return a problem with its march, compiled or interpreted."""
+    """Return a search that computes the miss by compiled or by interpreted code."""
     if not compiled:
         return Search(miss_at, problem)
     whole = whole_line(problem, False)
@@ -123,7 +123,7 @@ def search_of(problem: LineProblem, compiled: bool) -> Search:
 
 
 def lacks_room(problem: LineProblem) -> bool:
-    """Return whether a search ended because the work arrays hold too few segments."""
+    """Return whether a search ended because the work arrays are too small for the segments."""
     return bool(problem.work.left[FAILURE] == NO_ROOM)
 
 
@@ -139,7 +139,7 @@ def refuse_endless(line: Line, water: Water) -> None:
 
 
 class SearchTask(NamedTuple):
-    """Arguments of `run_search`."""
+    """Search for a line, and inputs of the audit: the arguments of `run_search`."""
 
     search: Search
     referee: Referee
@@ -148,7 +148,8 @@ class SearchTask(NamedTuple):
 def run_search(task: SearchTask, first: float) -> float:
     """Run a search, write its result to the work arrays of the problem, and return the outcome.
 
-    If `first` is above 0, compute the starts of a batch instead, as before its first profile.
+    If `first` is above 0, solve the line in uniform currents instead (see `fill_starts`), which a
+    batch needs before its first profile.
     """
     if first > 0.0:
         return float(fill_starts(task.search))
@@ -253,12 +254,13 @@ class Nearby:
         return int(np.argmax(self._trace.piece == piece))
 
     def shape(self, line: Line) -> tuple[Floats, float]:
-        """Return the nodes of a slightly different line, and the used fraction of its buoyancy.
+        """Return the node positions of a slightly different line, and the used fraction of
+        buoyancy.
 
         Returns
         -------
         Positions (k+1, 3) east and north of the anchor and up from the surface [m]. The second
-        result is the used fraction of the surface floats' buoyancy, 1 without such floats.
+        result is the used fraction of the surface floats' buoyancy; it is 1 without such floats.
 
         Raises
         ------
@@ -278,7 +280,8 @@ class Nearby:
 
         Parameters
         ----------
-        line, water : a line of the same pieces, with all cables scaled by one factor, and its water
+        line, water : a line of the same pieces, with all cable lengths scaled by the same factor,
+            and its water
 
         Raises
         ------
@@ -326,7 +329,7 @@ class Nearby:
 
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line on segments chosen at its angle step.
+    """Close a line once, on segments chosen at the angle step of its settings.
 
     The shape is written to the record `FINE`.
     """

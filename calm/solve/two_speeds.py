@@ -34,7 +34,7 @@ TYPICAL_PARTS = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled separately.
 
-    Its value is the name of the function that is compiled last.
+    The value of a member is the name of the function of this part that is compiled last.
     """
 
     LINE = "run_search"
@@ -87,7 +87,7 @@ def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
 def runs_compiled(
     settings: Settings, line: Line | None = None, solver: CompiledPart = CompiledPart.LINE
 ) -> bool:
-    """Return whether the next line is solved by compiled code, and count the line."""
+    """Return whether to solve the next line with compiled code, and count this line."""
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
@@ -103,7 +103,8 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
 
     Parameters
     ----------
-    work : computing time for these lines, in typical lines; by default their number
+    work : computing time for these lines, in units of the time for a typical line; by default the
+        number of lines
     """
     pace = _paces[solver]
     pace.solved += lines
@@ -113,7 +114,7 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
 
 
 def may_compile() -> bool:
-    """Return whether a function that is compiled at once, for all its uses, may be compiled."""
+    """Return whether a function outside these parts may be compiled on its first use."""
     return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
 
 
