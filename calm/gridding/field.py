@@ -45,8 +45,7 @@ INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
 
 
 class Scales(NamedTuple):
-    """Correlation scales of the anomaly in depth [m] and time [s], and share of uncorrelated
-    variance.
+    """Correlation scales in depth [m] and time [s], and share of uncorrelated variance.
 
     The attribute `share` is the uncorrelated part of the variance divided by the whole variance.
     """
@@ -148,9 +147,9 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
     """Return the mean and standard deviation of a record as functions of depth.
 
-    The mean is a local linear fit, and the standard deviation a local average of squared
-    deviations. Both use Gaussian weights as wide as the sensor spacing. `noise` is the smallest
-    standard deviation.
+    The mean is a local linear fit, and the standard deviation is the root of a local mean of
+    squared deviations. Both use Gaussian weights as wide as the sensor spacing. `noise` is the
+    smallest standard deviation.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]

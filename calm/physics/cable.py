@@ -121,8 +121,7 @@ def pass_segment(
     near: float,
     expected: Vector,
 ) -> tuple[State, float]:
-    """Compute the state below one segment with unstretched length `cut` [m], and the segment's
-    strain.
+    """Compute the state below a segment of unstretched length `cut` [m], and the segment's strain.
 
     The axis, the drag at mid-height and the stretch of the segment depend on each other. They are
     iterated until the vertical extent of the segment per unstretched metre converges.

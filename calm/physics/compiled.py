@@ -48,10 +48,10 @@ def set_row(rows: Any, i: int, row: Any) -> None:
 
 
 class Compiled:
-    """A compiled law, which is called like the Python function.
+    """A physics function ("law") compiled to machine code; it is called like the Python function.
 
-    The kinds of the arguments are checked only in the first call, which saves time in short solves.
-    The arguments of all later calls must have the same kinds.
+    The types of the arguments are checked only in the first call, which saves time in short solves.
+    The arguments of all later calls must have the same types.
     """
 
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
@@ -95,7 +95,7 @@ _lock = Lock()
 
 
 def entry(law: Law, *arguments: Any) -> Compiled:
-    """Return a compiled law; its first call determines the kinds of the arguments."""
+    """Return a law in compiled form, for arguments of the same types as the given arguments."""
     with _lock:
         if law not in _entries:
             result = kind_asked(get_type_hints(law).get("return"))

@@ -65,8 +65,7 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 def finite_length_factor(slenderness: float) -> float:
-    """Return the factor κ ≤ 1 that corrects the drag coefficient of a cylinder for its finite
-    length.
+    """Return the factor κ ≤ 1 on the drag coefficient of a cylinder due to its finite length.
 
     The factor is linear in the logarithm of L/D between the points of a table, and constant for L/D
     below 1 and above 100.
@@ -81,8 +80,7 @@ def finite_length_factor(slenderness: float) -> float:
 
 
 def end_face_coefficient(slenderness: float) -> float:
-    """Return the drag coefficient Ct of a cylinder in axial flow, based on the area of its end
-    face.
+    """Return the drag coefficient Ct of a cylinder in axial flow, based on its end-face area.
 
     The coefficient is linear in L/D between 0.1 and 1.8, and constant outside this range.
 
@@ -96,7 +94,10 @@ def end_face_coefficient(slenderness: float) -> float:
 
 
 def sphere_drag(diameter: float, cx: float | None = None) -> float:
-    """Return the drag factor K = ½ρ Cx πD²/4 of a sphere with diameter D [m]."""
+    """Return the drag factor K = ½ρ Cx πD²/4 of a sphere with diameter D [m].
+
+    The default drag coefficient Cx is 0.5.
+    """
     return _HALF_DENSITY * (SPHERE_CX if cx is None else cx) * pi * diameter**2 / 4
 
 
@@ -130,7 +131,10 @@ def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
 
 
 def area_drag(area: float, cd: float) -> float:
-    """Return the drag factor K = ½ρ Cd A of a body with reference area A [m²]."""
+    """Return the drag factor K = ½ρ Cd A of a body with reference area A [m²].
+
+    Cd is the drag coefficient for this area.
+    """
     return _HALF_DENSITY * cd * area
 
 
@@ -169,8 +173,8 @@ def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float
     """Return the coefficient [N/(m/s)] of a tangential drag that acts along the current.
 
     The coefficient times the current u, v, w [m/s] is the force. Unlike friction along the cable,
-    this force rotates the cable. The coefficient is 0 for the other friction laws. Kt is in
-    N/(m/s)².
+    this force rotates the cable. The coefficient is 0 for laws whose friction acts along the cable.
+    Kt is in N/(m/s)².
     """
     return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
 
@@ -204,7 +208,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     Parameters
     ----------
     ax, ay, az : force A [N]
-    k : half the normal drag coefficient of the element, Kn/2 [N/(m/s)²]
+    k : half the normal drag factor of the element, Kn/2 [N/(m/s)²]
     vx, vy, vz : relative current V [m/s]
 
     Returns
@@ -277,8 +281,7 @@ def few_steps_share(
     vz: float,
     steps: int,
 ) -> tuple[float, float]:
-    """Approximate `drag_share` by a few Newton steps, for an element that drag rotates only
-    slightly.
+    """Approximate `drag_share` by a few Newton steps, if drag rotates the element only slightly.
 
     Parameters
     ----------
@@ -329,7 +332,10 @@ def axis_against(x: float, y: float, z: float) -> Vector:
 def drag_force(
     kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] for an axis t and a relative current V."""
+    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] on an element with unit axis t.
+
+    Vn and Vt are the components of the relative current V normal and parallel to the axis.
+    """
     along = vx * tx + vy * ty + vz * tz
     nx, ny, nz = vx - along * tx, vy - along * ty, vz - along * tz
     normal = kn * sqrt(nx * nx + ny * ny + nz * nz)

@@ -156,7 +156,7 @@ class Floating:
     surface_drag : drag at the surface divided by the drag when fully immersed; None means that the
         drag is proportional to the immersed area
     wind : wind velocity to the east and north [m/s]
-    wind_area : area exposed to the wind [m²]; None uses the area of the hull above the water
+    wind_area : area exposed to the wind [m²]; if None, the area of the hull above the water is used
     wind_cd : drag coefficient of the area exposed to the wind
     """
 

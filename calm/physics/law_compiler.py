@@ -109,7 +109,7 @@ def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
 
 
 class Program:
-    """LLVM program of a law and of all laws that it calls.
+    """LLVM program for a physics function ("law") and for all laws that it calls.
 
     A law that is called with several combinations of argument kinds is translated once for each.
     """
@@ -122,7 +122,7 @@ class Program:
         self.declared: dict[str, str] = {}
 
     def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
-        """Return the symbol of a law translated for given argument kinds, and the kind of its
+        """Translate a law for given argument kinds, and return its symbol and the kind of its
         result.
         """
         if (law, kinds) not in self.laws:
@@ -167,15 +167,11 @@ class Program:
         )
 
     def declare(self, name: str, numbers: int) -> None:
-        """Declare an external function that takes `numbers` real arguments and returns a real
-        number.
-        """
+        """Declare an external function of `numbers` real arguments that returns a real number."""
         self.declared[name] = f'declare double @"{name}"({", ".join(["double"] * numbers)})'
 
     def constant(self, values: tuple[float, ...]) -> str:
-        """Return the symbol of a constant table of numbers, which is added to the program if
-        needed.
-        """
+        """Add a constant table of numbers to the program if needed, and return its symbol."""
         return self.constants.setdefault(values, f"@table.{len(self.constants)}")
 
     def text(self) -> str:

@@ -108,9 +108,7 @@ class Instructions:
         return name
 
     def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return the address that lies `place` units after an address; a unit is `unit` numbers
-        long.
-        """
+        """Return the address that is `place` times `unit` numbers after an address."""
         if place in (0, "0"):
             return address
         name = self.fresh()
@@ -175,9 +173,7 @@ class Instructions:
         return ArrayView(array.kind, data, tuple(shape))
 
     def kept(self, value: Any) -> Any:
-        """Return a value that stays the same if memory is overwritten; the value is copied if
-        necessary.
-        """
+        """Return a value, copied if necessary so that it is not overwritten later."""
         if isinstance(value, Held) and value.passing:
             address = self.reserve(value.kind)
             self.write(value, address, value.kind)

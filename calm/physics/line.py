@@ -72,10 +72,10 @@ class Bed(NamedTuple):
 
 @within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
-    """Return the height above the seabed plane of a point, given by a vector from the plane.
+    """Return the height of a point above the seabed plane.
 
-    If the vector is a force, the result is the component of the force normal to the plane, times
-    √(1 + tan² slope).
+    The vector x, y, z leads from a point on the plane to the point. If the vector is a force, the
+    result is the component of the force normal to the plane, times √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -105,9 +105,7 @@ part that is marched in two halves; level that splits a segment.
 
 @within
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write the position [m] of a state, and the force above this position [N], to node n of a
-    record.
-    """
+    """Write the position [m] of a state, and the force above it [N], to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -121,7 +119,10 @@ def write_node(record: Record, n: int, state: State) -> None:
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:
-    """Write the element that ends at node n to a record; `clamp` is -1 if it is not a clamp."""
+    """Write the element that ends at node n to a record.
+
+    `clamp` is the index of the clamp, or -1 if the element is part of the piece itself.
+    """
     record[6][n] = piece
     record[7][n] = clamp
     record[8][n] = cut
@@ -403,8 +404,7 @@ class Line(_Arrays):
 
     @property
     def plumb_drag(self) -> Floats:
-        """Drag factor (n,) of each whole piece with its clamps, for vertical flow past a vertical
-        line.
+        """Drag factor (n,) of each whole piece with its clamps, if line and flow are vertical.
 
         The unit is N/(m/s)². The factor applies to reference water and constant drag coefficients.
         """
@@ -429,7 +429,7 @@ class Line(_Arrays):
         }
 
     def below_a_point(self) -> Line:
-        """Return a copy of the line with a point as additional first piece.
+        """Return a copy of the line with a point as an additional first piece.
 
         This piece has no length, weight or drag.
         """
@@ -504,13 +504,13 @@ class Water(_Arrays):
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
 
     def current_at(self, depth: Floats) -> Floats:
-        """Return the current (..., 3) [m/s] at depths of any shape [m]."""
+        """Return the current (..., 3) [m/s] at depths [m] in an array of any shape."""
         return np.stack([np.interp(depth, self.level, c) for c in (self.u, self.v, self.w)], -1)
 
     def density_at(self, depth: Floats) -> Floats:
-        """Return the density (...) [kg/m³] at depths of any shape [m]."""
+        """Return the density (...) [kg/m³] at depths [m] in an array of any shape."""
         return np.interp(depth, self.level, self.density)
 
     def viscosity_at(self, depth: Floats) -> Floats:
-        """Return the kinematic viscosity (...) [m²/s] at depths of any shape [m]."""
+        """Return the kinematic viscosity (...) [m²/s] at depths [m] in an array of any shape."""
         return np.interp(depth, self.viscosity_level, self.viscosity)

@@ -113,8 +113,8 @@ def pass_line(
         0 if no part is above the surface
     cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
         these are input if the segments are given, otherwise output
-    record : output; nodes and elements
-    left : output; results with the indices `Z` to `FAILURE`
+    record : array to which nodes and elements are written
+    left : array to which the results are written, with the indices `Z` to `FAILURE`
     """
     if out > 0.0:
         depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)

@@ -222,7 +222,10 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
 
 
 class Profile:
-    """Water profile in the form used by the march, constant beyond its first and last level."""
+    """Water profile in the form used by the march.
+
+    Above the first level and below the last level, all values are constant.
+    """
 
     def __init__(self, water: Water) -> None:
         depths = water.level.tolist()
@@ -254,13 +257,14 @@ class Profile:
 
     @cached_property
     def packed(self) -> Sea:
-        """The profile with arrays as sequences, for compiled code."""
+        """The profile as arrays, for compiled code."""
         sea: Sea = packed(self.sea)
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """Return the buoyancy per displaced cubic metre at a depth, in excess of reference water
-        [N/m³].
+        """Return the excess buoyancy per displaced cubic metre at a depth [N/m³].
+
+        The excess is relative to reference water.
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity

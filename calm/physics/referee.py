@@ -100,9 +100,7 @@ class RefereeShape(NamedTuple):
 
 
 def find_ends(shape: RefereeShape) -> None:
-    """Find the first and last node of every piece, and write them to `shape.first` and
-    `shape.last`.
-    """
+    """Write the first and last node of every piece to `shape.first` and `shape.last`."""
     pieces, node = len(shape.first), 0
     for piece in range(pieces):
         shape.first[piece] = node
@@ -384,7 +382,7 @@ def rod_moment(
 
 
 def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
-    """Return the angle between an axis and the opposite of a force [rad]; 0 if either vanishes."""
+    """Return the angle between an axis and the opposite of a force [rad]; 0 if one is zero."""
     cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
     across = sqrt(cx * cx + cy * cy + cz * cz)
     along = -(x * fx + y * fy + z * fz)

@@ -104,8 +104,8 @@ class Smooth(NamedTuple):
 def drag_variation(smooth: Smooth, speed: float) -> float:
     """Return the ratio of the drag at a speed to the drag with a constant coefficient.
 
-    The speed [m/s] is that normal to the axis. The constant coefficient is Cx = 0.5 for a sphere
-    and Cn = 1.2 κ for a cylinder.
+    The speed [m/s] is the speed of the flow normal to the axis. The constant coefficient is Cx =
+    0.5 for a sphere and Cn = 1.2 κ for a cylinder.
     """
     reynolds = smooth.reynolds * speed
     if smooth.lengthening == 0.0:
@@ -197,9 +197,7 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Return the ratio of the drag at a Reynolds number to the drag with a constant
-        coefficient.
-        """
+        """Return the ratio of the drag at a Reynolds number to that with a constant coefficient."""
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property

@@ -94,14 +94,14 @@ def lone_axis(
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
-    """Return the axis of a rod by bisection, if the water varies too much for `rod_axis` to
-    converge.
+    """Return the axis of a rod by bisection, if the iteration in `rod_axis` does not converge.
 
-    The depths of the loads, and so the water at these depths, depend only on the vertical component
-    ("rise") of the axis. In the water for a rise s, the axis in balance has a rise r(s) between -1
-    and 1, so r(s) - s changes sign. If r jumps, as for a float without net buoyancy at the upper
-    edge of a current, the bisection ends at the jump, where the moment on the rod may vanish. If
-    the moment does not vanish there, the rise is `NO_BALANCE`.
+    The iteration may fail if the water varies much along the rod. The depths of the loads, and so
+    the water at these depths, depend only on the vertical component ("rise") of the axis. In the
+    water for a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s changes
+    sign. If r jumps, as for a float without net buoyancy at the upper edge of a current, the
+    bisection ends at the jump, where the moment on the rod may vanish. If the moment does not
+    vanish there, the rise is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0

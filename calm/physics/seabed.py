@@ -107,8 +107,7 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a part of a line that is under tension, and the tension at its end
-    [N].
+    """Return the fraction of a line's part that is under tension, and the tension at its end [N].
 
     `hold` is the reduction of the tension along the whole part by friction and slope [N].
     """
@@ -162,8 +161,7 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Return the relative difference between the sum of the loads and the force at the end of a
-    line.
+    """Return the relative difference between the sum of the loads and the force at a line's end.
 
     If part of the line lies on the seabed, the sum of the loads above the touchdown must have no
     component normal to the seabed. Exceptions are a downward force at a rigid piece or clamp that

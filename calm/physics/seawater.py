@@ -70,7 +70,8 @@ def gravity(latitude: float) -> float:
 
     The increase of gravity with depth, 0.011 m/s² at 5000 m, is neglected.
 
-    Source: the international gravity formula as adopted in TEOS-10. The two agree to 1e-6 m/s².
+    Source: the international gravity formula as adopted in TEOS-10, with which the results agree to
+    1e-6 m/s².
     """
     square = sin(radians(latitude)) ** 2
     return 9.780327 * (1.0 + 0.0053024 * square - 0.0000058 * sin(radians(2.0 * latitude)) ** 2)
@@ -134,7 +135,7 @@ def potential_density(
 
 
 def pressure_at(depth: ArrayLike, latitude: float) -> NDArray[np.float64]:
-    """Return the TEOS-10 pressure in the sea [dbar] at depths [m] and a latitude [degrees]."""
+    """Return the pressure [dbar] at depths [m] and a latitude [degrees], according to TEOS-10."""
     import gsw
 
     return np.asarray(gsw.p_from_z(-np.asarray(depth, dtype=float), latitude), dtype=float)

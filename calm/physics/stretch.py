@@ -40,11 +40,10 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Return the mean strain of a rope whose tension varies linearly by ± `half` about `tension`
-    [N].
+    """Return the mean strain of a rope if its tension varies by ± `half` about `tension` [N].
 
-    The mean is exact, since two Gauss points are used between each pair of knots in this range.
-    `first` and `end` are as in `curve_strain`.
+    The tension varies linearly. The mean is exact, since two Gauss points are used between each
+    pair of knots in this range. `first` and `end` are as in `curve_strain`.
     """
     half = abs(half)
     low, high = tension - half, tension + half
@@ -73,11 +72,12 @@ def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 
 
 class ElongationCurve:
-    """Strain of a rope as a function of tension: a smooth curve through a manufacturer's table.
+    """Strain of a rope as a smooth function of tension, through the points of a table.
 
-    Monotone cubic interpolation is used. The curve passes through every point, has a continuous
-    slope and never decreases. Above the last point, the curve is linear, with the mean slope of the
-    last interval. A table with a single point gives a constant stiffness.
+    The table is usually a manufacturer's. Monotone cubic interpolation is used. The curve passes
+    through every point, has a continuous slope and never decreases. Above the last point, the curve
+    is linear, with the mean slope of the last interval. A table with a single point gives a
+    constant stiffness.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class ElongationCurve:
     ----------
     tensions, strains : tensions [N] and strains [-] of the points of the table, starting with (0,
         0)
-    breaking_load, permanent : as the parameters
+    breaking_load, permanent : values of the parameters
     knots : the curve in the form used by the march, including permanent elongation
     limit : tension above which results need a warning [N], which is the tension of the last point,
         but at most 80 % of the breaking load

@@ -33,7 +33,7 @@ def shedding_frequency(speed: float, diameter: float, strouhal: float = STROUHAL
 
     Parameters
     ----------
-    speed : |Vn|, speed of the current normal to the line [m/s]
+    speed : speed |Vn| of the current normal to the line [m/s]
     """
     return strouhal * speed / diameter
 
@@ -109,11 +109,10 @@ def blevins(amplitude: float) -> float:
 
 
 def skop_griffin(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn without strumming, by Skop and Griffin's
-    formula.
+    """Return the ratio of Cn of a strumming line to Cn without strumming, by Skop and Griffin.
 
-    The formula is 1 + 1.16 (w_r - 1)^0.65 with w_r = 1 + 2 A/D, where `amplitude` is A/D. It
-    applies at resonance, where reduced speed times Strouhal number equals 1.
+    The formula is 1 + 1.16 (w_r - 1)^0.65 with w_r = 1 + 2 A/D, where `amplitude` is A/D. The
+    formula applies at resonance, where reduced speed times Strouhal number equals 1.
 
     Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884.
     """

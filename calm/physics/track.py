@@ -102,8 +102,8 @@ class Stage(NamedTuple):
 class Course(NamedTuple):
     """A `Track` in the form used by the march, with lists of its parts from the top down.
 
-    `landing` is the index of the first stage that may touch the seabed, below the last buoyant
-    stage.
+    `landing` is the index of the first stage that may touch the seabed. This stage is below the
+    last buoyant stage.
     """
 
     stages: Sequence[Stage]
@@ -147,9 +147,7 @@ class Track:
 
     @property
     def landing(self) -> int:
-        """Index of the first stage that may touch the seabed, which is below the last buoyant
-        stage.
-        """
+        """Index of the first stage that may touch the seabed, below the last buoyant stage."""
         for i in range(len(self.stages), 0, -1):
             kind, first, size, _ = self.stages[i - 1]
             if kind == CABLE:

@@ -77,8 +77,7 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """Outcome of closing a line: the size of the shape, or the reason why the line cannot be
-    closed.
+    """Outcome of closing a line, with the reason if the line cannot be closed.
 
     Attributes
     ----------
@@ -105,8 +104,8 @@ class Closed(NamedTuple):
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
     """Return the unknown for a whole line whose free end is below the surface.
 
-    If the line may lie on the seabed (`lands`), its target is the seabed instead of the top of the
-    anchor.
+    If the line may lie on the seabed (`lands`), the march must end on the seabed instead of at the
+    top of the anchor.
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -114,8 +113,9 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """Return the unknown for the part of a line above the float `lower`, with the surface as
-    target.
+    """Return the unknown for the part of a line above the float `lower`.
+
+    The target of this part is the surface.
     """
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
@@ -209,7 +209,8 @@ def as_riding(load: Load, riding: Riding) -> Load:
 def lifted_out(load: Load, share: float, gravity: float) -> Load:
     """Return the load of a piece that is partly out of the water.
 
-    The fraction `share` of the piece is out of the water: it has no drag and displaces no water.
+    The fraction `share` of the piece is out of the water. This fraction has no drag and displaces
+    no water.
     """
     wet = 1.0 - share
     buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
@@ -264,8 +265,7 @@ def coarse_root(
 
 
 def planned(search: Search, root: Root, step: float) -> Root:
-    """Choose the segments at an angle step, and find the root of the miss near a less accurate
-    root.
+    """Choose the segments at an angle step, and find the root of the miss near a coarse root.
 
     If the march chooses its segments freely, the miss is not quite continuous, so this root is
     approximate. With the last segments held fixed, the miss is continuous. The result is the root

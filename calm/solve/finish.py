@@ -129,7 +129,7 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 def carried_by(line: Line, problem: LineProblem) -> Line:
     """Return the line with the buoyancy and drag that its pieces have in the solution.
 
-    For a piece at the surface, only the submerged part counts.
+    Only the submerged part of a piece at the surface contributes.
     """
     if not problem.work.left[CHANGED]:
         return line

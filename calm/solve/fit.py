@@ -29,7 +29,7 @@ from calm.solve.two_speeds import runs_compiled
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
     """Find the unstretched length [m] of a piece that puts the free end at a given depth.
 
-    The depth is that in still water.
+    The depth refers to still water.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ def solve_rise(
     line, water : see `calm.physics.line`; the seabed is ignored, and parts above the surface are
         treated as submerged
     depth : depth of the line's upper end [m]
-    settings : angle step; 1° by default
+    settings : solver settings; by default, the angle step is 1°
 
     Returns
     -------
@@ -139,7 +139,7 @@ shackle that touches the float below.
 def looped(
     line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
 ) -> tuple[int, ...]:
-    """Return the indices of the pieces that form loops; empty if the loops are short in total.
+    """Return the indices of the pieces that form loops, or an empty tuple if the loops are short.
 
     Loops are short if their total height is less than `SHORTEST_LOOP`.
 

@@ -105,9 +105,7 @@ class Rising:
 
     @property
     def guessed_depth(self) -> float:
-        """First estimate of the depth of the lower end, if the line is vertical and unstretched
-        [m].
-        """
+        """First estimate of the depth of the lower end, for a vertical unstretched line [m]."""
         return self.top + float(self.line.length.sum())
 
     @cached_property

@@ -234,7 +234,7 @@ def system_root(
 
     Returns
     -------
-    The unknowns at the root, and the derivatives there.
+    The unknowns at the root, and the derivatives at the root.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """

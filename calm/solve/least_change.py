@@ -56,7 +56,7 @@ class LeastChange:
         return self.tried[x]
 
     def find(self, start: float) -> float | None:
-        """Return the value nearest to the start that meets the condition; None if not found."""
+        """Return the value nearest to the start that meets the condition, if there is one."""
         start = min(max(start, self.low), self.high)
         first = self.at(start)
         if first <= 0.0 or (self.exact and abs(first) <= self.small):

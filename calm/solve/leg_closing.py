@@ -366,7 +366,10 @@ MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def do_task(job: NetTask, _: float) -> float:
-    """Perform a task and return its outcome; DRIFTS returns 1 if the net drifts, else 0."""
+    """Perform a task and return its outcome.
+
+    The outcome of DRIFTS is 1 if the net drifts, otherwise 0.
+    """
     net, x, how = job.net, job.x, job.how
     if job.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0

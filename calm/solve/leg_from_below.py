@@ -91,8 +91,7 @@ def course_from_below(course: Course) -> Course:
 
 
 def weight_of(course: Course, stage: Stage, excess: float) -> float:
-    """Return the weight in water [N] of one stage (a cable or consecutive rigid pieces) at the
-    seabed.
+    """Return the weight in water at the seabed [N] of a stage (a cable or a rigid body).
 
     Parameters
     ----------
@@ -123,9 +122,10 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 
 
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March an anchored leg up from its touchdown, or from its anchor, and return the outcome.
+    """March an anchored leg upwards, and return the outcome.
 
-    The shape is recorded from the lower end up; `record_down` reverses it.
+    The march starts at the touchdown or, without touchdown, at the anchor. The shape is recorded
+    from the lower end up; `record_down` reverses the record.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -304,9 +304,7 @@ def march_suspended(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Reverse the record of an upward march, so that the record begins with the pull at the upper
-    end.
-    """
+    """Reverse the record of an upward march. It then begins with the pull at the upper end."""
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]

@@ -99,7 +99,7 @@ class LaidLeg:
     def unknowns(self) -> int:
         """Number of unknowns of the leg.
 
-        On a sloping seabed, the height of its touchdown is also unknown.
+        The height of the touchdown is one of the unknowns on a sloping seabed.
         """
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
@@ -107,16 +107,12 @@ class LaidLeg:
 
     @property
     def below_a_point(self) -> bool:
-        """Whether the line of the leg begins with a point load, which stands for the pull on its
-        end.
-        """
+        """Whether the line of the leg begins with a point load for the pull on its end."""
         return self.kind in (leg_numbers.PULLED, leg_numbers.ANCHORED)
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number over diameter [1/m], and current [m/s], where the march ends (see
-        `LegRow`).
-        """
+        """Strouhal number over diameter [1/m], and current [m/s], at the end of the march."""
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -169,7 +165,7 @@ class LaidLeg:
 
     @property
     def bed(self) -> Bed:
-        """The seabed below the leg."""
+        """The seabed below the leg, with its slope and friction."""
         lower, bed = self.leg.lower, self.problem.limits.bed
         own = lower.deeper if isfinite(lower.seabed) else bed[:2]
         return bed._replace(east=own[0], north=own[1])

@@ -175,10 +175,9 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add the results of a leg's march, times `share`, to the residual or to a column of the
-    Jacobian.
+    """Add the results of a leg's march, times `share`, to the residual or the Jacobian.
 
-    The results are added to the residual if `column` is negative.
+    The results are added to a column of the Jacobian or, if `column` is negative, to the residual.
     """
     for k in range(OUT):
         row = row_of(net, i, k)

@@ -156,7 +156,7 @@ class Marching(NamedTuple):
     sea : the water
     step : angle step [rad]
     cuts, given : index of the segment list, and whether the march uses the listed segments;
-        otherwise it chooses segments and lists them
+        otherwise it chooses segments and writes them to the list
     exact : whether segments are split at every level. The marches for the Jacobian must be split
         like the march at the unperturbed unknowns, since a different split has more effect than the
         small step
@@ -177,7 +177,7 @@ class Marching(NamedTuple):
 
 @within
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
-    """Convert a leg to the form of a single-line problem."""
+    """Return a leg in the form of a `LineProblem`, like a single line."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
     courses, works = lines.course, lines.work
     course = Course(
@@ -208,8 +208,8 @@ def bed_of(net: NetProblem, i: int) -> Bed:
 def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
     """Return the height of a node of a leg above the seabed [m].
 
-    The seabed is a plane. The plane passes through the foot of the leg's anchor, or has the water
-    depth at the origin if the leg has no anchor.
+    The seabed is a plane through the foot of the leg's anchor. If the leg has no anchor, the plane
+    is at the water depth below the origin.
     """
     end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
     east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]

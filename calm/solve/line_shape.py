@@ -40,7 +40,7 @@ coarse segments.
 
 
 class FoundShape(NamedTuple):
-    """A shape of a line, or the reason why there is none.
+    """A shape of a line, or the reason why no shape was found.
 
     Attributes
     ----------
@@ -135,7 +135,10 @@ def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bo
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
-    """Return a closed line, or a rejection if `hangs` and the line is far below the seabed."""
+    """Return a closed line, but reject a line that is far below the seabed.
+
+    A line is rejected only if it must stay clear of the seabed (`hangs`).
+    """
     if not hangs or closed.ending != FOUND:
         return closed
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)

@@ -291,7 +291,7 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
 
 
 def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
-    """Return a copy of the problem with the current multiplied by a fraction."""
+    """Return a copy of the problem with the current multiplied by the factor `share`."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]

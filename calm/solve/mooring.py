@@ -59,7 +59,7 @@ SLACK_LINE_CURRENT = 1e-3
 
 
 def stirred(water: Water) -> Water | None:
-    """Return the water with a weak current added at its still levels, or None if no level is still.
+    """Return the water with a weak current at all still levels, or None if no level is still.
 
     In a still layer, the end of a slack line hangs in a vertical fold. The shape in a weak current
     approaches this fold.
@@ -139,7 +139,7 @@ def refuse_endless(line: Line, water: Water) -> None:
 
 
 class SearchTask(NamedTuple):
-    """Search for a line, and inputs of the audit: the arguments of `run_search`."""
+    """Arguments of `run_search`, which are a search and the inputs of its audit."""
 
     search: Search
     referee: Referee
@@ -167,7 +167,7 @@ at `FIRST_OTHER`.
 
 
 def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
-    """Write a shape, or the reason why there is none, to the result array."""
+    """Write a shape, or the reason why no shape was found, to the result array."""
     closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
@@ -190,7 +190,7 @@ def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
 
 
 def read_found(values: Sequence[float]) -> FoundShape:
-    """Read a shape, or the reason why there is none, from the result array."""
+    """Read a shape, or the reason why no shape was found, from the result array."""
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = (
         int(values[i]) for i in WHOLE
     )
@@ -247,15 +247,14 @@ class Nearby:
     def node(self, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece, or at a clamp.
 
-        The number holds for all slightly different lines.
+        The number is the same in all slightly different lines.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
         return int(np.argmax(self._trace.piece == piece))
 
     def shape(self, line: Line) -> tuple[Floats, float]:
-        """Return the node positions of a slightly different line, and the used fraction of
-        buoyancy.
+        """Return the node positions and the used buoyancy fraction of a slightly different line.
 
         Returns
         -------
@@ -265,7 +264,7 @@ class Nearby:
         Raises
         ------
         NoEquilibrium
-            ``not-converged`` or ``slack``.
+            The status is ``not-converged`` or ``slack``.
         """
         search, closed = self._closed(line, self._water)
         trace = Trace.of(search.problem.work.records[FINE], closed.nodes)

@@ -90,9 +90,7 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the water. The new water may have another current but has the same depth and
-        density.
-        """
+        """Replace the water by water with another current but the same depth and density."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
@@ -288,10 +286,10 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
     """Return approximate unknowns of a net in equilibrium.
 
-    If another solution is given, the search starts near it. Otherwise the current is raised from
-    still water in steps, which leads to the highest equilibrium. If that fails, the search starts
-    from the rest positions of lumped masses released in the current (`calm.solve.net_start`).
-    `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
+    If another solution is given, the search starts near that solution. Otherwise the current is
+    raised from still water in steps, which leads to the highest equilibrium. If that fails, the
+    search starts from the rest positions of lumped masses released in the current
+    (`calm.solve.net_start`). `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
@@ -319,8 +317,9 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 
 
 class NearbyNet:
-    """A solved net, from which nets with one slightly different leg are solved on the same
-    segments.
+    """A solved net, from which nets with one slightly different leg are solved.
+
+    The segments of the solved net are used for all these nets.
 
     Parameters
     ----------
@@ -351,7 +350,7 @@ class NearbyNet:
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece of a leg, or at a clamp.
 
-        The number holds for all slightly different lines.
+        The number is the same in all slightly different lines.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
@@ -362,8 +361,7 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Return the node positions and the used buoyancy fraction of a leg, if one leg has another
-        line.
+        """Return the node positions and used buoyancy fraction of a leg, after a change of one leg.
 
         Two Newton steps with the Jacobian of the original net leave an error of third order in the
         change. Raise NoEquilibrium if a march fails.

@@ -74,7 +74,7 @@ class BuoyantPiece(NamedTuple):
     length : length of the piece [m]
     rigid_above : length of the rigid pieces directly above this piece [m]
     upto : length of the line from the top of the line to the lower end of the piece [m]
-    surface_lift : net force of the piece in surface water [N]
+    surface_lift : net buoyancy of the piece in water with the density at the surface [N]
     least : smallest fraction of the piece's buoyancy that holds the line below it upright in still
         water [-]
     """
@@ -109,8 +109,8 @@ class Limits(NamedTuple):
     rides : whether the draft of the top float can be computed
     at_rest : whether there is neither current nor wind
     blown : whether there is wind
-    refused, refused_at_rest : reasons to reject the line without a search, in moving and in still
-        water
+    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest; the
+        line is rejected without a search unless this is `SUPPORTED`
     """
 
     span: float

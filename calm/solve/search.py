@@ -222,7 +222,7 @@ def load_again(problem: LineProblem, found: FoundShape) -> None:
 def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
     """Return the audited shape near an approximate root, with or without a touchdown (`lands`).
 
-    If only little of the line lies on the seabed, a shape clear of the seabed is sought as well.
+    If only little of the line lies on the seabed, a shape clear of the seabed is also sought.
     """
     problem, limits = search.problem, search.problem.limits
     if not lands:
@@ -259,7 +259,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """Return a copy of a root for the same line clear of the seabed."""
+    """Return a copy of an approximate root, for the same line without touchdown."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
@@ -370,7 +370,10 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Set the loads of the audit bodies to those in this solution, with floats at the surface."""
+    """Set the loads of the audit bodies to the loads in this solution.
+
+    These differ from the full loads if floats are at the surface.
+    """
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
         set_row(bodies, k, referee.bodies[k])

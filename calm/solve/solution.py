@@ -87,19 +87,21 @@ class Solution:
     strain : (k,) strain of each element; 0 for rigid pieces and clamps
     afloat : indices of the pieces that float at the surface; empty for a subsurface line
     buoyancy_used : fraction of the surface floats' buoyancy that the line uses
-    reserve : unused buoyancy of these floats [N]
+    reserve : unused buoyancy of the surface floats [N]
     carried : the line with the buoyancy and drag in effect, which are reduced for floats at the
         surface
-    riding : draft and forces of the float at the surface; None if it is immersed
+    riding : draft of the float at the surface, and the forces on this float; None if it is immersed
     marches, segments : number of marches and number of segments used for this solution
-    miss : height of the line's end above the anchor's top, or the tow point [m]
-    closure : |recomputed sum of the loads - force at the line's end| / |force at the line's end|
+    miss : height of the line's end above the top of the anchor or, for a tow, above the tow point
+        [m]
+    closure : relative force imbalance, |recomputed sum of the loads - force at the line's end| /
+        |force at the line's end|
     moment_residual : largest deviation of an element's axis from its moment balance [rad]
     depth_error, tension_error : estimates of the largest error of any depth or offset [m] and of
         any tension [N]
     lift_error, pull_error : estimated errors of the upward and horizontal components of the force
         at the line's end [N]
-    other : another equilibrium that the solver found; None if it found none
+    other : another equilibrium that the solver found, or None
     frequency : strumming frequency of the cables [Hz]; 0 without strumming
     pulled : whether a force acts on the first end of the line, as on a leg of a net
     marched : solution with the finer of the two shapes, which passed the audit; None if nothing was
@@ -141,7 +143,7 @@ class Solution:
 
     @property
     def as_marched(self) -> "Solution":
-        """The solution before extrapolation: the shape on fine segments, which passed the audit."""
+        """The solution with the shape on fine segments, as it was audited before extrapolation."""
         closed = self.marched
         if closed is None:
             return self
@@ -230,7 +232,7 @@ class Status(Enum):
 
         Parameters
         ----------
-        message : reason; `{piece}` in it stands for the piece concerned
+        message : reason, in which `{piece}` stands for the piece concerned
         piece : index of the piece concerned, if any
         advice : advice that replaces the default advice of this status, which applies to moorings
         """
@@ -258,10 +260,10 @@ class Status(Enum):
 
 
 def standing_lift(line: Line, water: Water) -> Floats:
-    """Return the net force (n,) of every piece with its clamps in an upright line [N], positive up.
+    """Return the net buoyancy (n,) of every piece of an upright line, with its clamps [N].
 
-    The line stands upright and unstretched on its anchor. Parts that would be out of the water are
-    assumed just below the surface.
+    Net buoyancy is positive up. The line stands upright and unstretched on its anchor. Parts that
+    would be out of the water are assumed just below the surface.
     """
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
@@ -270,7 +272,7 @@ def standing_lift(line: Line, water: Water) -> Floats:
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
-    """Return the net force (n,) of every piece in surface water [N], positive up.
+    """Return the net buoyancy (n,) of every piece in water at the surface [N], positive up.
 
     The clamps of the pieces are not included.
     """
@@ -356,7 +358,7 @@ def too_heavy(lift: Floats) -> NoEquilibrium:
 
     Parameters
     ----------
-    lift : (n,) net force of each piece [N]
+    lift : (n,) net buoyancy of each piece [N]
     """
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(

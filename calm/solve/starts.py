@@ -34,9 +34,9 @@ def fill_starts(search: Search) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
     The solutions are written to `LineProblem.starts`. Three rows are for a line clear of the
-    seabed, and three for a line with a touchdown. They hold the unknown, the slope of the miss, and
-    the knockdown [m]. The unknown is the depth of the free end [m] or, if negative, the used
-    fraction of buoyancy minus one. The last row holds the results of `lean_of`.
+    seabed, and three for a line with a touchdown. Each three rows hold the unknown, the slope of
+    the miss, and the knockdown [m]. The unknown is the depth of the free end [m] or, if negative,
+    the used fraction of buoyancy minus one. The last row holds the results of `lean_of`.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts
@@ -96,8 +96,7 @@ def start_of(search: Search, lands: bool) -> Root:
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Return whether an equilibrium found from its start value is certainly the highest
-    equilibrium.
+    """Return whether an equilibrium found from a start value is certainly the highest one.
 
     This is certain if the current does not grow significantly with depth. Otherwise the knockdown
     with the free end at shallower depths is estimated, and compared with the knockdown found.

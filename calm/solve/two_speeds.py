@@ -77,7 +77,7 @@ _paces = {solver: _Pace(solver) for solver in CompiledPart}
 
 
 def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
-    """Announce the number of lines that are about to be solved."""
+    """Announce how many lines are about to be solved, so that compilation starts if it pays."""
     pace = _paces[solver]
     pace.announced = pace.solved + lines
     if _may_choose():
@@ -114,7 +114,7 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
 
 
 def may_compile() -> bool:
-    """Return whether a function outside these parts may be compiled on its first use."""
+    """Return whether a function that belongs to no `CompiledPart` may be compiled on first use."""
     return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
 
 

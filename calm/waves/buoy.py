@@ -96,9 +96,7 @@ class Buoy:
 
     @property
     def heaves(self) -> Literal["filtered", "panels", "follows"] | None:
-        """Method for computing heave; None if the mooring file prescribes the response of the
-        float.
-        """
+        """Method for computing heave; None if the mooring file prescribes the float's response."""
         if self.follows:
             return "follows"
         if self.rao:
@@ -108,14 +106,13 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness in heave, and the exciting force per metre of elevation
-        [N/m].
+        """Return the dynamic stiffness and the exciting force in heave [N/m].
 
-        Without a prescribed response or a panel method, the float is represented by a disc with
-        radius R at the draft T. The Froude-Krylov force is ρgA e^(-kT) 2 J1(kR)/(kR). The added
-        mass is `DISC_ADDED` ρR³, and the acceleration of the water at this draft excites it. The
-        radiation damping follows from Haskind's relation, k ω |X|² / (2 ρ g²) in deep water (Newman
-        1977, 6.18).
+        The exciting force is per metre of wave elevation. Without a prescribed response or a panel
+        method, the float is represented by a disc with radius R at the draft T. The Froude-Krylov
+        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³, and the acceleration
+        of the water at this draft excites it. The radiation damping follows from Haskind's
+        relation, k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
 
         Parameters
         ----------
@@ -146,10 +143,11 @@ class Buoy:
     def pitch(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return dynamic stiffness, and exciting forces per metre of elevation, in surge and pitch.
+        """Return the dynamic stiffness and the exciting forces in surge and pitch.
 
-        All results refer to the point where the axis of the float meets the surface. Pitch is
-        positive if the part above the surface moves forward.
+        The exciting forces are per metre of wave elevation. All results refer to the point where
+        the axis of the float meets the surface. Pitch is positive if the part above the surface
+        moves forward.
 
         Parameters
         ----------

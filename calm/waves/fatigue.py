@@ -106,13 +106,13 @@ load, half the range used here; their distance from the mean is not stated.
 
 @dataclass(frozen=True)
 class PieceFatigue:
-    """Fatigue of a piece. Values are None if no curve applies or if a required parameter is
-    unknown.
+    """Fatigue of a piece.
 
-    `life` is the time until the damage is 1 [years]. `life_low` is the life if the standard
-    deviations of tension are larger by the fraction `BAND`, and `life_high` the life if they are
-    smaller. `life_half_cut_off` and `life_twice_cut_off` are the lives for half and for twice the
-    cut-off frequency of the waves. `unknown` gives the reason why there are no values.
+    Values are None if no curve applies or if a required parameter is unknown. `life` is the time
+    until the damage is 1 [years]. `life_low` is the life if the standard deviations of tension are
+    larger by the fraction `BAND`, and `life_high` the life if they are smaller. `life_half_cut_off`
+    and `life_twice_cut_off` are the lives for half and for twice the cut-off frequency of the
+    waves. `unknown` gives the reason why there are no values.
     """
 
     index: int

@@ -48,7 +48,8 @@ class LumpedLine:
     position : (n, 3) position east, north, and up from the surface [m]
     mass : (n,) mass at each node [kg]
     added_across, added_along : (n,) added mass normal and tangential to the line [kg]
-    water_across, water_along : (n,) displaced mass on which the wave pressure acts [kg]
+    water_across, water_along : (n,) mass of displaced water for the force of the wave pressure,
+        normal and tangential to the line [kg]
     across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for the flow normal to the line,
         for the tangential flow, and for flow in any direction [N/(m/s)²]
     tangent : (n, 3) unit vectors along the line at the nodes, pointing down the line

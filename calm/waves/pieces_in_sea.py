@@ -80,9 +80,7 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state for its cut-off frequency, half this frequency, and twice this
-    frequency.
-    """
+    """Responses to a sea state for the full, half and twice the cut-off frequency."""
 
     full: WaveResponse
     half: WaveResponse

@@ -58,8 +58,10 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Return the standard deviations and zero-crossing periods [s] for transfer functions (f,
-        …).
+        """Return the standard deviations and zero-crossing periods [s] of responses to the sea
+        state.
+
+        The responses are given by transfer functions (f, …).
         """
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
@@ -81,7 +83,7 @@ class WaveResponse:
         return replace(self, weight=self.weight * np.clip(share, 0.0, 1.0))
 
     def joined(self, other: WaveResponse) -> WaveResponse:
-        """Combine this response and a response at other frequencies to one response."""
+        """Combine this response and a response at other frequencies into one response."""
         names = [each.name for each in fields(self)]
         both = ((getattr(self, name), getattr(other, name)) for name in names)
         return WaveResponse(*(np.concatenate(pair) for pair in both))
@@ -111,15 +113,14 @@ class Waves:
 
     @property
     def ahead(self) -> Floats:
-        """Unit vector in the direction of travel, (3,)."""
+        """Unit vector (3,) in the direction of travel."""
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity (f, n, 3) of the water at positions (n, 3), per metre of elevation
-        [1/s].
+        """Return the velocity (f, n, 3) of the water at positions (n, 3) [m] in waves [1/s].
 
-        The elevation is the real part of e^(i(ωt - ks)), where s is the distance in the direction
-        of travel.
+        The velocity is per metre of wave elevation. The elevation is the real part of e^(i(ωt -
+        ks)), where s is the distance in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
@@ -210,8 +211,8 @@ def respond(
     """Compute the response of a line to a sea state.
 
     The drag on each node is replaced by a linear drag that dissipates the same energy on average.
-    For a Gaussian flow v' about the mean current, its coefficient is E[F v'] / E[v'²]. The
-    coefficients are updated until the motions converge.
+    For a Gaussian flow v' about the mean current, the coefficient of the linear drag is E[F v'] /
+    E[v'²]. The coefficients are updated until the motions converge.
 
     Parameters
     ----------
