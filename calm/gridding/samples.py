@@ -32,7 +32,7 @@ class MooringDepths:
     Attributes
     ----------
     time : (n,) increasing times, with a resolution of a nanosecond
-    places : the points, with a shallow depth of each (5th percentile)
+    places : the points, each with a depth in weak currents (5th percentile of its depths)
     depth, deviation : (n, p) depths and standard deviations [m]
     place : latitude and longitude of the mooring [degrees]; empty if unknown
     seabed : depth of the last piece, which is the anchor [m]; NaN if unknown

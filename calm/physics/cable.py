@@ -481,10 +481,10 @@ def until_switch(
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
     """Return a quantity whose sign changes where a drag law switches.
 
-    For `OF_FRICTION`, friction of constant size reverses with the flow along the cable. The
-    quantity is this flow, positive down the line, times the tension [N m/s]. Otherwise, the factor
-    by which strumming increases Cn has a maximum. The quantity is this maximum minus the factor
-    without the maximum [-].
+    If `law` is `OF_FRICTION`, the quantity is the flow along the cable, positive down the line,
+    times the tension [N m/s]; friction of constant size reverses with this flow. If `law` is
+    `OF_STRUMMING`, the quantity is the largest factor by which strumming may increase Cn, minus the
+    factor without this limit [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)

@@ -69,8 +69,9 @@ def cylindrical_hull(diameter: float, length: float) -> Hull:
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     """Return a hull from rows of draft [m], displaced volume [m³] and immersed area [m²].
 
-    All values must increase from row to row. Values are interpolated linearly between the rows, and
-    between zero and the first row. The last row describes the completely immersed hull.
+    Drafts and volumes must increase from row to row, and areas must not decrease. Values are
+    interpolated linearly between the rows, and between zero and the first row. The last row
+    describes the completely immersed hull.
 
     Raises
     ------

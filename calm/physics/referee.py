@@ -382,7 +382,10 @@ def rod_moment(
 
 
 def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
-    """Return the angle between an axis and the opposite of a force [rad]; 0 if one is zero."""
+    """Return the angle between an axis and the opposite of a force [rad].
+
+    The result is 0 if the axis or the force is zero.
+    """
     cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
     across = sqrt(cx * cx + cy * cy + cz * cz)
     along = -(x * fx + y * fy + z * fz)

@@ -98,11 +98,11 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Return the depth of the free end [m] if the length `out` is above the surface.
+    """Return the depth of the free end of a line [m] if its top extends above the surface.
 
-    The depth is negative. The length [m] is measured along the rod at the free end. The inclination
-    of the rod follows from its loads, which depend slightly on its depth. The rod is assumed
-    upright if its moments balance in no orientation.
+    The depth is negative. A length `out` [m] of the topmost rod is above the surface. The
+    inclination of the rod follows from its loads, which depend slightly on its depth. The rod is
+    assumed upright if its moments balance in no orientation.
     """
     depth = -out
     for _ in range(_LEANINGS):

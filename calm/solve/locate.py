@@ -496,7 +496,10 @@ def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """Return whether the line is slack in still water even with the least usable buoyancy."""
+    """Return whether the line is slack in still water at the smallest used buoyancy fraction.
+
+    This fraction just holds the line upright, see `BuoyantPiece.least`.
+    """
     assert unknown.sought != BELOW
     least = search.problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)

@@ -139,8 +139,8 @@ class SearchArrays(NamedTuple):
     ----------
     left : results of the last march (see `calm.physics.passing`), followed by the values with
         indices `MARCHES` to `LAST`
-    chosen : segments chosen by the march [m]
-    counts : number of segments of each cable
+    chosen : unstretched lengths of the segments chosen by the march [m]
+    counts : number of segments in each cable
     records : records of shapes, indexed by `COARSE` to `OTHER`
     shares : four rows with a value for each float at the surface. The rows hold the used fraction
         of buoyancy, the slope of the miss with respect to this fraction, and the used fractions for

@@ -159,7 +159,7 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     """Find the highest shape of one kind, and attach the deepest shape if it differs.
 
-    Shapes of one kind all have a touchdown (`lands`), or are all clear of the seabed.
+    If `lands` is true, the shapes have a touchdown; otherwise they are clear of the seabed.
     """
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:

@@ -74,14 +74,14 @@ class Solution:
     ----------
     line, water, settings : the solved problem; for a tow, the line is listed from its free end, and
         the current is relative to the ship
-    position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m];
-        positions, forces and tensions are extrapolated from two shapes
+    position : (k+1, 3) position of each node, east and north of the anchor or tow point, and up
+        from the surface [m]; positions, forces and tensions are extrapolated from two shapes
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
     element_piece : (k,) index of the piece that each element belongs to
-    element_clamp : (k,) index of the clamp that the element represents, or -1; such an element has
-        no length
+    element_clamp : (k,) index of the clamp if the element represents a clamp and has no length,
+        otherwise -1
     landed : whether part of the line lies on the seabed
-    hanging : number of hanging elements; the others lie on the seabed
+    hanging : number of suspended elements; the other elements lie on the seabed
     grounded_length : unstretched length on the seabed [m]
     cut : (k,) unstretched length of each element [m]
     strain : (k,) strain of each element; 0 for rigid pieces and clamps

@@ -34,9 +34,10 @@ def fill_starts(search: Search) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
     The solutions are written to `LineProblem.starts`. Three rows are for a line clear of the
-    seabed, and three for a line with a touchdown. Each three rows hold the unknown, the slope of
-    the miss, and the knockdown [m]. The unknown is the depth of the free end [m] or, if negative,
-    the used fraction of buoyancy minus one. The last row holds the results of `lean_of`.
+    seabed, and three for a line with a touchdown. In each of these two groups, the rows hold the
+    unknown, the slope of the miss, and the knockdown [m]. The unknown is the depth of the free end
+    [m] or, if negative, the used fraction of buoyancy minus one. The last row holds the results of
+    `lean_of`.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts

@@ -80,7 +80,10 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state for the full, half and twice the cut-off frequency."""
+    """Responses to a sea state, computed up to three cut-off frequencies of the waves.
+
+    These are the cut-off frequency itself, half this frequency, and twice this frequency.
+    """
 
     full: WaveResponse
     half: WaveResponse
