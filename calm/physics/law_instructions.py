@@ -19,7 +19,7 @@ from calm.physics.law_kinds import (
 
 
 class Number(NamedTuple):
-    """A number in LLVM's notation, and its value if this is a constant."""
+    """A number in LLVM's notation. For a constant, `known` is the value."""
 
     kind: str
     text: str
@@ -108,7 +108,7 @@ class Instructions:
         return name
 
     def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return the address that is `place` times `unit` numbers after an address."""
+        """Return the address that is `place` times `unit` words of eight bytes after an address."""
         if place in (0, "0"):
             return address
         name = self.fresh()

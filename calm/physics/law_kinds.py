@@ -38,7 +38,7 @@ NOTHING = Row(None, ())
 
 @cache
 def size_of(kind: Any) -> int:
-    """Return how many numbers of eight bytes a value of a given kind takes."""
+    """Return the number of eight-byte words that a value of a given kind takes."""
     if isinstance(kind, Row):
         return sum(map(size_of, kind.members))
     return 1 + kind.dimensions if isinstance(kind, Array) else 1
@@ -46,7 +46,7 @@ def size_of(kind: Any) -> int:
 
 @cache
 def places_of(row: Row) -> tuple[int, ...]:
-    """Return the position of every member in a row, counted in numbers of eight bytes."""
+    """Return the position of every member in a row, counted in words of eight bytes."""
     return tuple(sum(map(size_of, row.members[:i])) for i in range(len(row.members)))
 
 

@@ -136,7 +136,7 @@ class Trace:
 
     Attributes
     ----------
-    position : (k+1, 3) position [m]
+    position : (k+1, 3) position of each node [m]
     force : (k+1, 3) force above each node [N]
     piece, clamp : (k,) indices of the piece and the clamp of each element; the clamp is -1 if the
         element is part of the piece itself

@@ -42,8 +42,8 @@ def mean_curve_strain(
 ) -> float:
     """Return the mean strain of a rope if its tension varies by ± `half` about `tension` [N].
 
-    The tension varies linearly. The mean is exact, since two Gauss points are used between each
-    pair of knots in this range. `first` and `end` are as in `curve_strain`.
+    The tension varies linearly. The mean is exact, since two Gauss points are used in each interval
+    between knots. `first` and `end` are as in `curve_strain`.
     """
     half = abs(half)
     low, high = tension - half, tension + half

@@ -316,7 +316,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return the outcome of the audit, and the residual that exceeds its limit (0 if none does)."""
+    """Return the outcome of the audit, and the residual that exceeds its limit, if any (else 0)."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:

@@ -97,7 +97,7 @@ def start_of(search: Search, lands: bool) -> Root:
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Return whether an equilibrium found from a start value is certainly the highest one.
+    """Return whether an equilibrium near its start value is surely the highest equilibrium.
 
     This is certain if the current does not grow significantly with depth. Otherwise the knockdown
     with the free end at shallower depths is estimated, and compared with the knockdown found.

@@ -77,7 +77,7 @@ _paces = {solver: _Pace(solver) for solver in CompiledPart}
 
 
 def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
-    """Announce how many lines are about to be solved, so that compilation starts if it pays."""
+    """Announce a number of lines to be solved, so that compilation can start if it pays."""
     pace = _paces[solver]
     pace.announced = pace.solved + lines
     if _may_choose():
