@@ -125,7 +125,7 @@ def materials_in(text: str | None) -> tuple[Material, ...]:
 
 
 def density_of(text: str | None) -> float | None:
-    """Return the density of the single material named in a text [kg/m³].
+    """Return the density of the material that a text names [kg/m³].
 
     Return None if the text names no material, or several materials with different densities.
     """

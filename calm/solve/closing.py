@@ -160,8 +160,7 @@ def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, floa
 
     Returns
     -------
-    Depth of the free end [m], and the length [m] at the free end that is above the surface (0 if
-    there is none).
+    Depth of the free end [m], and the length of line above the surface at the free end [m], or 0.
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -353,8 +352,8 @@ def near_root(
     """Find the root of the miss near a known root.
 
     If no root is found because the free end reaches the surface, the search continues with the used
-    fraction of the top float's buoyancy as the unknown, and vice versa. The last march is the march
-    at the root.
+    fraction of the top float's buoyancy as the unknown. If the top float submerges, the search
+    continues with the depth of the free end. The last march is the march at the root.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are about to be solved.
+    """Count lines that are about to be solved, which may start compilation of the solver.
 
     Parameters
     ----------
