@@ -92,14 +92,19 @@ class Addressed:
 
 _entries: dict[Law, Any] = {}
 _lock = Lock()
+if hasattr(os, "register_at_fork"):  # a child process must not inherit a compilation under way
+    os.register_at_fork(
+        before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_lock.release
+    )
 
 
 def entry(law: Law, *arguments: Any) -> Compiled:
     """Return a law in compiled form, for arguments of the same types as the given arguments."""
     with _lock:
         if law not in _entries:
-            result = kind_asked(get_type_hints(law).get("return"))
-            _entries[law] = Compiled(law, tuple(map(kind_of, arguments)), result)
+            *hints, result = get_type_hints(law).values()
+            kinds = tuple(map(kind_of, arguments, hints))
+            _entries[law] = Compiled(law, kinds, kind_asked(result))
         found: Compiled = _entries[law]
         return found
 
@@ -136,10 +141,7 @@ def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
     target = _machine()
     folder, name = cache_folder(), f"{law.__module__}.{law.__qualname__}"
     file = folder and folder / f"{name}-{_short_name(kinds)}-{_machine_name()}.o"
-    try:
-        code = file.read_bytes() if file else b""
-    except OSError:
-        code = b""
+    code = _stored(file) if file else b""
     if not code:
         for listener in on_compilation:
             listener()
@@ -168,13 +170,37 @@ on_compilation: list[Callable[[], None]] = []
 
 
 def _store(file: Path, code: bytes) -> None:
-    """Write machine code to the cache if possible, completely or not at all."""
+    """Write machine code and its seal to the cache if possible, completely or not at all."""
     try:
         with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as whole:
-            whole.write(code)
-        os.replace(whole.name, file)
+            try:
+                whole.write(_seal(file, code) + code)
+                whole.close()
+                os.replace(whole.name, file)
+            except OSError:
+                os.unlink(whole.name)
     except OSError:
         return
+
+
+def _stored(file: Path) -> bytes:
+    """Return the machine code in a file of the cache; nothing if it is not what was written, since
+    LLVM ends the process at some damaged files.
+    """
+    try:
+        whole = file.read_bytes()
+    except OSError:
+        return b""
+    code = whole[_SEAL:]
+    return code if whole[:_SEAL] == _seal(file, code) else b""
+
+
+_SEAL = hashlib.sha256().digest_size
+
+
+def _seal(file: Path, code: bytes) -> bytes:
+    """Return a hash of machine code and of the name of its file."""
+    return hashlib.sha256(file.name.encode() + code).digest()
 
 
 @cache
@@ -245,12 +271,12 @@ def cache_folder() -> Path | None:
     cache. Every version of the sources has its own subfolder.
     """
     given = os.environ.get("CALM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # its old name
-    folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
     try:
+        folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             return folder
-    except OSError:
+    except (OSError, RuntimeError):  # the second if there is no home folder
         return None
 
 

@@ -167,8 +167,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
                     first, up, hanging = stage + 1, left - weight, 0.0
         up += along
     set_row(loads, 0, pull_of(up, east, north))
-    replaced = stages[first - 1]
-    kept = Stage(replaced.kind, replaced.first, replaced.size, replaced.length)
+    kept = stages[first - 1]
     set_row(stages, first - 1, Stage(ROD, 0, 1, 0.0))
     course = Course(stages[first - 1 : leg.stages], loads, cables, knots, vibration, 0)
     failure = march_suspended(net, i, course, how, work, -height)
