@@ -124,7 +124,7 @@ class Program:
         self.declared: dict[str, str] = {}
 
     def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
-        """Translate a law for given argument kinds. Return its symbol, and the kind of the result."""
+        """Translate a law for given argument kinds. Return its symbol and the result's kind."""
         if (law, kinds) in self.open:
             raise TypeError(f"{law.__name__} calls itself")
         if (law, kinds) not in self.laws:
