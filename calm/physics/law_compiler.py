@@ -110,7 +110,10 @@ def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
 
 
 class Program:
-    """The instructions of a law and of all laws that it calls, each once for kinds of arguments."""
+    """LLVM program for a physics function ("law") and for all laws that it calls.
+
+    A law that is called with several combinations of argument kinds is translated once for each.
+    """
 
     def __init__(self, inlined: set[Law]) -> None:
         self.inlined = inlined
@@ -121,7 +124,7 @@ class Program:
         self.declared: dict[str, str] = {}
 
     def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
-        """Return the symbol of a law for kinds of arguments, and the kind of its result."""
+        """Translate a law for given argument kinds. Return its symbol and the result's kind."""
         if (law, kinds) in self.open:
             raise TypeError(f"{law.__name__} calls itself")
         if (law, kinds) not in self.laws:
@@ -138,8 +141,10 @@ class Program:
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function with two arguments: the address of the law's arguments, and the address to
-        which it writes a result of the wanted kind.
+        """Add a function that calls a law with arguments and result in memory.
+
+        The function has two arguments. The first is the address of the law's arguments. The second
+        is the address to which the result is written, converted to the kind `wanted`.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)
@@ -152,7 +157,10 @@ class Program:
         )
 
     def add_function(self, symbol: str, law: Law, task: Any) -> None:
-        """Add a function of the address of a named tuple and of a number, that returns a number."""
+        """Add a function that calls a law with a named tuple and a number, and returns a number.
+
+        The named tuple is passed by its address.
+        """
         entry = Instructions(self)
         _, result = entry.call_law(law, [Held(task, "%task"), Number(REAL, "%x")])
         value = entry.as_kind(result, REAL).text
@@ -163,15 +171,15 @@ class Program:
         )
 
     def declare(self, name: str, numbers: int) -> None:
-        """Declare a function of numbers that is defined elsewhere."""
+        """Declare an external function of `numbers` real arguments that returns a real number."""
         self.declared[name] = f'declare double @"{name}"({", ".join(["double"] * numbers)})'
 
     def constant(self, values: tuple[float, ...]) -> str:
-        """Return the symbol of a table of numbers."""
+        """Add a constant table of numbers to the program if needed, and return its symbol."""
         return self.constants.setdefault(values, f"@table.{len(self.constants)}")
 
     def text(self) -> str:
-        """Return the whole program."""
+        """Return the whole program as text in LLVM's language."""
         tables = [
             f"{symbol} = private constant [{len(values)} x double] "
             f"[{', '.join(f'double {number_of(value).text}' for value in values)}]"
@@ -183,7 +191,7 @@ class Program:
 
 
 class Uncompilable(TypeError):
-    """Error of a function that is not a law."""
+    """Raised if a function uses Python that a law must not use."""
 
 
 RESULT = "return"
