@@ -91,8 +91,8 @@ def read_designs(
     if problems:
         raise InputError(list(problems))
     if not by_path:
-        files = ", ".join(map(str, tows))
-        raise UsageError(f"{command} is only for moorings; these are tows: {files}")
+        named = ", ".join(map(str, tows))
+        raise UsageError(f"{command} is only for moorings; these are tows: {named}")
     for its in by_path.values():
         _refuse_one_name(its)
     called = _unique_names({path: its[0].file.name for path, its in by_path.items()})

@@ -36,7 +36,9 @@ def test_a_release_laid_down_by_the_current_is_named(tmp_path: Path) -> None:
     assert caught.value.message.startswith("The current puts release on the seabed")
     heavy = LAID_DOWN.replace("buoyancy: 1000 N", "buoyancy: 700 N")
     (tmp_path / "m.yaml").write_text(heavy)
-    with pytest.raises(NoEquilibrium, match="700 N net, weight of the other pieces in water 780"):
+    with pytest.raises(
+        NoEquilibrium, match="is 700 N, the weight of the other pieces in water is 780"
+    ):
         calm.load(tmp_path / "m.yaml").solve()
 
 

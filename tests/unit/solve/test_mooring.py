@@ -122,7 +122,7 @@ def test_the_highest_of_several_equilibria_is_found_and_another_is_told():
 def test_nothing_lifts_the_line():
     error = refused(line(rigid(1.0, -10.0), rope(50, weight=10)), water(100))
     assert error.status == "no-equilibrium"
-    assert "buoyant pieces 0 N net" in error.message
+    assert "buoyancy of the buoyant pieces is 0 N" in error.message
     assert "510 N" in error.message
 
 
@@ -131,7 +131,7 @@ def test_too_little_buoyancy_for_what_hangs_above_a_lower_float():
     sunk = line(rigid(1.0, 100.0), rigid(1.0, -900.0), rope(20), rigid(1.0, 300.0), rope(30))
     error = refused(sunk, water(100))
     assert error.status == "no-equilibrium"
-    assert "buoyant pieces 400 N net" in error.message
+    assert "buoyancy of the buoyant pieces is 400 N" in error.message
     assert "900 N" in error.message
 
 
