@@ -54,7 +54,7 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
 def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[1, 2]) -> Floats:
     """Return the angle α_d at which a towed cable is straight [rad].
 
-    For D = 1, tan α_d = μg/(k_n V).
+    If the drag is proportional to the speed V (D = 1), tan α_d = μg/(k_n V).
 
     Parameters
     ----------

@@ -245,9 +245,10 @@ def at_most(
     *,
     least: bool = False,
 ) -> Verdict:
-    """Create the verdict on a value that has an upper limit.
+    """Create the verdict on a value with a limit.
 
-    If `least` is true, the limit is a lower limit. `beyond` is the state if the limit is exceeded.
+    The limit is an upper limit, or a lower limit if `least` is true. `beyond` is the state of the
+    verdict if the value violates the limit.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit

@@ -198,8 +198,8 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 class EstimatedFigure(Model):
     """Estimate of a component value that no source publishes, with its lower bound `low`.
 
-    `low_in_waves` is a smaller lower bound for lines in waves, given if published values apply
-    only to steady loads.
+    `low_in_waves` is a smaller lower bound for lines in waves. It is given if the values from which
+    the estimate is made apply only to steady loads.
     """
 
     quantity: Literal[

@@ -180,7 +180,10 @@ def _serial(equipment: Equipment) -> str | None:
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """Return a copy of a piece and its clamps with a new place and the serial numbers for it."""
+    """Return a copy of a piece at another place in the file.
+
+    The copy and its clamps get the serial numbers that belong to that place.
+    """
 
     def moved(clamp: Clamp) -> Clamp:
         own = replace(place, clamp=clamp.place.clamp)

@@ -76,7 +76,9 @@ def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float
 
 @within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Return the length of unstretched cable with the same drag in reference water [m].
+    """Return the drag area of a segment, as a length of unstretched cable [m].
+
+    This length of cable has the same drag in reference water as the stretched segment.
 
     If the cable keeps its volume (thinning ½), stretch increases the drag by the factor √(1 +
     strain). If thinning is 0, stretch does not change the drag.

@@ -230,8 +230,9 @@ UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, na
 def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
     """Compute the draft of a float at the surface, and the forces on the float.
 
-    The displaced water carries the weight of the float and the pull of the line. The immersed
-    fraction of the volume is therefore (weight + used · lift)/(weight + lift).
+    The displaced water carries the weight of the float and the pull of the line. The pull is the
+    fraction `used` of the net buoyancy `lift` of the immersed float. The immersed fraction of the
+    volume is therefore (weight + used · lift)/(weight + lift).
 
     Parameters
     ----------

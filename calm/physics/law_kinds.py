@@ -46,7 +46,7 @@ def size_of(kind: Any) -> int:
 
 @cache
 def places_of(row: Row) -> tuple[int, ...]:
-    """Return the position of every member in a row, counted in words of eight bytes."""
+    """Return the offset of each member from the start of its row, in words of eight bytes."""
     return tuple(sum(map(size_of, row.members[:i])) for i in range(len(row.members)))
 
 

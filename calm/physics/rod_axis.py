@@ -274,9 +274,9 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the ratio of the normal drag on a load to the drag with constant coefficients.
+    """Return the factor by which the normal drag on a body differs from constant coefficients.
 
-    The unit axis of the load is t. The viscosity is in m²/s.
+    (tx, ty, tz) is the unit vector along the axis of the body. The viscosity is in m²/s.
     """
     if load.diameter == 0.0:
         return 1.0
@@ -292,7 +292,7 @@ def force_at(
 ) -> Vector:
     """Return the result of `load_force` for the water at a depth [m].
 
-    The search for the interval of the water starts at interval `level`.
+    The search for the depth interval of the water profile starts at interval `level`.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     varied = 1.0

@@ -46,7 +46,7 @@ class QuantityTable:
     problems: list[Problem]
 
     def refuse(self, place: Sequence[str | int], message: str) -> None:
-        """Add a mistake at a place in the table."""
+        """Record a message about a mistake at a place in the table."""
         self.problems.append(self.report(place, message))
 
 

@@ -36,11 +36,10 @@ def listed_findings(
 ) -> Iterator[tuple[Finding, bool]]:
     """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
-    Among several findings, the finding with the largest utilisation governs. The list contains the
-    governing finding of each rule; its flag is true. The list also contains the governing finding
-    of each rule on each component over all environments, unless this finding passes with a
-    utilisation below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment.
-    A cluster of equal floats counts as a single component. If `every` is true, all findings of all
+    Among several findings, the finding with the largest utilisation governs. The list contains:
+    (1) the governing finding of each rule, with the flag true; (2) the governing finding of each
+    rule on each component over all environments, unless it passes with a utilisation below
+    `MUCH_USED`; (3) all failures, unknowns and warnings in each environment. A cluster of equal floats counts as a single component. If `every` is true, all findings of all
     situations are listed.
     """
     found = [*assessment.every_finding()]

@@ -156,8 +156,8 @@ _BAR, _BEYOND = 10, 3  # characters of a bar up to the limit, and beyond it
 def bar_text(share: float, state: State | None) -> str:
     """Draw a fraction of a limit as a bar of text, with a mark at the limit.
 
-    Each character stands for a tenth of the limit, rounded up. A bar that exceeds the limit is
-    hatched, unless the state is a failure.
+    Each character stands for a tenth of the limit; the number of characters is rounded up. The bar
+    is hatched if the fraction is above 1 but the finding with this state is not a failure.
     """
     tenths = min(ceil(_BAR * share - 1e-9), _BAR + _BEYOND)
     sign = "▒" if tenths > _BAR and state is not State.FAIL else "█"

@@ -477,7 +477,7 @@ def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:
-    """Return the height of the top of the float `lower` above the surface, at a root [m]."""
+    """Return the height [m] of the top of float number `lower` above the surface, at a root."""
     miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
     return nan if isnan(miss) else search.problem.work.left[Z]
 

@@ -148,8 +148,8 @@ class SearchTask(NamedTuple):
 def run_search(task: SearchTask, first: float) -> float:
     """Run a search, write its result to the work arrays of the problem, and return the outcome.
 
-    If `first` is above 0, solve the line in uniform currents instead (see `fill_starts`), which a
-    batch needs before its first profile.
+    If `first` is above 0, solve the line in uniform currents instead (see `fill_starts`). A batch
+    needs these solutions before its first profile.
     """
     if first > 0.0:
         return float(fill_starts(task.search))

@@ -33,11 +33,11 @@ LEAST_CURRENT_GROWTH = 0.25
 def fill_starts(search: Search) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
-    The solutions are written to `LineProblem.starts`. Three rows are for a line clear of the
-    seabed, and three for a line with a touchdown. In each of these two groups, the rows hold the
-    unknown, the slope of the miss, and the knockdown [m]. The unknown is the depth of the free end
-    [m] or, if negative, the used fraction of buoyancy minus one. The last row holds the results of
-    `lean_of`.
+    The solutions are written to the seven rows of `LineProblem.starts`: three rows for a line clear
+    of the seabed, three for a line with a touchdown, and one for the results of `lean_of`. The
+    three rows are the root of the search, the slope of the closing error at the root, and the
+    knockdown [m]. A root of at least 0 is the depth of the free end [m]; a negative root is the
+    used fraction of buoyancy minus one.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts

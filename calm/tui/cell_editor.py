@@ -152,7 +152,8 @@ class CellEditor(field.ScrolledEntry):
     def open(self, text: str, check: Check, *, begun: bool = False) -> None:
         """Open the editor with a text.
 
-        The first key replaces the text. If the user typed the text (`begun`), the key is appended.
+        The next key replaces the text. If the text is the key that opened the editor (`begun`), the
+        next key is appended to it.
         """
         self._check, self._before = check, "" if begun else text
         self.select_on_focus = not begun
