@@ -22,7 +22,7 @@ HEAD = """# The command line
 
 Printed by `python docs/generate_command_line.py`; do not edit.
 
-Data goes to the standard output, narration to the standard error.
+Results go to standard output, messages to standard error.
 """
 
 

@@ -81,8 +81,8 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
         number("widened", lambda one: f"{one[1].beyond:.2f}"),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
-        "the rest of the variance is uncorrelated. Widened: factor on the bands beyond the "
-        "instruments, from a test that omits each instrument in turn.",
+        "the rest of the variance is uncorrelated. Widened: factor by which the bands are widened "
+        "beyond the instruments, from a test that omits each instrument in turn.",
     )
 
 

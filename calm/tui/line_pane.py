@@ -215,7 +215,9 @@ class LinePane(LineSearch):
             text = "\n".join(f"{each.where} refers to {each.text}" for each in named)
             answers = [
                 Answer("o", "the original only", duplicate),
-                Answer("b", "both (`NAME *`) in accepted findings", partial(duplicate, named)),
+                Answer(
+                    "b", "both; accepted findings then name `NAME *`", partial(duplicate, named)
+                ),
             ]
             choose(self.app, Question("Which pieces should these keys refer to?", text, answers))
         elif chosen:
