@@ -39,8 +39,9 @@ def listed_findings(
     Among several findings, the finding with the largest utilisation governs. The list contains:
     (1) the governing finding of each rule, with the flag true; (2) the governing finding of each
     rule on each component over all environments, unless it passes with a utilisation below
-    `MUCH_USED`; (3) all failures, unknowns and warnings in each environment. A cluster of equal floats counts as a single component. If `every` is true, all findings of all
-    situations are listed.
+    `MUCH_USED`; (3) all failures, unknowns and warnings in each environment. A cluster of
+    equal floats counts as a single component. If `every` is true, all findings of all situations
+    are listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
