@@ -125,10 +125,12 @@ def check_catalogue(
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
             if definition.prefer not in known or definition.prefer == identifier:
-                message = f"prefers `{definition.prefer}`, which is in no catalogue"
+                message = f"has `prefer: {definition.prefer}`, but no catalogue has this component"
                 findings.append(CatalogueFinding(identifier, message))
             elif other is not None and other.prefer is not None:
-                message = f"prefers `{definition.prefer}`, which itself prefers `{other.prefer}`"
+                message = (
+                    f"has `prefer: {definition.prefer}`, which itself has `prefer: {other.prefer}`"
+                )
                 findings.append(CatalogueFinding(identifier, message))
     return findings
 
@@ -339,7 +341,7 @@ def figures(handling: Handling) -> Iterator[Verdict]:
                 f"{key.source} has {limit_value_text(key, key.default)}."
             )
             yield unknown(None, message, "Add its `source`, or remove the value.")
-    remedy = "Check its values and their units."
+    remedy = "Check the values of the component and their units."
     for part in parts_of(handling.leg.file.pieces):
         for state, found in (
             (State.FAIL, impossible),

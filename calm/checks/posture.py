@@ -66,7 +66,7 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
 
     Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 for a single-point
     Doppler current meter, 45 for a release, and 10 for a sediment trap. The limit for an ADCP is 20
-    degrees, and its data are doubtful above 15.
+    degrees, and its data are unreliable above 15.
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -82,7 +82,9 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
             yield Criterion(part, "tilt", warned, words, beyond=State.WARN)
 
 
-_STRAIGHTER = "Add buoyancy above it, or move it to a more upright part of the line."
+_STRAIGHTER = (
+    "Add buoyancy above this part, or move the part to a more upright position on the line."
+)
 THE_DESIGNS = "The design's own `maximum_tilt`"
 
 
@@ -91,7 +93,10 @@ def _tilt_words(
 ) -> tuple[str, str]:
     tilt = f"Tilt of {part.label} is {say('tilt', leaning)}"
     if limit is None:
-        return f"{tilt}; its limit is unknown.", "Set its `max_tilt`, or `90 deg` if it has none."
+        return (
+            f"{tilt}; its limit is unknown.",
+            "Set its `max_tilt`, or set it to `90 deg` if the part has no limit.",
+        )
     return f"{tilt}; the limit is {say('tilt', limit)}.", _STRAIGHTER
 
 
@@ -99,7 +104,7 @@ def _doubtful_words(
     part: JudgedPart, warned: float, leaning: float, _: LegResult
 ) -> tuple[str, str]:
     tilt = f"Tilt of {part.label} is {say('tilt', leaning)}"
-    return f"{tilt}; above {say('tilt', warned)} its data are doubtful.", _STRAIGHTER
+    return f"{tilt}; above {say('tilt', warned)} its data are unreliable.", _STRAIGHTER
 
 
 @criteria("depth-rating")
@@ -164,8 +169,8 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
             )
             yield unknown(
                 piece,
-                f"{piece.label} is {component.material} of unknown stiffness and assumed "
-                f"inextensible. It {could}, so depths above it are unknown.",
+                f"{piece.label} is {component.material} of unknown stiffness and is assumed "
+                f"inextensible. The rope {could}, so depths above it are unknown.",
                 "Set its `stiffness` or `elongation`.",
                 by,
                 lacks="stiffness",
@@ -175,8 +180,8 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
         if piece.measured_load and bears and piece.measured_load > bears:
             what = "its working load" if component.working_load else "a fifth of its breaking load"
             message = (
-                f"{piece.label} is cut to length under {say('load', piece.measured_load)}, "
-                f"more than {what} ({say('load', bears)})."
+                f"{piece.label} is to be cut to length under a load of "
+                f"{say('load', piece.measured_load)}; this exceeds {what}, {say('load', bears)}."
             )
             remedy = "Check the load of its `length_at`: ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)
@@ -247,7 +252,7 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
         if isnan(sunk):
             return (
                 "The line is slack in still water, so its knockdown has no reference.",
-                "Limit its excursion instead: `maximum_excursion`.",
+                "Set a limit for the excursion instead (`maximum_excursion`).",
             )
         return (
             f"Knockdown of the top is {say('knockdown', sunk)}; the limit is {allowed}.",

@@ -202,7 +202,7 @@ def as_deployed(design: Design) -> Design:
     """
     file = design.file
     if file.deployed is None:
-        raise UsageError(f"{file.path} has no `deployed:` to compare its design with")
+        raise UsageError(f"{file.path} has no `deployed:` section to compare with its design")
     return Design(_deployed_file(design.legs[0].cut(file)))
 
 
@@ -263,8 +263,8 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     direction = "deeper" if moved > 0.0 else "shallower"
     message = (
         f"Deployed in {say('depth', depth)} of water instead of {say('depth', designed)}: "
-        f"{what} is {say('depth', abs(moved))} {direction} than designed; the error of a sounding "
-        f"is {say('depth', limit)}."
+        f"{what} is {say('depth', abs(moved))} {direction} than designed; a sounding may be in "
+        f"error by {say('depth', limit)}."
     )
     remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)

@@ -120,7 +120,7 @@ def _strength_words(
     else:
         allowed = (
             f"its breaking load of {say('load', component.breaking_load)} "
-            f"over {factor:g} allows {say('load', limit)}"
+            f"divided by {factor:g} allows {say('load', limit)}"
         )
     wanted = f"a breaking load of at least {say('load', factor * tension)}"
     if not is_synthetic(component):
@@ -328,7 +328,7 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
         if limit is None:
             return f"{load}; {_UNKNOWN_WEIGHT}.", _SET_WEIGHT
         return (
-            f"{load}; the anchor's weight in water over {factor:g} is {say('load', limit)}.",
+            f"{load}; the anchor's weight in water divided by {factor:g} is {say('load', limit)}.",
             _heavier(leg, result.anchor_load.required_weight),
         )
 

@@ -146,7 +146,7 @@ def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
         return ""
     tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
     low, high = (say("load", each) for each in tensions)
-    return f" Measurements at sea (SOFS) imply {low} to {high}."
+    return f" Measurements at sea (SOFS) imply a tension of {low} to {high}."
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:

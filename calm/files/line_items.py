@@ -113,7 +113,7 @@ class LineReader:
         else:
             once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
-            item.refuse(("count",), f"{count} times makes more than {MOST_PIECES} pieces")
+            item.refuse(("count",), f"a count of {count} makes more than {MOST_PIECES} pieces")
             return ()
         if count > 1:  # several pieces cannot have the same planned depth
             once = tuple(map(unplanned, once))
@@ -203,7 +203,7 @@ class LineReader:
             return math.nan, 0.0
         breaking = component.breaking_load
         if breaking is not None and measured.load > breaking:
-            message = f"`load` is above the breaking load of {breaking:g} N"
+            message = f"`load` must not exceed the breaking load of {breaking:g} N"
             item.refuse(("length_at", "load"), message)
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
@@ -314,7 +314,7 @@ class LineReader:
         total = firsts.pop()
         if len(numbers) != total * count:
             named = ", ".join(dict.fromkeys(one.use for one in own)) or "no part"
-            message = f"`serial` has {len(numbers)} of the {total * count} numbers of {named}"
+            message = f"`serial` has {len(numbers)} numbers; {named} needs {total * count}"
             if not own:
                 message = "`serial`: no part is an instrument, a release or a float"
             item.refuse(("serial",), message)
@@ -354,8 +354,10 @@ class LineReader:
             source = (given.get("sources") or {}).get(key) or given.get("source")
             filled = tuple(_with_figure(piece, key, value, source) for piece in pieces)
             if filled == pieces and key in item.data:
-                message = f"no part of `{entry.id}` lacks a `{key}`"
-                item.refuse((key,), f"{message}; use its parts to change one", key=True)
+                message = f"all parts of `{entry.id}` already have a `{key}`"
+                item.refuse(
+                    (key,), f"{message}; to change one, list the parts separately", key=True
+                )
             pieces = filled
         return pieces
 

@@ -283,5 +283,8 @@ def check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
     """Check that at most one piece is cut to fit."""
     fits = [piece for piece in pieces if piece.length is None]
     for piece in fits[1:]:
-        message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
+        message = (
+            "only one piece can be cut to fit; the file already has one, on its "
+            f"line {fits[0].line}"
+        )
         top.refuse_at(piece.line, piece.column, message)

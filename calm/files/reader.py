@@ -278,7 +278,10 @@ def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
         return
     for piece in pieces[:-1]:
         if isinstance(piece.component, Anchor):
-            message = f"anchor `{piece.use}` is not the last item; a line has one, at its end"
+            message = (
+                f"anchor `{piece.use}` must be the last item; a line has only one "
+                "anchor, at its end"
+            )
             top.refuse_at(piece.line, piece.column, message)
     last_is_known = pieces[-1].place.item == len(top.data["line"]) - 1
     if last_is_known and not _anchored(pieces):

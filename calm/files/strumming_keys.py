@@ -60,7 +60,7 @@ class BourgetMarichalKeys(Model):
         "the law", "bourget-marichal", default="bourget-marichal"
     )
     a1: Annotated[float, _NUMBER] = described(
-        "amplitude of the vibration over the diameter of the cable, for φ = 0",
+        "amplitude of the vibration divided by the cable diameter, for φ = 0",
         0.45,
         default=BourgetMarichal.a1,
     )
@@ -74,7 +74,7 @@ class BourgetMarichalKeys(Model):
         "Cn of the cable at rest", 1.2, default=BourgetMarichal.rest
     )
     strouhal: Annotated[float, _FACTOR] = described(
-        "frequency of the cable times diameter over the speed across it",
+        "(strumming frequency × cable diameter) / flow speed normal to the cable",
         0.2,
         default=BourgetMarichal.strouhal,
     )

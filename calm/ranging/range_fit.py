@@ -282,8 +282,8 @@ def _weighed(
         undecided = "two positions fit, {:.0f} and {:.0f} m from the planned position"
     elif square_sums[order[0]] > 4.0 * max(square_sums[order[1]], least):
         undecided = (
-            "two positions remain, {:.0f} and {:.0f} m from the planned one; the nearer one fits "
-            "worse"
+            "two positions remain, {:.0f} and {:.0f} m from the planned position; the nearer "
+            "of them fits worse"
         )
     return first, second, undecided.format(*(away[at] for at in order))
 

@@ -93,7 +93,7 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
         if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_DIRECTION:
             yield (
                 f"the current at {say('depth', float(depth[i]))} is opposite to those above and "
-                "below it, with a speed between theirs: is its direction, or a sign, wrong?"
+                "below it, with a speed between theirs; is its direction, or a sign, wrong?"
             )
 
 
@@ -121,6 +121,6 @@ def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterato
         if strongest > limit:
             yield (
                 f"the current reaches {say('speed', strongest)} {where}; measured currents there "
-                f"are below {limit:g} m/s: cm/s, or knots, written as m/s?"
+                f"are below {limit:g} m/s: were cm/s or knots written as m/s?"
             )
             return

@@ -196,12 +196,16 @@ def _impossible(height: float, period: float) -> str | None:
     """Return a message if a height [m] and peak period [s] are impossible or unsupported."""
     length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
-        return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
+        return (
+            f"{waves}: the wave height must not exceed {HIGHEST:g} m, nor the period "
+            f"{LONGEST_PERIOD:g} s"
+        )
     if period < SHORTEST_PERIOD:
         return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
         highest = (
-            f"with a length of {length:.1f} m, they can be {STEEPEST * length:.2f} m high at most"
+            f"with a wavelength of {length:.1f} m, they can be {STEEPEST * length:.2f} m high "
+            "at most"
         )
         return f"{waves} would break: {highest}"
     return None
@@ -257,7 +261,9 @@ def _most_probable(height: float) -> SeaState:
     original article. Raise UsageError if the height exceeds that of any real sea.
     """
     if height > HIGHEST:
-        raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
+        raise UsageError(
+            f"waves of {height:g} m are not possible; the wave height must not exceed {HIGHEST:g} m"
+        )
     swell = 0.84 * height, 2.0 * pi / (0.70 * exp(-0.046 * height)), 3.0
     sea = 0.54 * height, 2.0 * pi / (1.15 * exp(-0.039 * height)), 1.54 * exp(-0.062 * height)
     form = ochi_hubble((swell, sea))
@@ -307,7 +313,7 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     if wrong is None and beyond > BEYOND:
         wrong = f"{beyond:.0%} of its variance is above {LARGEST_FREQUENCY / (2.0 * pi):.2g} Hz"
     if density[-1] > CUT_OFF * density.max():
-        wrong = wrong or f"it is cut off at {frequency[-1]:.3g} Hz, near its peak"
+        wrong = wrong or f"the spectrum is cut off at {frequency[-1]:.3g} Hz, near its peak"
     if wrong is not None:
         raise refused(path, f"{wrong}; check its units")
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]

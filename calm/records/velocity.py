@@ -186,10 +186,13 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
     if regular and _ALONG_THE_GRID.get(own) is sought:
         sense = "east" if sought is _EAST else "north"
         notes.append(
-            f"`{name}`, {own}, is used as {sense}ward, because the grid runs along latitudes"
+            f"`{name}`, with the standard name {own}, is used as {sense}ward, because the grid "
+            "runs along latitudes"
         )
     elif own and own not in sought.standard and not _only_marked(own, sought):
-        raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
+        raise UnreadableError(
+            f"`{name}` has the standard name {own} instead of {sought.standard[0]}"
+        )
     return _checked(dataset, name)
 
 

@@ -359,7 +359,7 @@ MISTAKES = {
     "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "exactly one"),
     "      - {use: anchor-wheels-4}\n": ("", "`bottom` is missing"),
     "      - {use: release-ar861}\n": (
-        "      - {use: anchor-wheels-1}\n", "is not the last item of its leg"),
+        "      - {use: anchor-wheels-1}\n", "must be the last item of its leg"),
     "length: 60 m": ("length: fit, top_depth: 100 m", "cannot be cut to fit"),
     "legs:\n": ("nodes: {A: {}, X: {}}\nlegs:\n", "no leg joins at node `X`"),
     "name: Two floats and a pennant\n": (
@@ -912,7 +912,9 @@ def test_a_grid_that_cannot_be_used_is_a_mistake(tmp_path: Path, text: str, told
 
 def test_a_leg_from_a_node_to_itself_is_a_mistake(tmp_path: Path) -> None:
     text = NET.replace("  main:\n", "  main:\n    top: {join: A}\n")
-    with pytest.raises(InputError, match="both ends join at `A`"):
+    with pytest.raises(
+        InputError, match="the two ends of a leg must not join at the same node, `A`"
+    ):
         load(tmp_path / "net.yaml", text=text)
 
 

@@ -223,7 +223,7 @@ def test_positions_without_letters_have_those_that_are_given(calm, ranges, hemis
     assert json.loads(signed.out)["longitude"] == pytest.approx(-5.2, abs=1e-4)
     for wrong in ("S,S", "X", "S,N"):
         done = calm("locate", ranges(text), "--hemisphere", wrong)
-        assert done.code == 2 and "is no pair such as S,W" in done.err
+        assert done.code == 2 and "is not a pair of letters such as S,W" in done.err
 
 
 def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_mooring, folder):
@@ -306,7 +306,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "is no number",
             "must be above 0",
             "km from the others",
-            "beyond the reach of a transponder",
+            "beyond the range of a transponder",
         ],
         strict=True,
     ):
@@ -344,7 +344,7 @@ def test_what_was_not_answered_and_what_repeats_is_left_out(calm, ranges):
     text = "\n".join(["# night of the 3rd", *lines[:6], lines[1], "48.3,-5.2,nan", "48.3,-5.2,"])
     done = calm("locate", ranges(text), "--json", "-")
     assert done.code == 0
-    assert "line 8 repeats line 3 and was ignored" in done.err
+    assert "line 8 of the file repeats line 3 and was ignored" in done.err
     assert "rows without a reply were ignored: lines 9, 10" in done.err
     assert json.loads(done.out)["lines"] == [3, 4, 5, 6, 7]
 

@@ -169,7 +169,7 @@ class CableLayout:
                 if start <= height < end or (item is made[-1] and height >= end):
                     item.clamp(clamped, min(max(end - height, 0.0), item.extent))
             item.guess = (
-                "its drag is that at its depth in the upright line" if len(made) > 1 else ""
+                "its drag was computed at its depth in the upright line" if len(made) > 1 else ""
             )
             start = end
         for key in ("cdn", "cdt"):
@@ -178,7 +178,8 @@ class CableLayout:
                 speed = f"{self._speed(lower - length / 2.0):.3g} m/s"
                 for item in made:
                     item.guess = (
-                        item.guess or f"{key} is a table over speed; this is its value at {speed}"
+                        item.guess
+                        or f"the file has a table of {key} over speed; this is the value at {speed}"
                     )
         return made
 

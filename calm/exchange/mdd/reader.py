@@ -63,7 +63,9 @@ def read_mdd(path: Path) -> model.ImportedDesign:
     except ValueError as error:
         raise refused(path, str(error)) from None
     if design.record is not None:
-        design.notes.append("The current is the first profile of the record beside this file.")
+        design.notes.append(
+            "The current is the first profile of the record in the folder of this file."
+        )
     if towed:
         _lay_tow(design, elements, variables, path)
     else:

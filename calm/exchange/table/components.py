@@ -81,7 +81,9 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
         f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces only {most / KILOGRAM_FORCE:.4g} kg"
     )
     if row.count > 1 and lift <= row.count * most:
-        row.refuse(f"one {kilograms}; if the value is for all {row.count}, name the column `total`")
+        row.refuse(
+            f"a piece {kilograms}; if the value is for all {row.count}, name the column `total`"
+        )
     else:
         row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"
 

@@ -139,7 +139,7 @@ def rows_of(
         fixed = row.is_line or row.is_anchor or row.role in ROLES or is_called(row.kind, "rigid")
         if not fixed and is_long(name, row.figure("length"), size):
             row.line = True
-            guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
+            guessed.append(model.Remark(row.where, "read as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
             remark = f"read as one piece with the values of its row, not as {several[1]} pieces"
@@ -180,7 +180,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
             several = _METRES.search(f"{column.heading} {found.rest}")
             if several and not row.is_line:
                 figure *= int(several[1])
-                row.guesses[what] = "taken for the whole piece, because it is not a line"
+                row.guesses[what] = "read as the value of the whole piece, because it is not a line"
         row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
@@ -281,9 +281,10 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
             if what == "buoyancy" and not column.whole:
                 row.guesses.setdefault(
                     what,
-                    "taken per metre, because lines of different lengths have the same value"
+                    "read as values per metre, because lines of different lengths have the same "
+                    "value"
                     if per_metre
-                    else "taken for the whole length of the line",
+                    else "read as the value of the whole length",
                 )
 
 

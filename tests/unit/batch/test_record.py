@@ -189,8 +189,8 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
             "m/s or kn?",
             "levels without a current or a depth are excluded from their profile",
             "levels above the surface are excluded",
-            "levels below the seabed are used if they have a value, to interpolate the current at "
-            "the seabed",
+            "levels below the seabed that have a value are used to interpolate the current at the "
+            "seabed",
             "the current is linear in depth between levels, and constant above the first and below "
             "the last",
         )

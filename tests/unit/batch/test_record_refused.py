@@ -73,10 +73,13 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
             "its `standard_name` should be sea_water_velocity_to_direction or "
             "sea_water_velocity_from_direction",
         ),
-        (along_a_turned_grid, "`uo` is sea_water_x_velocity, which is not eastward_sea_water_v"),
+        (
+            along_a_turned_grid,
+            "`uo` has the standard name sea_water_x_velocity instead of eastward_sea_",
+        ),
         (
             lambda: with_attributes(adcp(), "u", standard_name="eastward_wind"),
-            "`u` is eastward_wind, which is not eastward_sea_water_velocity",
+            "`u` has the standard name eastward_wind instead of eastward_sea_water_velocity",
         ),
         (
             lambda: with_attributes(adcp(), "time", units="months since 2026-03-01"),

@@ -221,7 +221,7 @@ def test_parts_of_an_assembly_must_exist():
     ("prefer", "told"),
     [
         ("nothing", "which is in no catalogue"),
-        ("x", "prefers `x`, which is in no catalogue"),
+        ("x", "prefers `x`, but no catalogue has this component"),
         ("y", "itself prefers `z`"),
     ],
 )

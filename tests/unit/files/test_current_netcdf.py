@@ -225,7 +225,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     assert problem(twice, tmp_path) == "two levels have the same depth"
     both = profile(u2=("depth", U, EAST))
     assert problem(both, tmp_path).startswith(
-        "several variables are eastward_sea_water_velocity: u2, uo; it holds "
+        "several variables have the standard name eastward_sea_water_velocity: u2, uo; it holds "
     )
 
 

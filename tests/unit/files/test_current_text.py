@@ -85,7 +85,7 @@ def test_columns_from_magnetic_north_are_turned() -> None:
     [
         ("", "the text has no numbers"),
         ("depth,u,v\n", "the text has no numbers"),
-        ("0,1,2\n3,4\n5,6,7", "line 2 has 2 values, the first 3"),
+        ("0,1,2\n3,4\n5,6,7", "line 2 of the file has 2 values, the first 3"),
     ],
 )
 def test_texts_that_are_no_table(text: str, message: str) -> None:

@@ -202,7 +202,7 @@ ONE_MISTAKE = {
     ),
     "two fits": (
         FIT + "  - {use: rope-16, length: fit, body_depth: 80 m}\n",
-        (6, 5, "only one piece can be cut to fit; line 4 has one already"),
+        (6, 5, "only one piece can be cut to fit; the file already has one, on its line 4"),
     ),
     "clamp beyond its piece": (
         changed("at: 90 m", "at: 101 m"),
@@ -379,4 +379,4 @@ def test_in_water_a_mass_is_not_enough(mistakes: Mistakes) -> None:
 
 def test_a_mooring_stands_in_water(mistakes: Mistakes) -> None:
     text = GOOD.replace("  depth:", "  fluid: air\n  depth:")
-    assert mistakes(text) == [(3, 10, "`fluid: air` is for tows; a mooring is in water")]
+    assert mistakes(text) == [(3, 10, "`fluid: air` is only for tows; a mooring must be in water")]

@@ -221,7 +221,7 @@ def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["x=two.nc"], "holds 2 sensors; `x=` is for one"),
+        (["x=two.nc"], "holds 2 sensors; `x=` needs a file with one"),
         (["a=one.nc", "two.nc"], "two sensors are called `a`"),
         (["wide.nc"], "is not of times and instruments"),
     ],

@@ -115,7 +115,7 @@ def test_a_measured_spectrum(tmp_path):
         ("1,0\n2,0.01\n3,0", "that can be solved is 2 s; check its units"),
         ("0.1,0\n0.2,1\n0.3,0\n4,.02\n9,.02", "of its variance is above 1.6 Hz; check its units"),
         ("0.1,0\n0.3,9\n0.5,0", "would break"),
-        ("0,9\n0.1,1\n0.2,0", "no sea is higher than 30 m or longer than 30 s"),
+        ("0,9\n0.1,1\n0.2,0", "the wave height must not exceed 30 m, nor the period 30 s"),
     ],
 )
 def test_spectra_that_cannot_be(tmp_path, rows, message):

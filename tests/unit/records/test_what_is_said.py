@@ -191,7 +191,9 @@ def test_a_grid_of_nemo_that_is_turned_is_refused(record, tmp_path) -> None:
         nav_lon=(("y", "x"), [[-5.0, -4.9], [-5.1, -5.2]], {"units": "degrees_east"}),
     )
     turned.to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
-    assert "`vozocrtx` is sea_water_x_velocity, which is not" in refusal(tmp_path / "r.nc")
+    assert "`vozocrtx` has the standard name sea_water_x_velocity instead of" in refusal(
+        tmp_path / "r.nc"
+    )
 
 
 @pytest.mark.parametrize(("begin", "kind"), [
