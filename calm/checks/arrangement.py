@@ -343,7 +343,9 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     yield from _path_obstacles(part, wire)
     if component.drive_force is None:
         message = f"The drive force of {part.label} is unknown; it may be too small for the wire."
-        yield unknown(part, message, "Set its `drive_force` and `speed`.", lacks="drive_force")
+        yield unknown(
+            part, message, "Set `drive_force` and `speed` of the profiler.", lacks="drive_force"
+        )
         return
     flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))
     lean = radians(row.tilt)

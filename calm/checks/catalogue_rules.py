@@ -125,7 +125,9 @@ def check_catalogue(
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
             if definition.prefer not in known or definition.prefer == identifier:
-                message = f"has `prefer: {definition.prefer}`, but no catalogue has this component"
+                message = (
+                    f"has `prefer: {definition.prefer}`, which must be the id of another component"
+                )
                 findings.append(CatalogueFinding(identifier, message))
             elif other is not None and other.prefer is not None:
                 message = (

@@ -198,7 +198,7 @@ def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
     if -component.net_buoyancy > 1.08 * weight:
         yield (
             f"weighs {say('load', -component.net_buoyancy)} in water; {component.mass:.4g} kg of "
-            f"{component.material} weigh {say('load', weight)} there"
+            f"{component.material} weigh {say('load', weight)} in water"
         )
 
 

@@ -95,7 +95,7 @@ def _tilt_words(
     if limit is None:
         return (
             f"{tilt}; its limit is unknown.",
-            "Set its `max_tilt`, or set it to `90 deg` if the part has no limit.",
+            "Set `max_tilt` of the part; use `90 deg` if the part has no limit.",
         )
     return f"{tilt}; the limit is {say('tilt', limit)}.", _STRAIGHTER
 
@@ -134,7 +134,7 @@ def _rating_words(
 ) -> tuple[str, str]:
     deep, rating = f"Depth of {part.label} is {say('depth', depth)}", part.component.depth_rating
     if limit is None or rating is None:
-        return f"{deep}; its depth rating is unknown.", "Set its `depth_rating`."
+        return f"{deep}; its depth rating is unknown.", "Set the `depth_rating` of the part."
     return (
         f"{deep}; its depth rating of {say('depth_rating', rating)} less a margin of "
         f"{say('depth_rating', rating - limit)} allows {say('depth_rating', limit)}.",
@@ -171,7 +171,7 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
                 piece,
                 f"{piece.label} is {component.material} of unknown stiffness and is assumed "
                 f"inextensible. The rope {could}, so depths above it are unknown.",
-                "Set its `stiffness` or `elongation`.",
+                "Set the `stiffness` or `elongation` of the rope.",
                 by,
                 lacks="stiffness",
             )
@@ -327,7 +327,7 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
         yield unknown(
             top,
             "The freeboard of the float is unknown.",
-            "Set its `hull`, `mass` and `volume`, and set `buoy_drag: immersed`.",
+            "Set `hull`, `mass` and `volume` of the float, and set `buoy_drag: immersed`.",
         )
         return
     yield at_least(

@@ -354,8 +354,8 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     for leg, speed in zip(legs, speeds, strict=True):
         if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
             message = (
-                f"The strongest current is {speed:.2g} m/s here and {say('speed', max(speeds))} in "
-                "another environment: one of them may be in the wrong unit."
+                f"The strongest current is {speed:.2g} m/s in this environment and "
+                f"{say('speed', max(speeds))} in another; one of them may be in the wrong unit."
             )
             yield leg, verdict_on(None, State.WARN, message, "Check m/s and cm/s.", speed)
         if speed >= LEAST_CURRENT and (left := _left_out(leg)):

@@ -144,7 +144,7 @@ def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: s
 def no_load_known(load: str) -> tuple[str, str]:
     """Return message and remedy for a piece without a working load and a breaking load."""
     message = f"{load}; its working load and breaking load are unknown."
-    return message, "Set its `working_load` or `breaking_load`."
+    return message, "Set the `working_load` or `breaking_load` of the part."
 
 
 @criteria("release-load")
@@ -174,7 +174,7 @@ def _release_words(
     if limit is None:
         return (
             f"{load}; its working load and opening load are unknown.",
-            "Set its `working_load` and `opening_load`.",
+            "Set the `working_load` and `opening_load` of the release.",
         )
     if not opens:
         allowed = f"the limit is {say('load', limit)}"
@@ -281,11 +281,12 @@ def _words(
     return (
         f"Minimum tension in {part.label} is {say('load', least)}; "
         f"a {name} needs {say('load', limit)} to stay taut.",
-        "Add buoyancy or remove weight above it, or allow it to be slack (`slack: allowed`).",
+        "Add buoyancy or remove weight above this piece, or allow it to be slack (`slack: "
+        "allowed`).",
     )
 
 
-_SET_WEIGHT = "Set its `weight` in water, or the `density` of its material."
+_SET_WEIGHT = "Set the `weight` of the anchor in water, or the `density` of its material."
 _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 
 

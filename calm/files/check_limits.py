@@ -59,13 +59,13 @@ class SafetyFactors(definition.Model):
     """Minimum ratios of breaking load to tension, by material."""
 
     steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
-        "of steel, and of all materials except synthetic rope", 3, default=3.0
+        "factor for steel, and for all materials except synthetic rope", 3, default=3.0
     )
     synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
-        "of synthetic rope", 5, default=5.0
+        "factor for synthetic rope", 5, default=5.0
     )
     surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
-        "for all pieces of a surface mooring", 5, default=5.0
+        "factor for all pieces of a surface mooring", 5, default=5.0
     )
 
 
@@ -73,10 +73,10 @@ class MinimumTensions(definition.Model):
     """Minimum tensions above the release [N]."""
 
     wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
-        "in wire", "500 N", default=500.0
+        "minimum tension in wire", "500 N", default=500.0
     )
     rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
-        "in synthetic rope", "300 N", default=300.0
+        "minimum tension in synthetic rope", "300 N", default=300.0
     )
 
 
@@ -100,7 +100,9 @@ class Checks(definition.Model):
         "default friction coefficient of an anchor on the seabed", 0.6, default=0.6
     )
     minimum_tension: MinimumTensions = definition.described(
-        "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
+        "minimum tensions above the release",
+        {"wire": "500 N", "rope": "300 N"},
+        default_factory=MinimumTensions,
     )
     backup_margin: Annotated[float, _SHARE, Limit(_URI)] = definition.described(
         "minimum buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1

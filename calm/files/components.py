@@ -58,12 +58,12 @@ Elongation = Annotated[
 WeightPerMetre = Annotated[
     float | None,
     QuantityField("force per length"),
-    Field(description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
+    Field(description="weight in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
 ]
 MassPerMetre = Annotated[
     float | None,
     QuantityField("mass per length", at_least=0),
-    Field(description="in air (per metre of a cable or chain)"),
+    Field(description="mass in air (per metre of a cable or chain)"),
 ]
 
 
@@ -208,12 +208,12 @@ class Anchor(definition.Definition):
     kind: Literal["anchor"] = Field(description="kind of the component")
     mass: definition.Mass = None
     weight: Annotated[float | None, QuantityField("force", at_least=0)] = optional(
-        "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
+        "weight in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
     )
     density: definition.MaterialDensity = None
     length: definition.Length = 0.0
     friction: Annotated[float | None, QuantityField("number", above=0, at_most=10)] = optional(
-        "coefficient on the seabed", 0.6
+        "friction coefficient on the seabed", 0.6
     )
     kt: definition.TangentialDrag = Field(default=None, examples=["200 N/(m/s)^2"])
 

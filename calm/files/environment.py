@@ -33,10 +33,10 @@ class Position(Model):
     """The position of the mooring [degrees]."""
 
     latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = described(
-        "north positive, or degrees and minutes: 48 18.0 N", "48.3 deg"
+        "latitude, north positive, or in degrees and minutes: 48 18.0 N", "48.3 deg"
     )
     longitude: Annotated[float, QuantityField("longitude", at_least=-360, at_most=360)] = described(
-        "east positive, or degrees and minutes: 5 12.0 W", "-5.2 deg"
+        "longitude, east positive, or in degrees and minutes: 5 12.0 W", "-5.2 deg"
     )
 
 
@@ -218,11 +218,13 @@ class TowEnvironmentKeys(Model):
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
     ] = described(
-        "a table, one speed for all depths, or a file",
+        "current: a table, one speed for all depths, or a file",
         {"speed": "0.5 m/s", "toward": "90 deg"},
         default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
     )
-    wind: water.Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
+    wind: water.Wind | None = optional(
+        "wind over the water", {"speed": "12 m/s", "toward": "90 deg"}
+    )
 
 
 class EnvironmentKeys(TowEnvironmentKeys):

@@ -68,7 +68,7 @@ class HeldKeys(Model):
     """Position of a held end, such as at a ship, a pier or a platform."""
 
     depth: _Offset = Field(
-        description="below the surface; negative: above it, in air", examples=["2 m", "-10 m"]
+        description="depth below the surface; negative above it, in air", examples=["2 m", "-10 m"]
     )
     at: _At = (0.0, 0.0)
 
@@ -252,7 +252,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
     elif keys.bottom is None:
         refuse((), "`bottom` is missing: `{join: NODE}`, `free`, or an anchor as the last item")
     if len(anchors) == len(pieces) > 0:
-        refuse(("line",), "there is no piece above the anchor")
+        refuse(("line",), "a line needs at least one piece above its anchor")
     if upper.join is not None and upper.join == lower.join:
         refuse(("bottom",), f"the two ends of a leg must not join at the same node, `{upper.join}`")
     if upper == lower == FREE and (keys.bottom is not None or not anchored):
@@ -328,7 +328,7 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
         if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"its anchor is at the position of the anchor of leg `{before}`; set its "
+                f"the anchor is at the same position as that of leg `{before}`; set another "
                 "position: `bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             section.refuse((leg.name,), message, key=True)

@@ -313,8 +313,9 @@ class LineReader:
         firsts = [0, *accumulate(one.component.items or 1 for one in own)]
         total = firsts.pop()
         if len(numbers) != total * count:
-            named = ", ".join(dict.fromkeys(one.use for one in own)) or "no part"
-            message = f"`serial` has {len(numbers)} numbers; {named} needs {total * count}"
+            named = " and ".join(dict.fromkeys(one.use for one in own))
+            wanted = f"{total * count} number{'s' * (total * count != 1)}"
+            message = f"`serial` must have {wanted} for {named}, not {len(numbers)}"
             if not own:
                 message = "`serial`: no part is an instrument, a release or a float"
             item.refuse(("serial",), message)

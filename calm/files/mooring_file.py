@@ -71,7 +71,7 @@ class Solver(Model):
         "drag of a surface float: at its draft, or fully immersed", "immersed", default="immersed"
     )
     seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = described(
-        "friction coefficient of line on the seabed", 0.3, default=0.0
+        "friction coefficient of the line on the seabed", 0.3, default=0.0
     )
 
 

@@ -50,7 +50,8 @@ RULES = {
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
     "drag-coefficient": RuleText("Drag coefficient", "",
-        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "drag of spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond "
+        "the curve of "
         "`drag: reynolds`",
         "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
         "surface, greater by 5 %; otherwise the effect is reported, but not judged",
@@ -67,23 +68,24 @@ RULES = {
         "CALM's own limits, from ranges found at sea and common typing errors",
         "environments are compared with each other, by `calm check`"),
     "missing": RuleText("Missing values", "",
-        "values that rules need but a component lacks: one finding per component id and value, "
-        "with the rules and the pieces concerned",
+        "values that rules need but a component lacks; one finding for each component id and value "
+        "lists the rules and the pieces concerned",
         "unknown",
         "The sources of the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
         "maximum tension of every piece; the top piece and the anchor are checked only if they "
         "have a load limit",
-        "the smaller of its working load and its breaking load over `safety_factor`: 3 for steel, "
-        "5 for synthetics, 5 for all pieces of a surface mooring; only the breaking load of a "
+        "the smaller of the working load and the breaking load divided by `safety_factor` (3 for "
+        "steel, 5 for synthetics, 5 for all pieces of a surface mooring); only the breaking "
+        "load of a "
         "synthetic rope counts if it is known, since rope tables give working loads for lifting",
         "UFC 4-159-03, table 3-7: a factor of 3 for chain and wire; oceanographic practice: a "
         "third "
         "to a fifth of the breaking load",
         figures=("working_load", "breaking_load")),
     "release-load": RuleText("Release load", "load",
-        "maximum tension of every release, and the tension below it when it opens",
+        "maximum tension of every release, and the tension below the release when it opens",
         "the limit of the rule `strength`, and the `opening_load` of the release if given",
         "Static load and opening load given by the manufacturer",
         figures=("working_load", "opening_load")),
@@ -97,8 +99,8 @@ RULES = {
     "profiler": RuleText("Profiler on its wire", "load",
         "tension of the wire, obstacles on it and the force that the drive needs, at both "
         "stops and at the largest inclination of the wire",
-        "`minimum_tension` of the profiler, 2224 N; its `drive_force`; jacketed wire of 6.35 to "
-        "9.53 mm, and a profile of 6.4 h at most, else a warning",
+        "`minimum_tension` (2224 N) and `drive_force` of the profiler; a warning unless the wire "
+        "has a diameter of 6.35 to 9.53 mm, and for a profile of more than 6.4 h",
         "McLane Moored Profiler, user manual",
         "the profiles of a record are solved with the profiler at its upper stop",
         figures=("drive_force",)),
@@ -116,19 +118,20 @@ RULES = {
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
         "depth of every part in the current; for a surface float, only if its rating is specified",
-        "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
+        "`depth_rating` less `rating_margin` (100 m), or half of a rating below 200 m",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
     "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
-        "`minimum_top_depth`: a failure; by default 10 m: a warning",
+        "a failure above `minimum_top_depth`; if this is not given, a warning above 10 m",
         "CALM's own limit: the top stays clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "difference between the planned depth and the depth in still water, for every piece and "
         "clamp with a `planned_depth` or a depth in its label",
-        "the larger of `planned_depth_warning`, 10 m, and 2 % of the planned depth: a warning; "
-        "`planned_depth_limit`, 10 % of the planned depth: a failure; parts without a planned "
-        "depth are not checked",
+        "a warning above the larger of `planned_depth_warning` (10 m) and 2 % of the planned "
+        "depth; "
+        "a failure above `planned_depth_limit` (10 %) of the planned depth; parts without a "
+        "planned depth are not checked",
         "CALM's own limit: with a large difference, the instrument measures other water than "
         "planned, or a length or the water depth is wrong",
         _ONCE),
@@ -144,7 +147,7 @@ RULES = {
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
-        "`fishbite_depth`, 1000 m: a warning",
+        "a warning if the rope begins above `fishbite_depth` (1000 m)",
         "Berteaux, Prindle & May, OCEANS '87: fish bite ropes from the surface to 1000 m and "
         "deeper, far from the shores; the limits of water depth and latitude are CALM's own",
         "ropes are bitten over months, not during one profile", has_ratio=False),
@@ -158,7 +161,7 @@ RULES = {
         "The design's own `maximum_excursion`"),
     "anchor-weight": RuleText("Anchor weight", "load",
         "weight of the anchor in water",
-        "`anchor_factor` × (V + H / friction), by default 1.5 and 0.6",
+        "`anchor_factor` (1.5) times (V + H / friction), with a friction coefficient of 0.6",
         "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
         figures=("weight", "density")),
     "anchor-uplift": RuleText("Anchor uplift", "load",
@@ -175,19 +178,20 @@ RULES = {
     "slack": RuleText("Minimum tension", "load",
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
-        "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
+        "`minimum_tension`: 500 N for wire, 300 N for rope; `slack: allowed` exempts a piece",
         "Mooring groups keep 50 to 100 kgf above the release; no value is published, so CALM sets "
         "its own limits"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
-        "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
-        "with the loads used for `strength`; unknown for a surface mooring without `waves:`",
+        "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
+        "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
+        "`waves:`",
         "API RP 2SK: 1.67 on the breaking strength of the intact mooring, with tensions from a "
         "dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
         "minimum tension of every piece in `waves:`: the most probable minimum in 3 h",
-        "above 0; `slack: allowed` on a piece exempts it",
+        "a tension above 0; `slack: allowed` exempts a piece",
         "A slack line takes snap loads as it tightens, and the linear wave model is not valid then",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
@@ -199,12 +203,12 @@ RULES = {
         _WAVES),
     "reserve": RuleText("Reserve buoyancy", "used_buoyancy",
         "unused share of the surface float's buoyancy",
-        "`minimum_reserve`, 0.3",
+        "`minimum_reserve` (0.3)",
         "Dewey: a float that uses all its buoyancy submerges; the remaining share is for waves"),
     "freeboard": RuleText("Freeboard", "freeboard",
         "freeboard of the surface float",
         "above 0",
-        "The hull of a surface float extends above the water",
+        "The hull of a surface float must extend above the water",
         "the result does not contain the draft of the float"),
     "watch-circle": RuleText("Watch circle", "offset",
         "radius of the watch circle, √(L² − h²), with the stretched length L and the water depth h "
@@ -220,7 +224,7 @@ RULES = {
         "the scope is only reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
         "change in top depth of the upright line due to the depth and lengths of `deployed`",
-        "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
+        "a warning above the error of a sounding, 1 m and 2.3 % of the depth",
         "IHO S-44, order 2: maximum error of a sounding, at the 95 % level",
         _ONCE),
     "figures": RuleText("Component values",
@@ -238,8 +242,8 @@ RULES = {
         "swivel, "
         "rope or the like; a failure if no buoyancy is above the release; a warning for a "
         "single release in "
-        "more than 100 m of water (no name has double, dual, twin or pair), for less than 1 m "
-        "between release and anchor, and for a float below it",
+        "more than 100 m of water (no name contains double, dual, twin or pair), for less than 1 m "
+        "between release and anchor, and for a float below the release",
         "CALM's own rule: a line that will be recovered needs a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
@@ -283,7 +287,7 @@ RULES = {
     "backup": RuleText("Back-up buoyancy", "load",
         "minimum net buoyancy of the section with the release, over all breaks and float losses "
         "that are considered (see below)",
-        "the larger of `backup_margin`, 0.1, times the weight lifted and its drag at "
+        "the larger of `backup_margin` (0.1) times the weight lifted, and the drag at "
         "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
         "most 50 m above the release; a warning for a surface mooring without floats below its "
         "buoy",
@@ -292,19 +296,19 @@ RULES = {
         _ONCE),
     "launch-strength": RuleText("Strength in the launch", "load",
         "maximum tension of every piece during the anchor drop",
-        "the smaller of `launch_working_factor`, 1, times its working load and its breaking load "
-        "over `launch_safety_factor`, 2, with the loads used for `strength`",
+        "the smaller of the working load times `launch_working_factor` (1) and the breaking load "
+        "divided by `launch_safety_factor` (2), with the loads used for `strength`",
         "Anchor-last launch at terminal speed (URI GSO program); the limits are the working load "
         "and half the breaking load",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",
-        "2.5 m/s: a warning",
+        "a warning above 2.5 m/s",
         "CALM's own limit: a faster anchor may bury itself or break equipment on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise speed", "speed",
         "rise speed after release, for a line with a release or with its top below the surface",
-        "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
+        "`minimum_rise_speed` (0.3 m/s); a warning below 0.7 m/s and above 3 m/s",
         "CALM's own limits: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
         "above 3 m/s floats breach and the line may loop",
         _ONCE),

@@ -52,12 +52,12 @@ class SeaWaterKeys(Model):
         Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = described("in situ, a constant or a table", "10 degC")
+    ] = described("in-situ temperature, a constant or a table", "10 degC")
     salinity: Annotated[
         Annotated[float, QuantityField(**vars(profile_tables.SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = described("practical, a constant or a table", 35)
+    ] = described("practical salinity, a constant or a table", 35)
 
 
 Density = Annotated[

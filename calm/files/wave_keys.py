@@ -78,7 +78,7 @@ class WaveKeys(Model):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
         if self.swell is not None and height is None:
             raise ValueError(
-                "`swell` is added to a wind sea: set the `significant_height` of that sea, too"
+                "`swell` is added to a wind sea; also set the `significant_height` of the wind sea"
             )
         if height is not None and period is None and self.spectrum not in OF_HEIGHT:
             raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")

@@ -200,7 +200,7 @@ def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> lis
         for line, latitude, longitude in places:
             away = kilometres_from(latitude, longitude, (float(north), float(east)))
             if away > WIDEST:
-                message = f"the position is {away:.0f} km from the others"
+                message = f"the position is {away:.0f} km from the other positions"
                 problems.append(Problem(str(path), line, 1, message))
     return problems
 

@@ -161,7 +161,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
         return ""
     return (
         f"the {what} is not given {' and '.join(gaps)}: the value of the nearest level is "
-        f"used there, in {say('depth', water_depth)} of water"
+        f"used there; the water depth is {say('depth', water_depth)}"
     )
 
 
@@ -320,7 +320,7 @@ def step_doubts(times: Times) -> Iterator[str]:
     """Yield a doubt if profiles are too far apart in time to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
-            f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
+            f"the {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
             "and peaks between them are missing"
         )
 

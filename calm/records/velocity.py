@@ -128,7 +128,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         units = {factor_of(dataset[name], "speed"): name for name in (east, north)}
         if len(units) > 1:
             units_text = " and ".join(f"`{dataset[name].attrs['units']}`" for name in (east, north))
-            notes.append(f"its components have different units, {units_text}")
+            notes.append(f"the velocity components have different units, {units_text}")
         true = attributes.is_true(dataset[east], dataset.attrs)
         return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)

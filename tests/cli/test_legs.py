@@ -789,7 +789,7 @@ def test_an_anchor_up_the_slope_stands_in_water(tmp_path: Path) -> None:
     text = SLOPE.replace("slope: 10 deg", "slope: 25 deg")
     at = re.search(r"at: \[.*?\]", text)
     assert at is not None
-    with pytest.raises(InputError, match=r"the seabed \d+ m above the surface here"):
+    with pytest.raises(InputError, match=r"the seabed \d+ m above the surface at this anchor"):
         load(tmp_path / "slope.yaml", text=text.replace(at[0], "at: [-500 m, 0 m]"))
 
 
@@ -922,7 +922,7 @@ def test_two_anchors_in_one_place_are_a_mistake(tmp_path: Path) -> None:
     pieces = "[{use: glass-17in}, {use: wire-jacketed-8, length: 10 m}, {use: anchor-wheels-4}]"
     more = f"  other:\n    line: {pieces}\n"
     with pytest.raises(
-        InputError, match="its anchor is at the position of the anchor of leg `stem`"
+        InputError, match="the anchor is at the same position as that of leg `stem`"
     ):
         load(tmp_path / "net.yaml", text=NET + more)
 

@@ -305,7 +305,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "has minutes or seconds of 60 or more",
             "is no number",
             "must be above 0",
-            "km from the others",
+            "km from the other positions",
             "beyond the range of a transponder",
         ],
         strict=True,

@@ -86,7 +86,7 @@ class CableLayout:
             east, north = 0.0 - drift_east, 0.0 - drift_north
             moved = [(d, u + east, v + north, w) for d, u, v, w in self.water.current]
             self.water.current = tuple(moved) if any(any(row[1:]) for row in moved) else ()
-            note = "In the file the ship is at rest in a current; here the ship moves instead."
+            note = "In the file the ship is at rest in a current; in CALM the ship moves instead."
             self.design.notes.append(note)
         speed = math.hypot(east, north)
         if speed == 0.0:
@@ -169,7 +169,9 @@ class CableLayout:
                 if start <= height < end or (item is made[-1] and height >= end):
                     item.clamp(clamped, min(max(end - height, 0.0), item.extent))
             item.guess = (
-                "its drag was computed at its depth in the upright line" if len(made) > 1 else ""
+                "the drag was computed at the depth of this part in the upright line"
+                if len(made) > 1
+                else ""
             )
             start = end
         for key in ("cdn", "cdt"):

@@ -87,7 +87,9 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
     if values is None:
         return np.zeros((levels, times))
     if values.shape[1] not in (1, times):
-        raise ValueError(f"`{name}` has {values.shape[1]} profiles, the others {times}")
+        raise ValueError(
+            f"`{name}` has {values.shape[1]} profiles, but the other variables have {times}"
+        )
     if not np.all(np.isfinite(values[:, 0])):
         raise ValueError(f"`{name}` has gaps in its first profile")
     return np.broadcast_to(values, (levels, times))

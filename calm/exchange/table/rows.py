@@ -126,7 +126,7 @@ def rows_of(
         if not name:
             held = [cell_of(each, column) for what, column in known.items() if what in _ENOUGH]
             if any(re.search(r"\d", cell) for cell in held):
-                dropped.append(model.Remark(f"row {place}", "it has values but no name"))
+                dropped.append(model.Remark(f"row {place}", "the row has values but no name"))
             continue
         if TOTAL.match(name):
             dropped.append(model.Remark(f"row {place}", f"`{name}`, a sum"))
@@ -187,7 +187,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
     count = row.figures.pop("count", 1.0)
     row.count = round(count)
     if not 1 <= row.count <= _MOST:
-        row.refuse(f"its count is {count:.12g}; it must be from 1 to {_MOST}")
+        row.refuse(f"the count is {count:.12g}; it must be from 1 to {_MOST}")
         row.count = 1
     return row
 

@@ -92,7 +92,7 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (lambda: with_attributes(adcp(), "u", units="kg"), "`u`: its unit, `kg`, is a mass; a spe"),
         (lambda: with_attributes(adcp(), "u", units=""), "`u` has no `units`"),
-        (lambda: adcp().drop_vars("bin_depths"), "its levels have no depth"),
+        (lambda: adcp().drop_vars("bin_depths"), "the levels have no depth"),
         (
             lambda: with_attributes(adcp(), "bin_depths", units="dbar"),
             "`bin_depths`: its unit, `dbar`, is a pressure; a length",
@@ -149,7 +149,8 @@ def test_x_is_east_along_latitudes(tmp_path: Path) -> None:
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
         note = (
-            "`uo`, sea_water_x_velocity, is used as eastward, because the grid runs along latitudes"
+            "`uo`, with the standard name sea_water_x_velocity, is used as eastward, because the "
+            "grid runs along latitudes"
         )
         assert note in record.notes
 
@@ -160,7 +161,10 @@ def test_a_single_place_far_away_is_told(tmp_path: Path) -> None:
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
         # 0.7 degrees of 111.2 km
-        assert record.notes[0] == "its only position, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
+        assert (
+            record.notes[0]
+            == "the only position in the file, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
+        )
 
 
 def test_land_of_zeros_is_land(tmp_path: Path) -> None:

@@ -786,7 +786,7 @@ FLAWS = (
         "profiler",
         "MMP",
         "fail",
-        "CTD 295 m blocks MMP, 80 m down the wire",
+        "CTD 295 m, 80 m down the wire, blocks MMP",
     ),
     Flaw(
         "a shackle of nobody knows what",

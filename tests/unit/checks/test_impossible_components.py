@@ -220,9 +220,9 @@ def test_parts_of_an_assembly_must_exist():
 @pytest.mark.parametrize(
     ("prefer", "told"),
     [
-        ("nothing", "which is in no catalogue"),
-        ("x", "prefers `x`, but no catalogue has this component"),
-        ("y", "itself prefers `z`"),
+        ("nothing", "which must be the id of another component"),
+        ("x", "has `prefer: x`, which must be the id of another"),
+        ("y", "itself has `prefer: z`"),
     ],
 )
 def test_what_is_preferred_must_be_there_and_be_final(prefer, told):

@@ -269,7 +269,9 @@ def test_a_library_of_that_program_is_read(read, tmp_path):
     ball, rope, _ = pieces(made, tmp_path)
     assert ball.component.diameter == 0.91
     assert rope.component.stiffness == pytest.approx(6.9e10 * 3.14159265 / 4 * 0.009**2)
-    with pytest.raises(InputError, match="is the element library of that program, not a mooring"):
+    with pytest.raises(
+        InputError, match="is an element library of Mooring Design & Dynamics, not a mooring"
+    ):
         import_file(library, tmp_path / "m.yaml")
 
 
@@ -468,7 +470,7 @@ def test_the_weight_of_a_piece_is_that_of_the_whole_whatever_that_of_lines_is(re
     made = read(with_cell("Weight in water (kg/100 m)", "30"))
     ball = pieces(made, tmp_path)[0].component
     assert ball.net_buoyancy == pytest.approx(4330 * 9.80665)
-    assert "taken for the whole piece" in " ".join(map(str, made.guessed))
+    assert "read as the value of the whole piece" in " ".join(map(str, made.guessed))
 
 
 @pytest.mark.parametrize(
@@ -646,7 +648,7 @@ def test_totals_are_divided_by_their_count(read, tmp_path):
 
 def test_a_weight_of_all_that_is_given_as_of_one_is_refused(read):
     with pytest.raises(
-        InputError, match=r"Glass ball: one lifts 300 kg.*if the value is for all 12"
+        InputError, match=r"Glass ball: a piece lifts 300 kg.*if the value is for all 12"
     ):
         read(SHORT.replace("-25", "-300"))
 

@@ -112,7 +112,7 @@ ONE_MISTAKE = {
     ),
     "nothing but an anchor": (
         GOOD[: GOOD.index("  - {use: ball")] + ANCHORED,
-        (10, 5, "there is no piece above the anchor"),
+        (10, 5, "a line needs at least one piece above its anchor"),
     ),
     "two fits": (
         changed("480 m", "fit, top_depth: 90 m").replace(
@@ -130,7 +130,7 @@ ONE_MISTAKE = {
     ),
     "fit below the seabed": (
         changed("480 m", "fit, top_depth: 1100 m"),
-        (11, 5, "`top_depth` is below the seabed, 1100 m deep"),
+        (11, 5, "`top_depth` must not be below the seabed, which is 1100 m deep"),
     ),
     "fit of a rigid piece": (
         changed("{use: plate}", "{use: plate, length: fit}"),

@@ -211,7 +211,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     unit["uo"].attrs["units"] = "kg"
     assert problem(unit, tmp_path).startswith("`uo`: its unit, `kg`, is a mass; a speed")
     unplaced = problem(profile().drop_vars("depth"), tmp_path)
-    assert unplaced.startswith("its levels have no depth; it holds uo (depth 3) [m s-1] eastward")
+    assert unplaced.startswith("the levels have no depth; it holds uo (depth 3) [m s-1] eastward")
     unclear = profile().rename(depth="z")
     unclear["z"].attrs = {"units": "m"}
     assert problem(unclear, tmp_path).startswith(

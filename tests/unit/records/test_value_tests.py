@@ -97,7 +97,7 @@ def test_levels_that_repeat_and_times_that_repeat():
 def test_a_few_impossible_values_of_one_size_are_fill_values():
     values = np.where(np.arange(90) % 9 == 0, -999.0, 8.0 + np.arange(90) / 90.0)
     assert impossible_values("temperature", values)[1].endswith(
-        "median -999: is this a fill value?"
+        "median of -999: is this a fill value?"
     )
 
 
