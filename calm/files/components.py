@@ -399,8 +399,8 @@ def odd_overrides(
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (
-            f"`mass` of {use} is overridden, but not its net force in water; override that as well "
-            "if it changes"
+            f"`mass` of {use} is overridden, but not its net force in water; override the net "
+            "force as well if it changes"
         )
     if isinstance(defined, Anchor) and isinstance(component, Anchor) and "weight" in given:
         share = 1.0 - CATALOGUE_DENSITY / (defined.material_density or STEEL_DENSITY)

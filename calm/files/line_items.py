@@ -244,7 +244,7 @@ class LineReader:
             if entry is None or entry.section.data.get("kind") != "profiler":
                 at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
             elif "at" in clamp.data:
-                message = "a profiler has no `at`: it travels `between` two stops"
+                message = "a profiler must not have `at`, since it travels `between` two stops"
                 clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
                 message = (

@@ -270,7 +270,7 @@ def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp
         if label not in stops
     ]
     if not messages and between and not stops[between[0]] < stops[between[1]]:
-        messages = [f"`{between[0]}` is not above `{between[1]}`: give the upper stop first"]
+        messages = [f"`{between[0]}` must be above `{between[1]}`; give the upper stop first"]
     for message in messages:
         top.refuse(row, message, lacks=lacks)
     if messages or not between:

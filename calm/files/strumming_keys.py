@@ -108,8 +108,8 @@ def _written_out(value: object, info: ValidationInfo) -> object:
     law = value.get("model") if isinstance(value, dict) else value
     if law == "bourget-marichal" and info.context and not info.context["towed"]:
         raise ValueError(
-            "`bourget-marichal` is for towed cables; "
-            f"a mooring takes one of {', '.join(get_args(AmplitudeName))}"
+            "`bourget-marichal` is only for towed cables; "
+            f"for a mooring, use one of {', '.join(get_args(AmplitudeName))}"
         )
     if isinstance(value, dict):
         return _one_form(value)

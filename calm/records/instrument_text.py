@@ -186,7 +186,9 @@ def _cnv(path: Path) -> xr.Dataset:
     clock = next(((j, name) for j, (name, _) in names.items() if name in _CNV_TIMES), None)
     start = re.search(r"(?m)^# start_time = (\w{3} \d+ \d{4}(?: [\d:]+)?)", head)
     if clock is None or (start is None and clock[1] not in _CNV_EPOCHS):
-        raise refused(path, f"has no times: none of {', '.join(_CNV_TIMES)}, or no start_time")
+        raise refused(
+            path, f"has no times: one of {', '.join(_CNV_TIMES)} and a start_time are needed"
+        )
     seconds = values[:, clock[0]] * _CNV_TIMES[clock[1]]
     if clock[1] in _CNV_EPOCHS:
         epoch = np.datetime64(_CNV_EPOCHS[clock[1]], "us")

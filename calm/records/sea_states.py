@@ -298,7 +298,7 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
         Problem(str(path), lines[int(row)] if lines else 0, column, message)
         for wrong, column, message in (
             (falls, 1, "frequencies must increase and must not be negative"),
-            (~(density >= 0.0), 2, "a density must not be negative"),
+            (~(density >= 0.0), 2, "a spectral density must not be negative"),
         )
         for row in np.flatnonzero(wrong)
     ]

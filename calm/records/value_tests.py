@@ -468,10 +468,12 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
                 longest = most, int(edges[::2][runs.argmax()]), k
     if stuck:
         most, first, k = longest
-        which = f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "it keeps"
+        which = (
+            f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "the record keeps"
+        )
         yield (
             f"{which} one value for a tenth of the record, or for most pairs of readings: the "
-            f"longest stretch{names[k]}, {most} readings from {time_text(times[first])} to "
+            f"longest stretch{names[k]} is {most} readings, from {time_text(times[first])} to "
             f"{time_text(times[first + most - 1])}"
         )
 

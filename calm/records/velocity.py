@@ -172,7 +172,9 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
         true = [name for name in found if not attributes.is_magnetic(dataset[name])]
         if len(true or found) > 1:
             listed = ", ".join(true or found)
-            raise UnreadableError(f"several variables are {standard_name}: {listed}")
+            raise UnreadableError(
+                f"several variables have the standard name {standard_name}: {listed}"
+            )
         if found:
             return _checked(dataset, (true or found)[0])
     name = next((name for name in sought.usual if name in dataset.data_vars), None)

@@ -281,7 +281,7 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
     assert calm("catalog", "show", "our-glass", "our-ball").code == 0
     again = calm("catalog", "add", "our-glass", *GLASS)
     assert (again.code, again.out) == (2, "")
-    assert "is already defined, in" in again.err
+    assert "is defined already, in" in again.err
     assert (
         "where it overrides the entry of the catalogue"
         in calm("catalog", "add", "glass-17in", *GLASS).err

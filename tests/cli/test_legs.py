@@ -366,7 +366,7 @@ MISTAKES = {
         "line: [{use: anchor-wheels-1}]\n", "`line` and `legs` exclude each other"),
     "  pennant:\n    line:": ("  pennant:\n    lin:", "did you mean `line`?"),
     "top: {join: A}\n    bottom: fr": (
-        "top: {held: {depth: 600 m}}\n    bottom: fr", "not above the seabed, 500 m deep"),
+        "top: {held: {depth: 600 m}}\n    bottom: fr", "must be above the seabed, which is 500 m deep"),
 }  # fmt: skip
 
 
@@ -888,7 +888,7 @@ legs:
 
 BROKEN_GRIDS = [
     (GRIDDED[GRIDDED.index("environment") :], "a grid needs the `position`"),
-    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes about the position"),
+    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes around the position"),
     (GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"), "the grid of the seabed has no depth here"),
     (GRIDDED.replace("grid.nc", "grid.tif"), "gdal_translate -of netCDF grid.tif grid.nc"),
     (GRIDDED.replace("grid.nc", "absent.nc"), "no such file"),

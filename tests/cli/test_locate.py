@@ -96,7 +96,7 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert "deployed" not in (folder / "m.yaml").read_text()
     assert "m.yaml was not changed: the depth, 1997 m, is far from the planned 1500 m; " in done.err
     assert "; the position is 11.1 km from the planned position. Use --accept" in done.err
-    assert "this is far from the planned position" in done.err
+    assert "the result is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
     assert "latitude and longitude appear to be exchanged" in done.err
@@ -202,7 +202,7 @@ def test_three_ranges_on_one_course_have_two_places(calm, ranges, write_mooring,
     assert document["latitude"] == pytest.approx(48.2919, abs=1e-3)
     assert document["longitude"] == pytest.approx(-5.1879, abs=1e-3)
     assert document["second"]["distance"] == pytest.approx(2520.0, rel=0.05)
-    assert re.search(r"two positions remain, \d+ and 25\d\d m from the planned one", done.err)
+    assert re.search(r"two positions remain, \d+ and 25\d\d m from the planned position", done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
     done = calm("locate", name, "--update", "m.yaml", "--json", "-")  # of unknown depth
     assert done.code == 1 and "two positions remain" in done.err

@@ -62,7 +62,7 @@ class CableLayout:
             raise upper.token.refuse("the layout must begin at the anchor and end at the buoy")
         depth, anchor = self.depth, self._anchor(lower)
         if upper.buoy is None:
-            raise upper.token.refuse("the upper end is not a buoy")
+            raise upper.token.refuse("the upper end must be a buoy")
         reaches = self.problem.kind == "general" and self.problem.length >= _REACHES * depth
         buoy = self._buoy(upper, afloat=reaches or self.problem.kind == "surface")
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
@@ -90,7 +90,7 @@ class CableLayout:
             self.design.notes.append(note)
         speed = math.hypot(east, north)
         if speed == 0.0:
-            raise ship.token.refuse("the ship of this tow does not move")
+            raise ship.token.refuse("the ship of this tow must move")
         self.design.tow = model.ImportedTow(speed, bearing_of(east, north))
         self.design.items = [*items[::-1], self._buoy(body, afloat=False)]
 

@@ -105,7 +105,7 @@ def _lay_tow(
     east, north = variables.first("Usp"), variables.first("Vsp")
     speed = math.hypot(east, north)
     if speed == 0.0:
-        raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
+        raise refused(path, "the ship of this tow must move (`Usp`, `Vsp`)")
     design.tow = model.ImportedTow(speed, bearing_of(east, north))
     height = variables.first("afh")
     if height > 0.0:

@@ -296,7 +296,9 @@ class Draft:
             raise changes.EditError(f"line {node.line} of the file: `{location[-1]}` is not a list")
         data = list(node.data or ()) if node else []
         if not 0 <= index <= len(data):
-            raise changes.EditError(f"position {index} does not exist in a list of {len(data)}")
+            raise changes.EditError(
+                f"position {index} does not exist in a list of {len(data)} items"
+            )
         patches = page.add(location, index, values)
         data[index:index] = changes.data_of(values)
         return self._changed(patches, location, data)

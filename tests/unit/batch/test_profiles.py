@@ -151,7 +151,7 @@ def test_what_is_no_mooring_and_no_current_is_refused(subsurface: Design) -> Non
         with pytest.raises(TypeError, match="the current must be numeric, not "):
             solve_profiles(subsurface, wrong, v, depth)
     for workers in (0, -1):
-        with pytest.raises(ValueError, match="at least one is needed"):
+        with pytest.raises(ValueError, match="must be at least 1"):
             solve_profiles(subsurface, u, v, depth, workers=workers)
 
 

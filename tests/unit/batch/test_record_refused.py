@@ -106,7 +106,10 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
             "`u` is not a single profile; it has the dimensions member (3), time (7), bin (5)",
         ),
         (lambda: adcp().isel(time=0).drop_vars("time"), "has no times: it is one profile, for"),
-        (lambda: glorys().assign_coords(latitude=glorys()["latitude"] + 9), "outside its grid"),
+        (
+            lambda: glorys().assign_coords(latitude=glorys()["latitude"] + 9),
+            "outside the grid of the file",
+        ),
         (
             lambda: glorys().where(glorys()["latitude"] < 0),
             "no column of 12 around 48.3° N 5.2° W has a current",
@@ -136,8 +139,8 @@ def test_reasons(tmp_path: Path, make: Callable[[], xr.Dataset], reason: str) ->
 
 def test_several_columns_and_no_place(tmp_path: Path) -> None:
     assert refusal(glorys(), tmp_path, None).startswith(
-        "it has 12 columns of water, 48.22° N 5.29° W to 48.38° N 5.04° W; select one with `--at "
-        "LAT,LON` or the `position` of the mooring file; it holds uo (time 7, depth 5, latitude "
+        "the file has 12 columns of water, 48.22° N 5.29° W to 48.38° N 5.04° W; select one "
+        "with `--at LAT,LON` or the `position` of the mooring file; it holds uo (time 7, depth 5, latitude "
         "3, "
     )
 

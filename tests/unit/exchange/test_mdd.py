@@ -300,7 +300,7 @@ REFUSED = {
         mooring(Jobj=np.array([[40]])),
         "clamped on element 40, which does not exist",
     ),
-    "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "does not move"),
+    "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "must move"),
 }
 
 

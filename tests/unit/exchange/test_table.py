@@ -347,7 +347,7 @@ def test_a_number_with_words_is_told(read):
 REFUSED = {
     "words for a number": (ENGLISH.replace(",22,1.2", ",heavy,1.2"), "`heavy` is not a number"),
     "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "the length of the"),
-    "no weight": (ENGLISH.replace(",-433,", ",,"), "its buoyancy is missing"),
+    "no weight": (ENGLISH.replace(",-433,", ",,"), "the buoyancy is missing"),
     "nothing floats": (
         "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "neither end of the list is a float"
     ),

@@ -347,8 +347,8 @@ def test_density_that_falls_with_depth_is_a_warning(
             (
                 8,
                 13,
-                "0.8 m/s is faster than `maximum_speed`, 0.5 m/s: a fill value, or another unit? "
-                "(if it is true, raise `maximum_speed` of the environment)",
+                "0.8 m/s is faster than `maximum_speed`, 0.5 m/s; is it a fill value, "
+                "or in another unit? If it is correct, raise `maximum_speed` of the environment",
             ),
         ),
         (

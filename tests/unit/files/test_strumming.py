@@ -140,7 +140,7 @@ def test_bourget_and_marichal_moored(mistakes: Mistakes, written: str) -> None:
         (
             14,
             21,
-            "`bourget-marichal` is for towed cables; "
-            "a mooring takes one of vandiver, blevins, skop-griffin",
+            "`bourget-marichal` is only for towed cables; "
+            "for a mooring, use one of vandiver, blevins, skop-griffin",
         )
     ]

@@ -117,7 +117,7 @@ def test_records_that_stand_still_or_are_of_another_unit(record, tmp_path) -> No
         still[name][:] = record[name].values[:1]
     assert said(still, tmp_path) == [
         "10 of 10 levels keep one value for a tenth of the record, or for most pairs of readings: "
-        "the longest stretch at 4 m, 720 readings from 2026-03-01T00:00 to 2026-03-30T23:00"
+        "the longest stretch at 4 m is 720 readings, from 2026-03-01T00:00 to 2026-03-30T23:00"
     ]
     for name in ("u", "v"):
         record[name].values[:] /= 100.0
