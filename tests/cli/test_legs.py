@@ -366,7 +366,8 @@ MISTAKES = {
         "line: [{use: anchor-wheels-1}]\n", "`line` and `legs` exclude each other"),
     "  pennant:\n    line:": ("  pennant:\n    lin:", "did you mean `line`?"),
     "top: {join: A}\n    bottom: fr": (
-        "top: {held: {depth: 600 m}}\n    bottom: fr", "must be above the seabed, which is 500 m deep"),
+        "top: {held: {depth: 600 m}}\n    bottom: fr",
+        "must be above the seabed, which is 500 m deep"),
 }  # fmt: skip
 
 

@@ -297,7 +297,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "remove the period"),
         ("{spectrum: sea.csv, significant_height: 2 m}", "remove these keys"),
         ("{scatter: none.csv}", "no such file"),
-        ("{scatter: bad.csv}", "not numbers"),
+        ("{scatter: bad.csv}", "the row must contain numbers"),
         ("{scatter: seas.csv, spectrum: ochi-hubble}", "has its own periods"),
     ],
 )

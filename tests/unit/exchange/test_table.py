@@ -360,7 +360,7 @@ REFUSED = {
     "more than a line has": (ENGLISH.replace(",1.3,2", ",1.3,990" ).replace(
         "AR861", "8 mm wire,1,8,1,1.3,990\n8 mm wire,1,8,1,1.3,990\nAR861"
     ), "has more than 2000 pieces"),
-    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "its count is 1000000"),
+    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "the count is 1000000"),
 }  # fmt: skip
 
 

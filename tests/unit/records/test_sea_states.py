@@ -109,7 +109,7 @@ def test_a_measured_spectrum(tmp_path):
             "sea.csv:3:1: frequencies must increase and must not be negative",
         ),
         ("0.1,2\n0.05,1\n0.2,-1", "sea.csv:4:2: a spectral density must not be negative"),
-        ("0.1,2\n0.2,nan\n0.3,1", "sea.csv:3:1: not numbers"),
+        ("0.1,2\n0.2,nan\n0.3,1", "sea.csv:3:1: the row must contain numbers"),
         ("0.1,0\n0.2,0\n0.3,0", "densities that are not all zero"),
         ("0.1,0", "needs three frequencies or more"),
         ("1,0\n2,0.01\n3,0", "that can be solved is 2 s; check its units"),
@@ -132,7 +132,10 @@ def test_spectra_that_cannot_be(tmp_path, rows, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("significant_wave_height[m],peak_period[s],share\n# calm\n2,nan,1\n", ":3:1: not numbers"),
+        (
+            "significant_wave_height[m],peak_period[s],share\n# calm\n2,nan,1\n",
+            ":3:1: the row must contain numbers",
+        ),
         ("significant_wave_height[m],peak_period[s],share\n2,7,.3\n4,9,.1\n", "add up to 0.4"),
         (
             "significant_wave_height[ft],peak_period[s],share\n6,7,1\n",

@@ -129,7 +129,7 @@ def test_a_tenth_without_change(length, told):
     assert len(said) == told
     if told:
         assert "1 of 3 levels keep one value for a tenth" in said[0]
-        assert f"at 120 m, {length} readings from 2026-03-01T10:00" in said[0]
+        assert f"at 120 m is {length} readings, from 2026-03-01T10:00" in said[0]
 
 
 def test_levels_against_the_water():

@@ -85,14 +85,14 @@ def poor(record: xr.Dataset) -> xr.Dataset:
 
 
 @pytest.mark.parametrize(("make", "expected"), [
-    (every_day, "its 30 profiles are 24 h apart, so tides and peaks between them"),
+    (every_day, "the 30 profiles are 24 h apart, so tides and peaks between them"),
     (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` were excluded, because they"),
     (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`: CALM reads the"),
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
     (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
-    (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m, 81 readings from 2026-0"),
+    (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m is 81 readings, from 202"),
     (lambda one: one.where(one["time"].values[:, None] % 2 > 0, 0.4 - one), "10 of 10 series app"),
     (copied, "100 readings from 2026-03-13T12:00 are the same as those from 2026-03-03T02:00"),
     (lambda one: one.sel(time=(one["time"] < 300) | (one["time"] > 500)), "1 gap in time: the lo"),
