@@ -36,8 +36,9 @@ class CalmError(Exception):
 class Problem:
     """A mistake at one position of a file.
 
-    `line` and `column` count from 1; line 0 stands for the whole file. `lacks` is empty unless the
-    file is merely incomplete; it then names the missing value, such as ``no length on wire 2``.
+    `line` and `column` count from 1; line 0 stands for the whole file. If the file is merely
+    incomplete, `lacks` names the missing value, such as ``no length on wire 2``; otherwise `lacks`
+    is empty.
     """
 
     path: str
@@ -52,7 +53,7 @@ class Problem:
 
 
 class InputError(CalmError):
-    """A file cannot be used; `problems` lists all mistakes found in it."""
+    """An input file cannot be used; `problems` lists all mistakes found in the file."""
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(problems)
@@ -60,8 +61,9 @@ class InputError(CalmError):
 
 
 def refused(path: object, *messages: str, line: int = 0, column: int = 1) -> InputError:
-    """Create an InputError for a file, with one problem per message; `line` 0 stands for the whole
-    file.
+    """Create an InputError for a file, with one problem per message.
+
+    `line` and `column` give the position in the file; line 0 stands for the whole file.
     """
     place = str(path), line, column if line else 0
     return InputError([Problem(*place, one_line(message)) for message in messages])
@@ -93,7 +95,7 @@ class NoEquilibrium(CalmError):
         super().__init__(f"{status}: {self.message} {advice}")
 
     def naming(self, piece: str) -> NoEquilibrium:
-        """Return this exception with the name of the affected piece added."""
+        """Return a copy of this exception whose message names the affected piece."""
         return NoEquilibrium(self.status, self.wording.format(piece=piece), self.advice)
 
     def to_dict(self) -> dict[str, str]:
@@ -118,10 +120,11 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 
 
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
-    """Return a line with the name of a missing library and the command that installs it.
+    """Return a message with the name of a missing library and the command that installs this
+    library.
 
-    Return None if the missing module belongs to CALM or has no name, because the cause is then a
-    program error.
+    Return None if the missing module belongs to CALM or has no name, because this is a program
+    error.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):
@@ -135,7 +138,7 @@ def how_to_install(missing: ModuleNotFoundError) -> str | None:
 
 
 def unexpected(error: Exception) -> str:
-    """Describe an exception from outside CALM in one line."""
+    """Return a one-line description of an exception that was not raised by CALM."""
     advice = how_to_install(error) if isinstance(error, ModuleNotFoundError) else None
     return advice or f"{type(error).__name__}: {error}"
 
@@ -163,7 +166,9 @@ def one_line(text: str) -> str:
 
 
 def unknown(what: str, text: str, known: Iterable[str]) -> str:
-    """Append the most similar known name to the message `what`, or all names if they are few."""
+    """Return the message `what`, extended by the most similar known name, or by all names if few
+    exist.
+    """
     names = list(known)
     near = nearest(text, names)
     if near:
@@ -174,8 +179,10 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
 
 
 def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
-    """Return the message for a value that is not allowed. It ends with the most similar allowed
-    value or, if no value is similar, with `offer`.
+    """Return the message for a value that is not allowed.
+
+    The message ends with the allowed value most similar to `text` or, if no value is similar, with
+    `offer`.
     """
     choices = list(allowed)
     meant = nearest(text, choices) or offer
@@ -226,9 +233,7 @@ def shown(value: object) -> str:
 
 
 def about_quantity(name: str, value: object, error: QuantityError) -> str:
-    """Return the message about an invalid quantity, with the corrected line if a correction is
-    known.
-    """
+    """Return the message about an invalid quantity, with a corrected value if one is known."""
     text = f"`{name}: {shown(value)}`" if shown(value) else f"`{name}`"
     message = f"{text} {error.complaint}"
     if error.suggestion:

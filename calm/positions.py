@@ -25,8 +25,8 @@ _POSITION = re.compile(
 def degrees_of(text: str, what: str) -> float | None:
     """Parse a latitude or longitude [degrees], negative for south and west.
 
-    Accepted are texts such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2
-    W``. Returns None for a text with neither minutes nor a hemisphere, such as a plain number.
+    Texts such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2 W`` are
+    accepted. Return None for a text with neither minutes nor a hemisphere, such as a plain number.
 
     Parameters
     ----------
@@ -36,8 +36,8 @@ def degrees_of(text: str, what: str) -> float | None:
     Raises
     ------
     ValueError
-        Minutes or seconds are 60 or more; degrees with a fraction are followed by minutes; there
-        are both a sign and a hemisphere; or the hemisphere is one of the other coordinate.
+        Minutes or seconds are 60 or more, degrees with a fraction are followed by minutes, the text
+        has both a sign and a hemisphere, or the hemisphere belongs to the other coordinate.
     """
     found = _POSITION.fullmatch(text.strip())
     if found is None:
@@ -78,7 +78,7 @@ def plain_degrees(text: str, what: str) -> float:
 
 
 def read_as_minutes(degrees: float) -> float:
-    """Convert degrees and minutes with a point between them to degrees: 48.18 is read as 48°18'."""
+    """Convert a number whose decimals are minutes to degrees: 48.18 stands for 48°18'."""
     size = abs(degrees)
     whole = int(size)
     minutes = (size - whole) * 100.0
@@ -93,7 +93,10 @@ _ROUNDS = 10
 
 @dataclass(frozen=True)
 class Frame:
-    """Local axes east, north and up, whose origin [degrees] lies on the ellipsoid."""
+    """Local coordinate frame with axes to the east, north and up.
+
+    The origin, given by latitude and longitude [degrees], lies on the ellipsoid.
+    """
 
     latitude: float
     longitude: float

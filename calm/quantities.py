@@ -23,7 +23,7 @@ class Quantity:
     heading : str
         Short title of a column or an axis, without the unit.
     unit : str
-        Unit of the number in results (SI, and degrees); empty for a pure number.
+        Unit of the value in results: an SI unit or degrees; empty for a pure number.
     meaning : str
         Meaning as one sentence, for the manual.
     decimals : int
@@ -31,7 +31,7 @@ class Quantity:
     symbol : str
         Symbol in formulas, if there is one.
     display : str
-        Usual unit of display, if it differs from `unit`: a key of `_USUAL`.
+        Usual display unit (a key of `_USUAL`), if this differs from `unit`.
     """
 
     name: str
@@ -44,22 +44,22 @@ class Quantity:
 
     @property
     def display_unit(self) -> str:
-        """Display unit: as set by `show_in`, else the usual unit."""
+        """Display unit set by `show_in`, or the usual unit if none is set."""
         return _layout(self.unit, self.display, self.decimals)[0]
 
     @property
     def usual_unit(self) -> str:
-        """Default display unit, which pictures always use."""
+        """Default display unit, which plots always use."""
         return self.display or self.unit
 
     @property
     def usual_scale(self) -> float:
-        """Factor from `unit` to the usual unit."""
+        """Factor that converts a value from `unit` to the usual unit."""
         return _USUAL.get(self.display, 1.0)
 
     @property
     def scale(self) -> float:
-        """Factor from `unit` to the displayed unit."""
+        """Factor that converts a value from `unit` to the display unit."""
         return _layout(self.unit, self.display, self.decimals)[1]
 
     @property
@@ -73,8 +73,8 @@ class Quantity:
         return f"{self.heading} [{self.usual_unit}]" if self.usual_unit else self.heading
 
     def format(self, value: float | None) -> str:
-        """Format a value [`unit`] in the display unit, without the unit; an unknown value becomes a
-        dash.
+        """Format a value, given in `unit`, as a number in the display unit; an unknown value
+        becomes a dash.
 
         A value that rounds to zero has no minus sign.
         """
@@ -84,10 +84,11 @@ class Quantity:
         return f"{value * scale:z.{places}f}"
 
     def say(self, value: float | None, *beside: float | None) -> str:
-        """Format a value [`unit`] in the display unit, with the unit, such as ``113.2 m``.
+        """Format a value, given in `unit`, in the display unit and with this unit, such as ``113.2
+        m``.
 
-        A force whose usual unit is kN is shown in N if it and all values `beside` it are below 1
-        kN.
+        A force whose usual unit is kN is shown in N if the force and all values in `beside` are
+        below 1 kN.
         """
         if value is None or value != value:
             return "unknown"
@@ -95,15 +96,18 @@ class Quantity:
         return _with_unit(number, unit)
 
     def number_and_unit(self, value: float, *beside: float | None) -> tuple[str, str]:
-        """Return number and unit separately, in the display unit, for a value [`unit`]."""
+        """Return the number and the unit, as separate texts, with which a value is displayed.
+
+        The value is given in `unit`. For `beside`, see `say`.
+        """
         largest = max(abs(one) for one in (value, *beside) if one is not None)
         if self.display_unit == "kN" and largest < 999.5 and "force" not in _shown:
             return f"{value:z.{2 if largest < 9.95 else 0}f}", "N"
         return self.format(value), self.display_unit
 
     def figure(self, value: float) -> str:
-        """Format a value [`unit`] to four significant digits with the display unit, for data
-        sheets.
+        """Format a value, given in `unit`, to four significant digits with its display unit, for
+        data sheets.
         """
         return _with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}", self.display_unit)
 
@@ -239,13 +243,13 @@ def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
 def show_in(units: Mapping[str, str]) -> None:
     """Set the display units for this process.
 
-    Data files remain in SI units. Quantities with a small usual unit, such as diameters in mm, keep
-    this unit.
+    Data files remain in SI units. A quantity with a small usual unit, such as a diameter in mm,
+    keeps its usual unit.
 
     Parameters
     ----------
-    units : display unit for each dimension in `SHOWN_UNITS`; a missing dimension keeps its usual
-        unit
+    units : display unit for each dimension in `SHOWN_UNITS`; a dimension that is not listed keeps
+        its usual unit
     """
     _shown.clear()
     _layout.cache_clear()
@@ -258,12 +262,12 @@ def shown_units() -> dict[str, str]:
 
 
 def say(name: str, value: float | None) -> str:
-    """Format a value of a quantity with its unit, for a sentence, such as ``113.2 m``."""
+    """Format a value of a named quantity with its unit for a sentence, such as ``113.2 m``."""
     return QUANTITIES[name].say(value)
 
 
 def rounded(value: float, digits: int, *, up: bool) -> float:
-    """Round a value to a number of significant digits, up or down."""
+    """Round a value up or down to a number of significant digits."""
     if value == 0.0:
         return 0.0
     step = 10.0 ** (floor(log10(abs(value))) - digits + 1)
@@ -271,7 +275,7 @@ def rounded(value: float, digits: int, *, up: bool) -> float:
 
 
 def bearing_of(east: float, north: float) -> float:
-    """Return the direction of a vector [degrees], clockwise from north, 0 to 360."""
+    """Return the direction of a vector, measured clockwise from north, 0 to 360 [degrees]."""
     return degrees(atan2(east, north)) % 360.0
 
 
@@ -290,15 +294,16 @@ def duration(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class MeasuredQuantity:
-    """A quantity measured by moored instruments, which can be interpolated to fixed levels.
+    """A quantity that moored instruments measure and that can be interpolated to fixed levels.
 
     Attributes
     ----------
     archive : name in OceanSITES files
     standard_name, long_name, units : attributes of the variable in files written by CALM
     dimension : dimension of the unit, as in `calm.units`
-    sought, usual : CF standard names and common variable names by which input files are searched
-    noise : standard deviation of a good sensor; the default unless the user specifies one
+    sought, usual : CF standard names, and common variable names, by which the quantity is found in
+        input files
+    noise : standard deviation of the error of a good sensor, used unless the user specifies a value
     """
 
     archive: str
@@ -339,7 +344,7 @@ manufacturers.
 def chosen_quantities(text: str | None) -> tuple[str, ...]:
     """Split a text such as ``temperature,salinity`` into names; None selects all quantities.
 
-    The names in OceanSITES files are accepted, too. UsageError: a name is unknown.
+    The names used in OceanSITES files are also accepted. Raises UsageError if a name is unknown.
     """
     archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
     wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]

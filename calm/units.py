@@ -29,7 +29,7 @@ KNOT = 1852 / 3600
 
 @dataclass(frozen=True)
 class Dimension:
-    """A dimension of quantities: its name in messages, its SI unit and its common units."""
+    """A physical dimension: its name in messages, its SI unit and its common units."""
 
     noun: str
     unit: str
@@ -144,11 +144,12 @@ class QuantityError(ValueError):
     Attributes
     ----------
     complaint : str
-        The fault, worded to follow the invalid text: "needs a unit".
+        The fault, worded to follow the invalid text, such as "needs a unit".
     suggestion : str or None
         The corrected text, if a correction is known.
     is_other : bool
-        Whether the text has another dimension, so that its unit or its number may be wrong.
+        Whether the text is a quantity of another dimension, so that either the unit or the number
+        may be wrong.
     """
 
     def __init__(
@@ -161,17 +162,18 @@ class QuantityError(ValueError):
 
 
 def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = None) -> float:
-    """Parse a number with its unit to SI (degrees, degC).
+    """Parse a number with its unit, and return the value in SI units, degrees or degC.
 
     Parameters
     ----------
     text : str or float
-        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero and any `number` need no
-        unit. Latitudes and longitudes may have degrees and minutes: see `calm.positions`.
+        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero, and values of the dimension
+        ``number``, need no unit. Latitudes and longitudes may have degrees and minutes: see
+        `calm.positions`.
     dimension : str
         A key of `DIMENSIONS`.
     usual_unit : str, optional
-        The unit to suggest if there is none; by default the SI unit.
+        The unit to suggest if the text has no unit; by default the SI unit.
 
     Raises
     ------
@@ -220,7 +222,7 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
 
 @dataclass(frozen=True)
 class QuantityRange:
-    """Dimension and limits of a quantity (SI, degrees)."""
+    """Dimension and allowed range of a quantity; the limits are in SI units or degrees."""
 
     dimension: str
     usual_unit: str | None = None
@@ -229,12 +231,12 @@ class QuantityRange:
     at_most: float = math.inf
 
     def read(self, text: object) -> float:
-        """Parse a text with a unit to its SI value.
+        """Parse a number with its unit, and return the value in SI units.
 
         Raises
         ------
         QuantityError
-            The text is not such a quantity, or is outside the limits.
+            The text is not a quantity of this dimension, or the value is outside the limits.
         """
         if text is None:
             raise QuantityError("has no value")
@@ -256,12 +258,12 @@ def with_unit(value: float, unit: str) -> str:
 
 @functools.lru_cache(maxsize=1024)
 def unit_factor(text: str, dimension: str) -> float:
-    """Return the factor that converts a unit to SI (degrees, degC).
+    """Return the factor that converts a unit to the SI unit, to degrees or to degC.
 
     Raises
     ------
     QuantityError
-        The unit is unknown or of another dimension; the suggestion is a unit.
+        The unit is unknown or has another dimension; `suggestion` is a valid unit or None.
     """
     wanted = DIMENSIONS[dimension]
     unit = _tidy(text)
@@ -294,7 +296,7 @@ def unit_factor(text: str, dimension: str) -> float:
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
     """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
-    Factor and offset come from pint, which knows the zeros of temperature scales.
+    Factor and offset come from the library pint, which also converts temperature scales.
 
     Parameters
     ----------
@@ -304,7 +306,7 @@ def unit_line(text: str, wanted: str) -> tuple[float, float]:
     Raises
     ------
     QuantityError
-        The unit is unknown, or of another dimension.
+        The unit is unknown, or has another dimension than `wanted`.
     """
     registry = _registry()
     plain = text.rpartition(",")[2].strip()  # `ITS-90, deg C`

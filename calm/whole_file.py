@@ -35,13 +35,14 @@ Stamp = tuple[tuple[str, int, int, int], ...]
 
 @contextlib.contextmanager
 def beside(target: Path) -> Iterator[Path]:
-    """Provide an empty temporary file that replaces the target when the block ends without an
-    error.
+    """Context manager for a temporary file that replaces the target if the block succeeds.
+
+    The temporary file is initially empty.
 
     Raises
     ------
     OSError
-        The file could not be written; the target is unchanged and no temporary file remains.
+        The file could not be written. The target is then unchanged, and no temporary file remains.
     """
     part = target.with_name(f".{target.name[:_LONGEST]}.{os.urandom(6).hex()}{UNFINISHED}")
     part.touch(exist_ok=False)
@@ -57,11 +58,13 @@ def beside(target: Path) -> Iterator[Path]:
 def put(
     target: Path, content: bytes, *, like: os.stat_result | None = None, durable: bool = False
 ) -> None:
-    """Write a whole file. A symbolic link is replaced, so callers must resolve links first.
+    """Write the content of a whole file.
+
+    A symbolic link is replaced, so callers must resolve links first.
 
     Parameters
     ----------
-    like : status of the file whose permissions and, if allowed, owner are copied
+    like : file status from which the permissions and, if allowed, the owner are copied
     durable : whether the file must survive a loss of power
 
     Raises
@@ -82,8 +85,8 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Delete old temporary files of the file `name` in a folder, or those of all files if no name
-    is given.
+    """Delete old temporary files of the file `name` in a folder, or of all files if `name` is
+    empty.
     """
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
@@ -135,7 +138,7 @@ def _give(part: Path, like: os.stat_result) -> None:
 def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
     """Read a small UTF-8 text file.
 
-    InputError: the file cannot be read, is too large, or is not UTF-8.
+    Raises InputError if the file cannot be read, is too large, or is not UTF-8.
     """
     return decoded(path, read_content(path, largest=largest)).removeprefix("\ufeff")
 
@@ -143,7 +146,8 @@ def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
 def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     """Return the bytes of a small regular file.
 
-    InputError: the path is not a regular file, or the file is too large or cannot be read.
+    Raises InputError if the path is not a regular file, or if the file is too large or cannot be
+    read.
     """
     with _regular(path):
         if path.stat().st_size > largest:
@@ -154,9 +158,9 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
 
 
 def read_head(path: Path, most: int) -> bytes:
-    """Return the first bytes of a regular file.
+    """Return the first `most` bytes of a regular file.
 
-    InputError: the path is not a regular file, or the file cannot be read.
+    Raises InputError if the path is not a regular file, or if the file cannot be read.
     """
     with _regular(path), path.open("rb") as file:
         return file.read(most)
@@ -178,11 +182,10 @@ def _regular(path: Path) -> Iterator[None]:
 
 
 def no_such_file(path: Path) -> str:
-    """Return the message about a missing file. It suggests the most similar file name in the same
-    folder.
+    """Return the message about a missing file, with the most similar file name in the same folder.
 
-    The suggested name has the same suffix; for a name without a suffix or with .yml, it may be a
-    .yaml file.
+    The suggested name has the same suffix as `path`; if `path` has no suffix or .yml, the suggested
+    name has the suffix .yaml. If no name is similar, nothing is suggested.
     """
     with contextlib.suppress(OSError, ValueError):
         suffix = {"": ".yaml", ".yml": ".yaml"}.get(path.suffix, path.suffix)
@@ -199,7 +202,7 @@ def no_such_file(path: Path) -> str:
 def decoded(path: Path, content: bytes) -> str:
     """Decode the UTF-8 text of a file, with or without a byte-order mark.
 
-    InputError: the content is not UTF-8.
+    Raises InputError if the content is not UTF-8.
     """
     if b"\0" in content:
         raise refused(path, "is a binary file; text is needed")
@@ -211,17 +214,16 @@ def decoded(path: Path, content: bytes) -> str:
 
 
 class FileCache(Generic[T]):
-    """Cache of the last value computed from a set of files; the names, times and sizes of the files
-    are its key.
+    """Cache of the last value computed from a set of files.
+
+    The key consists of the names, times and sizes of the files.
     """
 
     def __init__(self) -> None:
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return the cached value; call `read` if the list of files differs or one of them has
-        changed.
-        """
+        """Return the cached value, or call `read` if `paths` or one of the files has changed."""
         stamp = _stamp(paths)
         last = self._last
         if stamp is not None and last is not None and last[0] == stamp:

@@ -29,15 +29,16 @@ def position(
 
     Parameters
     ----------
-    arc : distance along the line, up from the point; negative down [m]
-    horizontal, vertical : components of the tension at the point [N]; vertical is positive if
-        the line rises from the point; x takes the sign of `horizontal`
+    arc : distance along the line from the known point [m], positive up the line and negative down
+        the line
+    horizontal, vertical : components of the tension at the known point [N]; `vertical` is positive
+        if the line rises from this point, and x takes the sign of `horizontal`
     weight : weight per metre, > 0 [N/m]
 
     Returns
     -------
-    x, z : horizontal distance and height from the known point to the end of the arc [m]; arrays
-        broadcast
+    x, z : horizontal distance and height of the other end of the arc, relative to the known point
+        [m]. Arrays broadcast against each other
     """
     s, h, v, w = (np.asarray(value, float) for value in (arc, horizontal, vertical, weight))
     top = v + w * s
@@ -61,14 +62,14 @@ class Catenary:
 
     Parameters
     ----------
-    horizontal : H > 0 [N]
-    vertical : V at the upper end [N]; with a seabed V > 0
+    horizontal : horizontal tension H > 0 [N]
+    vertical : vertical tension V at the upper end [N]; must be positive if `seabed` is set
     length : unstretched length L > 0 [m]
     weight : weight in water per unstretched metre, > 0 [N/m]
-    stiffness : EA [N]; infinite (the default) for an inextensible line
-    seabed : whether the line may lie on a level seabed, without friction, at its lower end
+    stiffness : axial stiffness EA [N]; infinite (the default) for an inextensible line
+    seabed : whether the lower part of the line may lie on a level seabed without friction
 
-    Fields may be arrays that broadcast.
+    Fields may be arrays that broadcast against each other.
 
     Raises
     ------
@@ -92,7 +93,7 @@ class Catenary:
 
     @property
     def grounded(self) -> Floats:
-        """Unstretched length on the seabed [m]."""
+        """Unstretched length of the part of the line that lies on the seabed [m]."""
         length = np.asarray(self.length, float)
         if not self.seabed:
             return np.zeros_like(length)
@@ -102,7 +103,10 @@ class Catenary:
 
     @property
     def vertical_bottom(self) -> Floats:
-        """Vertical pull at the lower end, positive upwards; 0 on the seabed [N]."""
+        """Vertical tension at the lower end [N], positive if the line rises from there.
+
+        The value is 0 if the lower part of the line lies on the seabed.
+        """
         lifted = np.asarray(self.length, float) - self.grounded
         hanging = np.asarray(self.vertical, float) - np.asarray(self.weight, float) * lifted
         return np.where(self.grounded > 0.0, 0.0, hanging)
@@ -118,18 +122,17 @@ class Catenary:
         return np.hypot(self.horizontal, self.vertical_bottom)
 
     def position(self, arc: ArrayLike) -> tuple[Floats, Floats]:
-        """Return horizontal distance and height from the lower end [m], for an unstretched arc
-        length [m].
+        """Return the horizontal distance and height of a point, relative to the lower end [m].
 
         Parameters
         ----------
-        arc : unstretched distance from the lower end, 0 to `length` [m]; broadcasts with the
-            fields
+        arc : unstretched length of the line between the lower end and the point, from 0 to `length`
+            [m]; broadcasts with the fields
 
         Raises
         ------
         ValueError
-            An arc is not on the line.
+            A value of `arc` is negative or exceeds `length`.
         """
         length, bottom = np.asarray(self.length, float), self.vertical_bottom
         h, w = np.asarray(self.horizontal, float), np.asarray(self.weight, float)
@@ -144,7 +147,7 @@ class Catenary:
 
     @property
     def end(self) -> tuple[Floats, Floats]:
-        """Horizontal distance and height of the upper end, from the lower end [m]."""
+        """Horizontal distance and height of the upper end, relative to the lower end [m]."""
         return self.position(self.length)
 
 
@@ -161,22 +164,23 @@ def between(
 
     Parameters
     ----------
-    x, z : horizontal distance > 0 and height of the upper end from the lower end [m]
-    length, weight, stiffness, seabed : as in `Catenary`; with a seabed z > 0
+    x, z : horizontal distance (> 0) and height of the upper end, relative to the lower end [m]
+    length, weight, stiffness, seabed : as in `Catenary`; if `seabed` is set, z must be positive
 
     Returns
     -------
-    Catenary : its upper end is at (x, z) to about 1e-13 of the length
+    Catenary : the catenary, whose upper end is at (x, z) to about 1e-13 of the length
 
     Raises
     ------
     ValueError
-        A value is outside its range, or the line is too short or slack.
+        A value is outside its range, or the line is too short or, with a seabed, too slack.
 
     Notes
     -----
-    The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so the pull is unique.
-    Newton's method converges to it if each step is halved until the position error decreases.
+    The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so only one pair (H,
+    V) gives the required position. Newton's method converges to this pair if each step is halved
+    until the position error decreases.
     """
     if not isfinite(x + z + length + weight):
         raise ValueError("the measures of a catenary must be finite")

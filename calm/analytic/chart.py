@@ -24,13 +24,13 @@ class ChartSolution:
 
     Parameters
     ----------
-    phi_a, phi_b : angle between the cable, in the direction from A to B, and the current at the
-        lower and at the upper end [rad], from −π to π; negative where the cable descends
+    phi_a, phi_b : angle from the current to the direction of the cable (from A to B), at the lower
+        end A and the upper end B [rad], from −π to π; negative where the cable descends
     tension_a, tension_b : tension at the lower and upper end [N]
     height, distance, length : height of B above A, distance of B downstream of A, and length of the
         cable [m]
-    h0 : tension at the apex of the curve divided by the weight per metre, which is the unit of
-        length of the chart [m]; 0 for a straight cable, which has no apex
+    h0 : unit of length of the chart [m]: the tension at the apex of the curve divided by the weight
+        per metre; 0 for a straight cable, which has no apex
     """
 
     phi_a: float
@@ -45,12 +45,12 @@ class ChartSolution:
 
 @dataclass(frozen=True)
 class ChartAnswer:
-    """All cables with three given quantities, or the reason why there is none.
+    """All cables that have three given quantities, or the reason why no cable is returned.
 
     Parameters
     ----------
-    status : ``converged``; else ``no-equilibrium``, ``inconsistent`` (the given quantities
-        contradict each other) or ``one-parameter-family`` (they do not determine the cable)
+    status : ``converged``, ``no-equilibrium``, ``inconsistent`` (the given quantities contradict
+        each other) or ``one-parameter-family`` (the given quantities do not determine the cable)
     k : K, as in `chart_solve`
     solutions : the cables; cables that do not dip below A come first
     message, advice : reason and advice if there is no solution
@@ -75,7 +75,10 @@ def chart_solve(
     distance: float | None = None,
     length: float | None = None,
 ) -> ChartAnswer:
-    """Find every cable that has three given quantities, to 1e-9, or the reason why there is none.
+    """Find every cable that has three given quantities, or the reason why there is none.
+
+    The cables have the given quantities to 1e-9: angles in rad, distance relative to the length,
+    other quantities relative to their own size.
 
     A cable that turns by less than a hundredth of a radian is almost straight, so its tension is
     less accurate than the given shape (angles, height, distance, length).
@@ -84,17 +87,17 @@ def chart_solve(
     ----------
     k : K = ρ Cx D V²/(2|w|), from 0 to 100
     weight : weight in water per metre, w [N/m]; negative for a buoyant cable
-    phi_a, phi_b : angles to the current [rad], −π to π. Only the end that is lower
-        (A; B if w < 0) can have a negative angle.
-    tension_a, tension_b : tensions [N], not negative; the smaller one (A; B if w < 0)
-        may be 0
-    height, length : positive [m]
-    distance : positive when B lies downstream of A [m]
+    phi_a, phi_b : angles to the current [rad], −π to π. Only the angle at the end with the smaller
+        tension (A, or B if w < 0) can be negative.
+    tension_a, tension_b : tensions ≥ 0 [N]; only the smaller tension (at A, or at B if w < 0) may
+        be 0
+    height, length : height of B above A, and length of the cable, both positive [m]
+    distance : distance between A and B along the current [m]; positive if B is downstream of A
 
     Raises
     ------
     UsageError
-        There are not exactly three quantities, or one is out of its range.
+        The number of given quantities is not three, or a value is outside its range.
     """
     given = {
         "phi_a": phi_a, "phi_b": phi_b, "tension_a": tension_a, "tension_b": tension_b,
@@ -227,7 +230,10 @@ def check(known: Mapping[str, float], weight: float) -> None:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Mirror a cable vertically: a buoyant cable becomes a sinking one, and vice versa."""
+    """Return the quantities of the vertical mirror image of a cable.
+
+    Mirroring turns a buoyant cable into a sinking one, and vice versa.
+    """
     swapped = {"a": "b", "b": "a"}
     mirrored = {}
     for name, value in values.items():
@@ -247,15 +253,15 @@ _LEAST_SLACK = 1e-12
 
 
 def family(what: str) -> NoEquilibrium:
-    """Return the answer for quantities that a whole family of cables has in common."""
+    """Return the answer ``one-parameter-family``, with the message `what`."""
     return NoEquilibrium("one-parameter-family", what, "Replace one of these by another quantity.")
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Find a contradiction among the quantities of a sinking cable, whatever the value of K; None
-    if there is none.
+    """Return a contradiction, independent of K, between the quantities of a sinking cable.
 
-    The caller mirrors buoyant cables. The messages are worded for both kinds of cable.
+    Return None if there is no contradiction. For a buoyant cable, the caller passes the mirrored
+    quantities. The messages suit both kinds of cable.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -281,20 +287,19 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
 
 
 def is_taut(known: Mapping[str, float]) -> bool:
-    """Return whether the cable is no longer than the distance between its ends, within rounding."""
+    """Return whether the cable length equals the distance between the ends, within rounding."""
     chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
 def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
-    """Find the reason why no cable has the given quantities, although they do not contradict each
-    other.
+    """Explain why no cable has the given quantities, which do not contradict each other.
 
     Parameters
     ----------
     k : K, as in `chart_solve`
-    known : the given quantities, mirrored for a buoyant cable
-    floats : whether the cable is buoyant, so that the quantities are mirrored
+    known : the given quantities, mirrored if the cable is buoyant
+    floats : whether the cable is buoyant
     """
     critical = float(critical_angle(k))
     shown = math.degrees(math.pi - critical if floats else critical)
@@ -339,9 +344,9 @@ def _none(message: str, advice: str) -> NoEquilibrium:
 def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
     """Return the straight cable at the critical angle, which is not part of a branch of the curve.
 
-    The cable matches the three given quantities [rad, m], with tensions divided by w, to 1e-9.
-    NoEquilibrium is returned if the quantities do not determine its size, and None if they do not
-    match such a cable.
+    In `known`, angles are in rad and tensions are divided by w. Return NoEquilibrium if the
+    quantities do not determine the length of the cable. Return None if no straight cable at the
+    critical angle has these quantities to 1e-9.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

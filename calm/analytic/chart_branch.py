@@ -43,10 +43,10 @@ _NODES = _NODES + 0.5
 
 
 def critical_angle(k: ArrayLike) -> Floats:
-    """Return the angle to the current at which a cable is straight [rad], 90° for K = 0.
+    """Return the angle to the current at which a cable is straight [rad]; it is π/2 for K = 0.
 
-    K ≥ 0, an array or a number, is the drag per metre normal to the current over the weight per
-    metre.
+    K ≥ 0 is the drag per metre of a cable normal to the current, divided by the weight per metre. K
+    may be an array.
     """
     return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
 
@@ -60,11 +60,10 @@ def check_k(k: float) -> float:
 
 @dataclass(frozen=True)
 class Branch:
-    """One branch of the curve, rotated so that its apex is at angle ψ = 0 and it extends
-    downstream.
+    """One branch of the curve, rotated so that it extends downstream and its apex is at ψ = 0.
 
-    Points are given by λ, negative before the apex. ψ is φ on the first branch and 180° − φ on the
-    second, whose distances are counted upstream.
+    A point is given by the parameter λ, which is negative before the apex. On the first branch ψ =
+    φ. On the second branch ψ = 180° − φ, and distances are positive upstream.
 
     Parameters
     ----------
@@ -77,10 +76,9 @@ class Branch:
 
     @classmethod
     def holding(cls, k: float, phi: float) -> tuple[Self, float] | None:
-        """Find the branch that contains an angle φ [rad], and λ at this angle; None for the
-        critical angle.
+        """Return the branch that contains an angle φ [rad], and the value of λ at this angle.
 
-        Raises UsageError for an angle beyond ±180°.
+        Returns None for a critical angle. Raises UsageError for an angle beyond ±180°.
         """
         if not -np.pi <= phi <= np.pi:
             raise UsageError(f"an angle is {np.degrees(phi):.6g}°; it must be from −180° to 180°")
@@ -103,17 +101,17 @@ class Branch:
 
     @cached_property
     def limit(self) -> float:
-        """Cosine of ψ that the branch approaches beyond its apex; before the apex it approaches the
-        negative of this value.
+        """Limit of cos ψ far beyond the apex; far before the apex, cos ψ approaches the negative of
+        this value.
         """
         return float(-self.sign * _leaning(self.k))
 
     def log_tension(self, parameter: ArrayLike) -> Floats:
-        """Return the logarithm of the tension, ln(T/wH₀)."""
+        """Return ln(T/wH₀), the logarithm of the tension, at the parameter λ."""
         return self.exponent * log_cosh(parameter)
 
     def angle(self, parameter: ArrayLike) -> Floats:
-        """Return the angle ψ [rad]."""
+        """Return the angle ψ [rad] at the parameter λ."""
         size = np.abs(np.asarray(parameter, dtype=np.float64))
         limit = np.where(np.asarray(parameter) < 0.0, -self.limit, self.limit)
         sech = _sech(size)
@@ -122,7 +120,7 @@ class Branch:
         return np.asarray(np.sign(parameter) * 2.0 * np.arctan(np.sqrt(squared_tangent)))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """Return the parameter λ of angles ψ [rad] between the two critical angles."""
+        """Return λ at angles ψ [rad], which must lie between the two critical angles."""
         signed = np.asarray(angle, dtype=np.float64)
         limit = np.where(signed < 0.0, -self.limit, self.limit)
         size, critical = np.abs(signed), np.arccos(limit)
@@ -132,8 +130,9 @@ class Branch:
         return np.asarray(np.copysign(size, signed))
 
     def from_apex(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
-        """Return arc length s′ and distance y′ of points from the apex, with y′ positive downstream
-        on both branches.
+        """Return the arc length s′ and the distance y′ of points from the apex, in units of H₀.
+
+        y′ is positive downstream on both branches.
         """
         signed = np.asarray(parameter, dtype=np.float64)
         arc, distance = self.span(np.minimum(signed, 0.0), np.maximum(signed, 0.0))
@@ -141,8 +140,9 @@ class Branch:
         return side * arc, side * self.sign * distance
 
     def span(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
-        """Return arc length and distance between two points with start ≤ end, in units of H₀;
-        points may be arrays.
+        """Return the arc length and the distance between two points, in units of H₀.
+
+        `start` and `end` are values or arrays of λ, with `start` ≤ `end`.
         """
         first, last = (
             np.asarray(side, dtype=np.float64) for side in np.broadcast_arrays(start, end)
@@ -250,7 +250,7 @@ class CurvePoints:
     phi : ndarray
         Angle of the cable to the current [rad].
     arc, distance, height : ndarray
-        s′, y′ (downstream), z′ (up), counted from the apex of the branch.
+        Arc length s′, distance y′ (positive downstream) and height z′ from the apex of the branch.
     tension : ndarray
         T/(wH₀) = 1 + z′.
     """
@@ -263,7 +263,7 @@ class CurvePoints:
 
 
 def curve(k: float, phi: ArrayLike) -> CurvePoints:
-    """Return points of the curve for K at given angles (vectorised), to 1e-12 of the arc length.
+    """Return the points of the curve at given angles, with errors below 1e-12 of the arc length.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def curve(k: float, phi: ArrayLike) -> CurvePoints:
     Raises
     ------
     UsageError
-        K or an angle out of range, or a critical angle.
+        K or an angle is outside its range, or an angle is critical.
     """
     angles = np.asarray(phi, dtype=np.float64)
     if not np.all(np.abs(angles) <= np.pi):

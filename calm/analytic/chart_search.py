@@ -41,22 +41,23 @@ _WINDOW = 2 * _AROUND + 1
 
 @dataclass(frozen=True)
 class ChartSearch:
-    """Search on a branch for cables with given sizes.
+    """Search for the parts of a branch that have given sizes (tensions, height, distance, length).
 
     Parameters
     ----------
     branch : branch to search
-    sizes : given values of tension_a and tension_b (divided by w), height, distance (mirrored like
-        the branch) and length, all in metres
+    sizes : given values [m] by name: tension_a and tension_b (divided by w), height, length, and
+        distance, with the sign that distances have on this branch
     """
 
     branch: Branch
     sizes: Mapping[str, float]
 
     def pieces(self, start: float | None, end: float | None) -> list[Piece]:
-        """Find all parts of the branch that have the given sizes and, if given, the end angles.
+        """Find all parts of the branch that have the given sizes.
 
-        If neither end is given, two of the sizes must determine the ratio of the tensions.
+        `start` and `end` are the values of λ at the ends, or None if unknown. If both are unknown,
+        two of the sizes must determine the ratio of the tensions.
         """
         if end is not None and end <= 0.0:
             return []
@@ -82,7 +83,7 @@ class ChartSearch:
         return self._along(places, lambda place: (place, self._raised(place, ratio)))
 
     def log_ratio(self) -> float | None:
-        """Return ln(T_B/T_A) if two of T_A, T_B and H are given."""
+        """Return ln(T_B/T_A), or None unless two of T_A, T_B and H are given."""
         below, above, height = (self.sizes.get(name) for name in _TENSION_NAMES)
         if height is not None and below is not None:
             return float(np.log1p(height / below))
@@ -119,10 +120,11 @@ _ORDER = (*_TENSION_NAMES, "distance", "length")
 
 
 def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
-    """Find all zeros of a vectorised function that a grid resolves.
+    """Find the zeros of a vectorised function that a scan over a grid reveals.
 
-    Changes of sign are refined to rounding. Minima close to zero without a change of sign are
-    resolved more and more finely, in case two zeros lie between two grid points.
+    Zeros with a change of sign are computed to machine precision. Where the function approaches
+    zero without changing sign, the grid is refined repeatedly, because two zeros may lie between
+    two grid points.
     """
     value = function(grid)
     steps = steps_with_zero(value)
@@ -142,17 +144,13 @@ def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
 
 
 def graded(length: float, points: int = _POINTS) -> Floats:
-    """Return distances from an edge up to `length`: with a constant ratio near the edge, evenly
-    spaced farther away.
-    """
+    """Return grid points up to `length`: in geometric progression near 0, then evenly spaced."""
     near = np.geomspace(_FINEST * length, length, points)
     return merged(near, np.linspace(0.0, min(length, 40.0), 2 * points)[1:])
 
 
 def merged(*grids: Floats) -> Floats:
-    """Merge grids; points that nearly coincide are removed, since a scan needs distinct
-    neighbours.
-    """
+    """Merge grids, and remove points that nearly coincide."""
     points = np.unique(np.concatenate(grids))
     gaps = np.diff(points)
     kept = np.ones(points.size, dtype=bool)
@@ -161,15 +159,16 @@ def merged(*grids: Floats) -> Floats:
 
 
 def reach(branch: Branch) -> float:
-    """Return the λ beyond which the cable is straight within rounding, so that tension and arc
-    length grow in proportion.
+    """Return the λ beyond which the curve is straight within rounding.
+
+    Beyond this λ, tension and arc length grow in proportion.
     """
     return 40.0 / branch.exponent + 20.0
 
 
 def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floats:
-    """Return one size of parts of the curve, in units of H₀: a tension (over wH₀), height, distance
-    or length.
+    """Return one size of parts of the curve: height, distance or length in units of H₀, or a
+    tension in units of wH₀.
     """
     if name == "tension_a":
         return np.exp(branch.log_tension(start))
@@ -183,7 +182,9 @@ def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floa
 
 
 def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) -> Floats:
-    """Refine zeros of a vectorised function between points of opposite sign, to rounding."""
+    """Compute zeros of a vectorised function, each between two points of opposite sign, to machine
+    precision.
+    """
     from scipy.optimize.elementwise import find_root
 
     found = np.asarray(find_root(function, (left, right)).x) if left.size else left
@@ -191,8 +192,8 @@ def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) ->
 
 
 def steps_with_zero(value: Floats) -> NDArray[np.intp]:
-    """Return the steps of a scan in which the sign changes, each as the index of its first
-    point.
+    """Return the steps of a scan over which the sign changes; a step is given by the index of its
+    first point.
     """
     change = (np.sign(value[:-1]) != np.sign(value[1:])) & (value[:-1] != 0.0)
     change &= np.maximum(np.abs(value[:-1]), np.abs(value[1:])) > _NOISE
@@ -200,8 +201,8 @@ def steps_with_zero(value: Floats) -> NDArray[np.intp]:
 
 
 def dips(value: Floats) -> NDArray[np.intp]:
-    """Return the points of a scan at which the value is so close to zero that the function may
-    touch zero.
+    """Return the indices of the scan points at which the function may touch zero without changing
+    sign.
     """
     size = np.abs(value)
     before, here, after = size[:-2], size[1:-1], size[2:]
@@ -221,14 +222,15 @@ _LEAST_RISE = 1.0 + 1e-13
 
 @dataclass(frozen=True)
 class LengthSearch:
-    """Search on a branch for a mean cosine D/L, and a third size as a fraction of the length.
+    """Search for the parts of a branch with a given ratio D/L and a given ratio of a third size to
+    L.
 
     Parameters
     ----------
     branch : branch to search
-    cosine : D/L, with D mirrored like the branch
-    third, share : name of the third size (tension_a, tension_b or height), and this size divided by
-        the length
+    cosine : ratio D/L of distance to length; D has the sign that distances have on this branch
+    third, share : name of the third size (tension_a, tension_b or height), and the ratio of this
+        size to the length
     """
 
     branch: Branch
@@ -237,7 +239,7 @@ class LengthSearch:
     share: float
 
     def pieces(self) -> list[Piece]:
-        """Find all parts of the branch that match."""
+        """Find all parts of the branch that have both ratios."""
         if not -1.0 < self.cosine < 1.0:
             return []
         outward = graded(reach(self.branch), _POINTS_OF_ENDS)

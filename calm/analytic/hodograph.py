@@ -36,8 +36,9 @@ Law = Literal["constant", "square"]
 
 
 def cosine_of_critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """Return the cosine of the critical angle, √(1 + p²/4) − p/2, without cancellation, for p ≥ 0
-    [-].
+    """Return the cosine of the critical angle, √(1 + p²/4) − p/2 [-].
+
+    The weight ratio p must be ≥ 0. The formula is evaluated without cancellation.
     """
     half = 0.5 * np.asarray(weight_ratio, float)
     return 1.0 / (half + np.sqrt(1.0 + half * half))
@@ -49,10 +50,10 @@ class Hodograph:
 
     Parameters
     ----------
-    weight_ratio : p = w/R > 0 [-]
-    friction : f ≥ 0 [-]
-    law : how f acts: "constant", F = f R, or "square", F = f R cos²φ
-    steep : whether the branch is φ > φc instead of φ < φc
+    weight_ratio : ratio p = w/R > 0 of weight to normal drag per metre [-]
+    friction : ratio f ≥ 0 of the largest tangential drag to R [-]
+    law : tangential drag F: "constant" for F = f R, or "square" for F = f R cos²φ
+    steep : true for the branch φ > φc, false for the branch φ < φc
 
     Raises
     ------
@@ -92,8 +93,9 @@ class Hodograph:
         return float(np.arctan2(self._sine, self._u))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """Return the parameter m of an angle [rad] on this branch: inf at φc, nan on the other
-        branch.
+        """Return the parameter m at an angle φ [rad].
+
+        The parameter is inf at φc, and nan for an angle that is not on this branch.
         """
         half = 0.5 * np.asarray(angle, float)
         a, sine, cosine = self._a, np.sin(half), np.cos(half)
@@ -111,13 +113,13 @@ class Hodograph:
         return (self._a * one, tanh) if self.steep else (self._a * tanh, one)
 
     def direction(self, m: ArrayLike) -> tuple[Floats, Floats]:
-        """Return cosine and sine of φ."""
+        """Return the cosine and the sine of the angle φ at m."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         square = sine * sine + cosine * cosine
         return (cosine - sine) * (cosine + sine) / square, 2.0 * sine * cosine / square
 
     def angle(self, m: ArrayLike) -> Floats:
-        """Return the angle φ [rad]."""
+        """Return the angle φ [rad] at m."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         return 2.0 * np.arctan2(sine, cosine)
 
@@ -129,7 +131,7 @@ class Hodograph:
         return float(np.arctanh(self._a)) if self.steep else 0.0
 
     def log_tension(self, m: ArrayLike) -> Floats:
-        """Return the logarithm of the tension, up to a constant."""
+        """Return the logarithm of the tension at m, up to an additive constant."""
         m = np.asarray(m, float)
         decay, a4 = np.exp(-2.0 * m), self._a**4
         less, more = -np.expm1(-2.0 * m), 1.0 + decay
@@ -168,11 +170,11 @@ class Hodograph:
         return 2.0 * u * (s2 + c2) / (self._sine * (1.0 + u) * (c2 + self._a**2 * s2))
 
     def arc(self, start: float, step: float) -> float:
-        """Return σ = ∫ R ds/T₀ over a step of m, with T₀ the tension at `start`."""
+        """Return σ = ∫ R ds/T₀ over a step of m, where T₀ is the tension at `start`."""
         return self._integral(start, step, None, 0.0)
 
     def reach(self, start: float, step: float) -> tuple[float, float]:
-        """Return ξ and η: distance upstream and height over a step of m, in units of T₀/R."""
+        """Return the distance upstream ξ and the height η over a step of m, in units of T₀/R."""
         # either coordinate may vanish although the arc length does not
         floor = 1e-13 * abs(self.arc(start, step))
         xi, eta = (self._integral(start, step, share, floor) for share in (0, 1))
@@ -204,10 +206,10 @@ class Hodograph:
         return [0.0, *(cuts if step > 0.0 else reversed(cuts)), step]
 
     def advance(self, start: float, arc: float) -> float:
-        """Return the step of m for an arc length in units of T₀/R; return −`start` if the line
-        becomes horizontal before the arc ends.
+        """Return the step of m that covers a given arc length, in units of T₀/R.
 
-        `start` is finite. An arc up the line is positive.
+        The arc is positive up the line, and `start` must be finite. The result is −`start` if the
+        line becomes horizontal before the arc ends.
         """
         from scipy.optimize import brentq
 
@@ -243,9 +245,9 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 
     Parameters
     ----------
-    part : the function
-    edges : edges of the panels, increasing or decreasing
-    floor : negligible absolute error
+    part : function to integrate
+    edges : edges of the panels, in increasing or decreasing order
+    floor : absolute error that is negligible
     """
     from scipy.integrate import quad
 
@@ -256,7 +258,7 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 
 
 class Station(NamedTuple):
-    """A point on a line in a stream, relative to the given end.
+    """Points on a line in a stream, relative to the given end.
 
     Attributes
     ----------

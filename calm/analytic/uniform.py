@@ -36,18 +36,19 @@ from calm.analytic.hodograph import Floats, Hodograph, Law, Station, cosine_of_c
 def neutral_line(
     arc: ArrayLike, tension: ArrayLike, angle: ArrayLike, normal_drag: ArrayLike
 ) -> Station:
-    """Return the shape of a line without weight: cot φ = cot φ₀ + R s/T, T constant.
+    """Return the shape of a line without weight, along which the tension T is constant.
 
-    x = (T/R) (√(1 + c²) − √(1 + c₀²)), z = (T/R) (asinh c − asinh c₀), c = cot φ.
+    With c = cot φ, the shape is c = c₀ + R s/T, x = (T/R) (√(1 + c²) − √(1 + c₀²)) and z = (T/R)
+    (asinh c − asinh c₀).
 
     Parameters
     ----------
-    arc : distance s from the given end, up the line; negative down the line [m]
+    arc : distance s along the line from the given end [m], positive up the line
     tension : T > 0 [N]
     angle : φ₀ at the given end, between 0 and π [rad]
     normal_drag : R > 0, drag per metre of a line normal to the stream [N/m]
 
-    Arrays broadcast.
+    Arrays broadcast against each other.
 
     Raises
     ------
@@ -66,7 +67,7 @@ def neutral_line(
 
 
 def critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """Return the angle φc at which a line is straight: cos φc = √(1 + p²/4) − p/2 [rad].
+    """Return the angle φc [rad] at which a line is straight, from cos φc = √(1 + p²/4) − p/2.
 
     Parameters
     ----------
@@ -85,7 +86,9 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
 
 
 def critical_weight_ratio(angle: ArrayLike) -> Floats:
-    """Return p = w/R = sin φc tan φc, the inverse of `critical_angle` [-].
+    """Return the weight ratio p = w/R = sin φc tan φc [-].
+
+    This function is the inverse of `critical_angle`.
 
     Parameters
     ----------
@@ -122,7 +125,7 @@ def tension_ratio(
     Raises
     ------
     ValueError
-        An angle is beyond the critical angle, which no line crosses, or a value is outside its
+        The two angles are on different sides of the critical angle, or a value is outside its
         range.
     """
     branch = branch_of(start, weight_ratio, friction, law)
@@ -144,12 +147,14 @@ def heavy_line(
     tangential_drag: float = 0.0,
     law: Law = "square",
 ) -> Station:
-    """Return the shape of a heavy line. The tension is in closed form; arc length, distance and
-    height need quadrature.
+    """Return the shape of a heavy line.
+
+    The tension is computed in closed form; arc length, distance and height are integrated
+    numerically.
 
     Parameters
     ----------
-    arc : distance s from the given end, up the line; negative down the line; any shape [m]
+    arc : distance s along the line from the given end [m], positive up the line; array of any shape
     tension : T₀ > 0 at the given end [N]
     angle : φ₀ at the given end, −π to π [rad]
     weight : w > 0, weight per metre in the fluid [N/m]
@@ -165,9 +170,9 @@ def heavy_line(
 
     Notes
     -----
-    Below the point where the line is horizontal it rises again, with an angle below 0 or above π.
-    Seen from its opposite end, this part is an ordinary line whose angle differs by π. A line
-    lighter than water is the vertical mirror image of a line of weight −w.
+    Below a point where the line is horizontal, the line rises again, and its angle is below 0 or
+    above π. Followed in the opposite direction, this part is an ordinary line, whose angle differs
+    by π. A line lighter than water is the vertical mirror image of a line of weight −w.
     """
     if not (0.0 < tension < np.inf and 0.0 < normal_drag < np.inf):
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
@@ -244,14 +249,16 @@ class CableFunctions(NamedTuple):
 
 
 def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0) -> CableFunctions:
-    """Compute tension, arc length, distance and height between 90° and an angle.
+    """Compute Pode's functions (tension, arc length, distance and height) between 90° and an angle
+    φ.
 
     Parameters
     ----------
-    angle : φ, above the critical angle and up to π, of any shape [rad]; below 90° for a towed line
-        with its body at 90°. Above 90° (a moored line, whose arc length is negative because it is
-        counted downwards), the tangential drag and the term f σ change sign.
-    weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` gives it for a critical angle
+    angle : φ [rad], array of any shape, from above the critical angle up to π. An angle below 90°
+        belongs to a towed line with its body at 90°. An angle above 90° belongs to a moored line;
+        its arc length is counted downwards and therefore negative, and the tangential drag and the
+        term f σ change sign.
+    weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` computes p from a critical angle
     friction : f = F/R ≥ 0 [-]
 
     Raises

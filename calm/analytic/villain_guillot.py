@@ -36,9 +36,9 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
 
     Parameters
     ----------
-    weight : W, in the fluid [N]
-    lift : F_P, positive up; negative for a depressor [N]
-    drag : F_T ≥ 0 [N]
+    weight : weight W in the fluid [N]
+    lift : hydrodynamic lift F_P [N], positive up, so that it is negative for a depressor
+    drag : drag F_T ≥ 0 [N]
 
     Raises
     ------
@@ -52,14 +52,16 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
 
 
 def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[1, 2]) -> Floats:
-    """Return the angle α_d at which a cable is towed straight [rad], with tan α_d = μg/(k_n V) for
-    D = 1.
+    """Return the angle α_d at which a towed cable is straight [rad].
+
+    For D = 1, tan α_d = μg/(k_n V).
 
     Parameters
     ----------
-    weight : μg > 0 [N/m]
-    normal_drag : k_n V^D > 0 [N/m]
-    exponent : D; 2 gives the critical angle of a heavy line
+    weight : weight per metre in the fluid, μg > 0 [N/m]
+    normal_drag : normal drag parameter, k_n V^D > 0 [N/m]
+    exponent : exponent D of the velocity in the drag; D = 2 gives the critical angle of a heavy
+        line
 
     Raises
     ------
@@ -77,14 +79,14 @@ def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[
 def linear_cable(
     arc: ArrayLike, tension: ArrayLike, angle: ArrayLike, weight: ArrayLike, drag: ArrayLike
 ) -> Station:
-    """Return the shape of a towed cable for D = 1 and k_t = k_n = k (arrays broadcast).
+    """Return the shape of a towed cable for D = 1 and k_t = k_n = k. Arrays broadcast.
 
     With ℓ = T₀/√((μg)² + (kV)²) and a = α₀ − α_d: tan(α − α_d) = sin a/(s/ℓ + cos a),
     T = T₀ √((s/ℓ)² + 2 (s/ℓ) cos a + 1).
 
     Parameters
     ----------
-    arc : s ≥ 0 from the body [m]
+    arc : distance s ≥ 0 along the cable from the body [m]
     tension : T₀ ≥ 0 at the body [N]; 0 for a free end
     angle : α₀ at the body [rad]; ignored at a free end
     weight : μg > 0 [N/m]
@@ -120,14 +122,15 @@ def quadratic_cable(
     normal_drag: float,
     tangential_drag: float,
 ) -> Station:
-    """Return the shape of a towed cable for D = 2, with elementary tension and quadrature for the
-    coordinates.
+    """Return the shape of a towed cable for D = 2.
+
+    The tension is an elementary function; the coordinates are integrated numerically.
 
     Parameters
     ----------
-    arc : s ≥ 0 from the body, of any shape [m]
+    arc : distance s ≥ 0 along the cable from the body [m]; array of any shape
     tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body, −π to π; ignored at a free end [rad]
+    angle : α₀ at the body, −π to π [rad]; ignored at a free end
     weight : μg > 0 [N/m]
     normal_drag : k_n V² > 0 [N/m]
     tangential_drag : k_t V² ≥ 0 [N/m]
@@ -148,11 +151,11 @@ def quadratic_cable(
 def straight_cable(
     arc: Floats, tension: float, angle: float, weight: float, rubbing: float
 ) -> Station:
-    """Return a cable that is straight at α_d, for instance one with a free end.
+    """Return the shape of a cable that is straight at α_d, such as a cable with a free end.
 
     Parameters
     ----------
-    arc : s ≥ 0 from the lower end [m]
+    arc : distance s ≥ 0 along the cable from the lower end [m]
     tension : T₀ at the lower end [N]
     angle : α_d, from `straight_angle` [rad]
     weight : μg [N/m]
@@ -176,12 +179,14 @@ def linear_tension_ratio(
     normal_drag: ArrayLike,
     tangential_drag: ArrayLike,
 ) -> Floats:
-    """Return the tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1 (arrays
-    broadcast).
+    """Return the tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1.
+
+    With the parameters w, n and t (weight, normal and tangential drag), A = (w² + t n)/(w² + n²)
+    and B = w (t − n)/(w² + n²). Arrays broadcast.
 
     Parameters
     ----------
-    angle, start : α and α₀, both within π of α_d on the same side of it [rad]
+    angle, start : α and α₀ [rad], on the same side of α_d and less than π away from α_d
     weight : μg > 0 [N/m]
     normal_drag : k_n V > 0 [N/m]
     tangential_drag : k_t V ≥ 0 [N/m]
@@ -222,11 +227,12 @@ def unequal_cable(
     normal_drag: float,
     tangential_drag: float,
 ) -> Station:
-    """Return the shape of a towed cable for D = 1 and k_t ≠ k_n, with elementary tension and
-    quadrature for the coordinates.
+    """Return the shape of a towed cable for D = 1 and k_t ≠ k_n.
 
-    The parameters and errors are those of `quadratic_cable`, with V instead of V² in the drags. The
-    angle must be within π of α_d.
+    The tension is an elementary function; the coordinates are integrated numerically.
+
+    The parameters and errors are those of `quadratic_cable`, but the drags contain V instead of V²,
+    and the angle must be less than π away from α_d.
 
     Notes
     -----

@@ -43,16 +43,15 @@ _QUARTERS = np.array([0.25, 0.5, 0.75])
 def assemble_line(
     pieces: Sequence[files.Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
 ) -> Line:
-    """Build the arrays of the line above the anchor, or of a whole towed line, in the order of the
-    pieces.
+    """Build the arrays of the line above the anchor, or of a whole towed line, in piece order.
 
     A piece with a fitted length has length 0 until it is fitted.
 
     Parameters
     ----------
-    pieces : top to bottom, the anchor last if there is one
+    pieces : pieces from top to bottom; an anchor is the last piece
     solver : laws of drag, friction and strumming; the defaults if None
-    gravity : acceleration of gravity for weights from masses [m/s²]
+    gravity : acceleration of gravity, used to convert masses to weights [m/s²]
     """
     # the environments of a mooring share its lines, with all results cached on the lines
     given = tuple(pieces), solver or Solver(), gravity
@@ -135,7 +134,9 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a copy of a line whose clamps have their drag in axial flow, for descent or ascent."""
+    """Return a copy of a line in which the clamps have the drag of axial flow, as in descent or
+    ascent.
+    """
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -146,7 +147,9 @@ def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
 
 
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
-    """Return the law by which strumming increases the Cn of cables; None if the file sets none."""
+    """Return the law by which strumming increases the Cn of cables, or None if the file sets no
+    law.
+    """
     keys = solver.strumming
     if not isinstance(keys, strumming_keys.BourgetMarichalKeys):
         return None
@@ -156,11 +159,12 @@ def vibration_law(solver: Solver) -> BourgetMarichal | None:
 def assemble_floating(
     pieces: Sequence[files.Piece], environment: Environment, water: Water
 ) -> Floating | None:
-    """Return the surface properties of the first float; None if neither its draft nor its drag is
-    known.
+    """Return the properties of the first float when it is at the surface.
 
-    A sphere or a cylinder has the hull of its kind unless the component specifies `hull`. If its
-    volume is unknown, so is the draft, and only `k_surface` has an effect.
+    The hull is the one that the component specifies as `hull`; by default, a sphere or a cylinder
+    has a hull of its own shape. If the volume is unknown, the draft is unknown too, and only
+    `k_surface` has an effect. Return None if there is no float, or if both the draft and the
+    surface drag of the float are unknown.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)

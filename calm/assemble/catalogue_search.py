@@ -7,7 +7,7 @@ from calm.files.catalogue_search import Figures, WordIndex
 
 
 class Index(WordIndex):
-    """The components available to a line, with their values."""
+    """Search index of a catalogue, including the values of the components."""
 
     def __init__(self, catalogue: Catalogue) -> None:
         super().__init__(catalogue)
@@ -21,7 +21,7 @@ class Index(WordIndex):
 
 
 def figures_of(catalogue: Catalogue, id: str) -> Figures:
-    """Return the values of a component or assembly in SI units, by the keys of `COLUMNS`."""
+    """Return the values of a component or assembly in SI units, keyed by the names in `COLUMNS`."""
     try:
         definition = catalogue.get(id)
         sheet = datasheet(definition, catalogue)

@@ -18,10 +18,10 @@ from calm.units import QuantityError, parse_quantity
 
 
 def net_buoyancy(component: files.Component, gravity: float) -> float:
-    """Return the net buoyancy in reference water, positive up [N, N/m].
+    """Return the net buoyancy in reference water, positive up [N; N/m for a cable or chain].
 
-    The value is the specified buoyancy or weight, or else follows from the mass and the gravity
-    [m/s²].
+    The value is the specified buoyancy or weight. Without either, it is computed from the mass and
+    the acceleration of gravity [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
@@ -31,8 +31,9 @@ def mass_in_air(component: files.Component) -> float | None:
     """Return the specified mass in air, or compute it from the weight in water [kg; kg/m for a
     cable or chain].
 
-    The conversion uses the displaced volume, or else the density of the material, which is steel by
-    default for a chain or an anchor. Return None if neither is known.
+    The conversion uses the displaced volume or, if that is unknown, the density of the material.
+    The default material of a chain or an anchor is steel. Return None if both the volume and the
+    density are unknown.
     """
     if component.mass is not None:
         return component.mass
@@ -112,8 +113,8 @@ def axial_drag_of(component: files.Component) -> float:
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
-    A cable's Kn includes strumming. With Bourget & Marichal's law, Kn is the value without
-    strumming, which the march increases. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or
+    A cable's Kn includes strumming. With Bourget & Marichal's law, however, Kn excludes strumming,
+    because the march adds its effect. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or
     chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031, depending on the
     finish), so that the friction is the same as in the quadratic law.
     """
@@ -181,8 +182,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    Return None for an outline, and for an assembly if one of its parts overrides values of its
-    component or is missing in the catalogue (`catalogue` None: there is no catalogue).
+    Return None for an outline. Also return None for an assembly if no catalogue is given, or if one
+    of its parts is missing from the catalogue or overrides values of its component.
     """
     if isinstance(definition, files.Component):
         return _of_component(definition, 1.0)

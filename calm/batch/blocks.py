@@ -48,7 +48,7 @@ class SolvedBlock(NamedTuple):
 
 
 class BlockTask(NamedTuple):
-    """Input for the solution of a block: its profiles, and the layout of the result file.
+    """Input of `solve_block`: the profiles of a block, and the layout of the result file.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ def write_solved(
     Parameters
     ----------
     layout, block, output, last : see `calm.dataset.netcdf.write_netcdf`
-    progress : called before the first block, and after each block
+    progress : function called before the first block and after each block
     """
     counts = np.zeros(len(STATUSES), np.int64)
     total = layout.sizes["time"]

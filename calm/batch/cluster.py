@@ -31,18 +31,18 @@ def on_cluster(
     """Solve blocks on the workers of a dask scheduler, and yield the results in order.
 
     The function waits for the first worker. Workers may join and leave; the blocks of a lost worker
-    are solved by another one.
+    are solved by other workers.
 
     Parameters
     ----------
     address : address of the scheduler, such as ``tcp://10.0.0.1:8786``
-    tell : called with a message when the scheduler has no worker
+    tell : function called with a message when the scheduler has no worker
 
     Raises
     ------
     UsageError
-        The scheduler does not answer or is lost; CALM is not installed on the workers; or one block
-        loses its worker again and again.
+        The scheduler does not answer or is lost, CALM is not installed on the workers, or the
+        workers of one block are lost repeatedly.
     """
     from distributed import CancelledError, Client, KilledWorker
 

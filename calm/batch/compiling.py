@@ -10,7 +10,7 @@ from calm.physics.compiled import cache_folder, on_compilation
 
 
 def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
-    """Compile the solver or load it from the cache; only a compilation is reported."""
+    """Load the compiled solver from the cache, or compile it and report this to the user."""
     started, reported = perf_counter(), False
 
     def announce() -> None:

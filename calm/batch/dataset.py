@@ -32,8 +32,9 @@ _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 def laid_out(
     layout: ResultLayout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """Return the arrays of all time-dependent variables of a layout, by name, for a range of
-    times.
+    """Return the arrays of all time-dependent variables of a layout, by name.
+
+    `columns` are the result columns for a range of times, and `time` lists these times.
     """
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)
@@ -96,7 +97,7 @@ def layout_of(mooring: Design, record: Record) -> ResultLayout:
 
 
 def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
-    """Create the time variable, in the coarsest unit in which all times are whole numbers."""
+    """Create the time variable, in the largest unit in which all times are whole numbers."""
     return Variable("time", ("time",), "<i8", {
         "standard_name": "time", "long_name": meaning, "axis": "T",
         "units": f"{_time_unit(time)} since 1970-01-01 00:00:00", "calendar": "standard",

@@ -31,10 +31,9 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Replace exceptions that occur while a finished result is read with helpful messages (context
-    manager).
+    """Context manager for reading a finished result.
 
-    Raises UsageError instead of any exception of the libraries.
+    Any exception raised by the libraries becomes a UsageError with a helpful message.
     """
     try:
         yield
@@ -49,15 +48,15 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
-    """Return the labels in a variable of a result, such as `clamp_label`; empty if the result has
-    no such variable.
+    """Return the labels in a variable of a result, such as `clamp_label`.
+
+    The sequence is empty if the result has no such variable.
     """
     return tuple(map(str, dataset[name].values)) if name in dataset else ()
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Find the prefix of the variable names and the column number for a part of the line in a
-    result.
+    """Find a part of the line in a result: the prefix of its variable names, and its column number.
 
     Parameters
     ----------
@@ -80,7 +79,7 @@ def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
 
 
 def status_names(dataset: Dataset) -> tuple[str, ...]:
-    """Return the names of the status numbers in a result, beginning with status 0.
+    """Return the names of the statuses in a result; the position in the list is the status number.
 
     Raises UsageError if the dataset is not a result of `calm batch`.
     """

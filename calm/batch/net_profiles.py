@@ -54,8 +54,10 @@ class NetRows(NamedTuple):
 
     Attributes
     ----------
-    pieces : (n, p, 12) position [m] and force [N] at the upper and at the lower end of each piece
-    clamps : (n, c, 7) position, sum of the forces above and below, and the larger of the two forces
+    pieces : (n, p, 12) position [m] and force [N] at the upper end of each piece, then at the lower
+        end
+    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp, and the larger of
+        these two forces [N]
     shares : (n, l) used fraction of the buoyancy of the float at the upper end of each leg
     """
 
@@ -65,16 +67,16 @@ class NetRows(NamedTuple):
 
 
 class NetArrays(NamedTuple):
-    """Work arrays, and starting point of the search for the profiles of a net.
+    """Work arrays for the profiles of a net, and the starting point of the search.
 
     Attributes
     ----------
-    on, still : work arrays for a profile; the water without current
+    on, still : work arrays for a profile, and the water without current
     start, slopes, scale : unknowns of the net at the starting point, their Jacobian and their
         scales
     x : work array for the unknowns
     piece, clamp : row of the first piece and of the first clamp of each leg in `NetRows`
-    weight : weight of the anchor of each leg [N]; inf without an anchor
+    weight : weight of the anchor of each leg [N]; inf for a leg without an anchor
     """
 
     on: solving.ProfileLevels
@@ -100,14 +102,14 @@ def solve_net_rows(
     rows: NetRows,
     endings: Any,
 ) -> None:
-    """Solve profiles of a net, and write the results to the rows of the profiles.
+    """Solve profiles of a net, and write the results to the rows of these profiles.
 
     Parameters
     ----------
     step : angle step [rad]
     depth : (1 or n, k) depth of the levels [m]
     u, v, w : (n, k) current [m/s]; NaN for missing values
-    endings : (n,) outcome of each profile; profiles with a value other than 0 on entry are skipped
+    endings : (n,) outcome of each profile; a profile whose outcome is not 0 on entry is skipped
     """
     for case in range(endings.size):
         if endings[case] != 0:
@@ -133,8 +135,8 @@ def solve_net_rows(
 def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
     """Return whether a solution is valid.
 
-    No leg may be above the surface or below the seabed, no anchor may be lifted, and the net must
-    be held horizontally.
+    In a valid solution, no leg is above the surface or below the seabed, no anchor is lifted, and
+    the net does not drift.
     """
     near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
@@ -155,7 +157,7 @@ def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
 
 
 def write_net(net: NetProblem, arrays: NetArrays, rows: NetRows, case: int) -> None:
-    """Write the results of a profile to the row of this profile."""
+    """Write the results of profile number `case` to row `case`."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
         count = int(net.state[i][leg_numbers.COUNT])
@@ -199,7 +201,7 @@ class NetProfiles:
 
     @cached_property
     def still(self) -> NetSolution | None:
-        """Solution of the net in still water; None without equilibrium."""
+        """Solution of the net in still water, or None if there is no equilibrium."""
         settings = replace(self.net.settings, compiled=True)
         try:
             return solve_together(self.net.legs, self.net.water.still(), settings, None)
@@ -208,7 +210,7 @@ class NetProfiles:
 
     @cached_property
     def at_rest(self) -> Result | None:
-        """Results of the net in still water; None without a valid equilibrium."""
+        """Results of the net in still water, or None if there is no valid equilibrium."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return result_together(self.net, self.still, self.still.legs)
@@ -216,8 +218,10 @@ class NetProfiles:
 
     @cached_property
     def base(self) -> NetSolution | None:
-        """Starting point of the search: the solution in still water or, if there is none, in the
-        current of the file.
+        """Solution from which the search starts.
+
+        This is the solution in still water or, if there is none, the solution in the current of the
+        file.
         """
         with suppress(NoEquilibrium):
             return self.still or self.net.standing
@@ -225,8 +229,9 @@ class NetProfiles:
 
     @cached_property
     def slopes(self) -> tuple[Floats, Floats] | None:
-        """Jacobian of the net at the starting point, and the scales of its unknowns; None if each
-        profile must be solved on its own.
+        """Jacobian of the net at the starting point, and the scales of the unknowns.
+
+        The value is None if each profile must be solved on its own.
         """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
@@ -249,12 +254,12 @@ class NetProfiles:
     ) -> dict[str, Floats]:
         """Solve profiles, and return the result columns by name.
 
-        Profiles whose status is not 0 are skipped; `status` is updated for the others.
+        A profile whose status is not 0 is skipped. For the other profiles, `status` is updated.
 
         Parameters
         ----------
         current : depth (1 or n, k) of levels [m], and u, v, w (n, k) at these levels [m/s]
-        status : (n,) index in `STATUSES`
+        status : (n,) status of each profile, as an index in `STATUSES`
         """
         count, pieces = len(status), self.net.file.pieces
         shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)

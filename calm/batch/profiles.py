@@ -50,20 +50,20 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 class Profiles(Columnar):
-    """Results of a mooring for n profiles, with NaN if `status` is not 0.
+    """Results of a mooring for n profiles; a profile whose `status` is not 0 has NaN.
 
-    If the profiles were given as an array with more dimensions, these replace n. Depths, offsets
-    and knockdown are in m, tensions and forces in N, tilt in degrees. The p components are in the
-    order of the file, with the anchor last, and the m clamps are listed down the line.
+    If the currents were given in arrays with more dimensions, these dimensions replace n. Depths,
+    offsets and knockdown are in m, tensions and forces in N, tilt in degrees. The p components are
+    in the order of the file, with the anchor last, and the m clamps are listed down the line.
 
     Further attributes are the batch columns, which `Profiles.columns` lists. Columns of
-    `Components` have the shape (n, p), columns of `Clamps`, such as ``clamp_depth``, the shape (n,
-    m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
+    `Components` have the shape (n, p), and columns of `Clamps`, such as ``clamp_depth``, have the
+    shape (n, m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
 
     Attributes
     ----------
-    component_label, clamp_label : labels (p,) and (m,)
-    status : (n,) index in `STATUSES`
+    component_label, clamp_label : labels of the components (p,) and of the clamps (m,)
+    status : (n,) status of each profile, as an index in `STATUSES`
     """
 
     component_label: tuple[str, ...]
@@ -78,8 +78,9 @@ class Profiles(Columnar):
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """Return the batch columns of one dimension: `component`, `clamp`, or an empty text for the
-        ends of the line.
+        """Return the batch columns by dimension: `component`, `clamp`, or an empty text.
+
+        The empty text stands for values at the ends of the line.
         """
         return {
             "component": Components.columns(Output.BATCH),
@@ -160,19 +161,20 @@ def solve_profiles(
 ) -> Profiles:
     """Solve a mooring for many current profiles.
 
-    Each profile replaces the current of the file; density, wind and everything else stay the same.
-    Profiles are independent: neither their order, nor other profiles, nor `workers` changes a
-    single bit of their results. The results agree with `calm run` to 1e-4 of the water depth and
-    2e-4 of the tension.
+    Each profile replaces the current of the file; everything else, such as density and wind, stays
+    the same. Not a single bit of the results of a profile depends on the order of the profiles, on
+    the other profiles or on `workers`. The results agree with `calm run` to 1e-4 of the water depth
+    and 2e-4 of the tension.
 
     Parameters
     ----------
-    u, v, w : (..., k) current to the east, to the north, upward [m/s]; w is 0 by default. A
-        level with a NaN is ignored, as is a level above the surface; values are linear between
-        levels, and constant beyond. In place of the arrays, `u` may be a record of currents as
-        `calm batch` reads it: a path, an `xarray.Dataset`, or a `pandas.DataFrame` with the
-        columns of a CSV file. Its profiles are in the order of time.
-    depth : (k,), or the shape of u, depths of the levels, in any order [m]
+    u, v, w : (..., k) components of the current to the east, to the north and upward [m/s]; w is 0
+        by default. Levels with NaN and levels above the surface are ignored. The current is linear
+        between levels, and constant above the first and below the last. Instead of the arrays, `u`
+        may be a record of currents that `calm batch` can read: a path, an `xarray.Dataset`, or a
+        `pandas.DataFrame` with the columns of a CSV file. The profiles of a record are in
+        chronological order.
+    depth : depths of the levels, in any order, with the shape (k,) or the shape of u [m]
     workers : number of threads; by default one per available processor
 
     Raises
@@ -186,7 +188,7 @@ def solve_profiles(
     ValueError
         The shapes of the arrays do not match, or there is less than one worker.
     NoEquilibrium
-        A piece has a fitted length, and no length fits.
+        A piece has a fitted length, but no length reaches the required depth.
     """
     batch = Batch(mooring)
     if is_record(u):
@@ -219,7 +221,7 @@ class Batch:
 
     @cached_property
     def water(self) -> Water:
-        """Water of the mooring without current, except the wind-driven surface drift."""
+        """Water of the mooring without current, except for the surface drift driven by the wind."""
         return assemble_water(replace(self.mooring.file.environment, current=_STILL))
 
     @cached_property
@@ -235,7 +237,7 @@ class Batch:
         *,
         workers: int | None = None,
     ) -> Profiles:
-        """Solve profiles; for parameters and errors see `solve_profiles`."""
+        """Solve profiles. For the parameters and errors, see `solve_profiles`."""
         if workers is not None and workers < 1:
             raise ValueError(f"`workers` is {workers}; it must be at least 1")
         shape, current = _checked(u, v, depth, w)
@@ -246,12 +248,12 @@ class Batch:
         return measured if shape == measured.status.shape else _shaped(measured, shape)
 
     def slopes(self, u: Floats, v: Floats, depth: Floats) -> tuple[Profiles, Floats]:
-        """Solve profiles (n, k) of a moored line on one thread, with derivatives by the current.
+        """Solve profiles (n, k) of a moored line in one thread, with derivatives of the depths.
 
         Returns
         -------
-        The profiles, and (n, m + p, 2 k) derivatives of the depths of clamps and components by u
-        and by v of every level [s], NaN without an equilibrium.
+        The profiles, and the derivatives (n, m + p, 2 k) of the depths of clamps and components
+        with respect to u and v at each level [s]; NaN for a profile without an equilibrium.
         """
         _, current = _checked(u, v, depth, None)
         return self._solve_alone(self.mooring.moored, current, 1, 2 * current[1].shape[1])
@@ -389,7 +391,9 @@ class Batch:
 
 
 def unsolved(line: Line, count: int, columns: int = 0) -> Results:
-    """Return empty rows of results for a line, with slopes by so many current components."""
+    """Create results filled with NaN for `count` profiles, with slopes for `columns` current
+    components.
+    """
     pieces, clamps = len(line.length), len(line.clamp_piece)
     shapes = [
         (count, len(OF_PIECE), pieces),

@@ -30,7 +30,7 @@ replace it.
 
 
 class InputHash:
-    """SHA-256 hash of the text of an input, followed by the measured values."""
+    """SHA-256 hash of an input: first its text, then the measured values that are added."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
@@ -43,19 +43,19 @@ class InputHash:
                 self._digest.update(array.tobytes())
 
     def attributes(self) -> dict[str, str]:
-        """Return the attribute of a result file that contains the hash."""
+        """Return the hash as an attribute of a result file."""
         return {HASH: self._digest.hexdigest()}
 
 
 def resolved_input(
     mooring: Design, time: NDArray[np.datetime64], options: Mapping[str, Any]
 ) -> str:
-    """Return the input of a result as JSON, including catalogue components and defaults.
+    """Return the complete input of a result as JSON, including catalogue components and defaults.
 
     Parameters
     ----------
     time : (n,) times of the record
-    options : options of the command that change results
+    options : command options that affect the results
     """
     first, last = (str(one.astype("datetime64[s]")) for one in (time[0], time[-1]))
     known = {
@@ -68,8 +68,10 @@ def resolved_input(
 
 
 def with_input(text: str) -> Attributes:
-    """Return the attributes for an input whose measured values are still to be hashed. The
-    placeholder for the hash has its final length.
+    """Return the attributes for the input `text`, with a placeholder for its hash.
+
+    The hash of the measured values is known only later, and replaces the placeholder, which has the
+    same length.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 

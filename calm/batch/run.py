@@ -40,13 +40,13 @@ def run_batch(
 
     Parameters
     ----------
-    output : a .nc file; an existing one is replaced
+    output : a .nc file; an existing file is replaced
     workers : number of threads; by default one for each processor
-    block : profiles in a block, which is a chunk of the result; by default `BLOCK`, or
-        `BLOCK_OF_NET`
+    block : number of profiles in a block, which is one chunk of the result; by default `BLOCK` or,
+        for a net, `BLOCK_OF_NET`
     scheduler : address of a dask scheduler whose workers solve the blocks
-    progress : called before the first block, and after each block
-    tell : called with messages for the user
+    progress : function called before the first block and after each block
+    tell : function called with messages for the user
 
     Returns
     -------
@@ -55,10 +55,10 @@ def run_batch(
     Raises
     ------
     UsageError
-        The record has no profile; the result cannot be written; no scheduler answers, or it is
-        lost.
+        The record has no profile, the result cannot be written, or the scheduler does not answer or
+        is lost.
     NoEquilibrium
-        A piece has a fitted length, and no length fits.
+        A piece has a fitted length, but no length reaches the required depth.
     """
     if record.count == 0:
         raise UsageError("the record has no profile in the requested period")

@@ -58,8 +58,8 @@ NUDGE = 1e-4
 class Results(NamedTuple):
     """Rows of results, one per profile: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6).
 
-    `slopes` (n, m + p, 2 k) are derivatives of the depths of clamps and pieces by u and v of the
-    levels [s], or (n, 0, 0) if not required.
+    `slopes` (n, m + p, 2 k) are the derivatives of the depths of clamps and pieces with respect to
+    u and v at each level [s]. If they are not required, the shape is (n, 0, 0).
     """
 
     pieces: Floats
@@ -102,14 +102,14 @@ def levels_for(count: int, water: Water) -> ProfileLevels:
 
 
 class ProfileArrays(NamedTuple):
-    """Work arrays for the water of a profile, and properties of the line.
+    """Work arrays for a profile, and properties of the line.
 
     Attributes
     ----------
     on : work arrays for the levels of a profile
     may_lie : (p,) whether each piece may lie on the seabed in a sub-surface mooring
-    depths : (3, m + p) depths of clamps and pieces, their derivatives by the unknown, and depths in
-        a changed current
+    depths : (3, m + p) depths of clamps and pieces, their derivatives with respect to the unknown
+        of the search, and the depths in a changed current
     """
 
     on: ProfileLevels
@@ -130,7 +130,7 @@ def solve_rows(
     results: Results,
     endings: Integers,
 ) -> None:
-    """Solve profiles, and write the results to the rows of the profiles.
+    """Solve profiles, and write the results to the rows of these profiles.
 
     Parameters
     ----------
@@ -165,13 +165,13 @@ def solve_rows(
 def sea_of(
     on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
 ) -> tuple[int, Sea]:
-    """Build the water of a profile. Return it with the outcome, which is FOUND, NO_CURRENT or
+    """Return the outcome and the water of a profile; the outcome is FOUND, NO_CURRENT or
     LEVELS_COINCIDE.
 
     Parameters
     ----------
-    depth, u, v, w : as in `solve_rows`; `case` is the row
-    still : water with the same gravity and viscosity
+    depth, u, v, w : as in `solve_rows`; `case` is the row of the profile
+    still : water from which gravity and viscosity are taken
     """
     at = depth[case if depth.shape[0] > 1 else 0]
     found, ending, total = read_profile(at, u[case], v[case], w[case], on.read), FOUND, 0
@@ -187,7 +187,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return the problem of a line with the water of the profile in the work arrays."""
+    """Return a copy of a problem whose water is that of the profile in the work arrays."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -205,7 +205,7 @@ def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem
 
 
 def refused_at_once(limits: Limits) -> int:
-    """Return the outcome for a line that can be rejected without a search; FOUND if a search is
+    """Return the outcome for a line that is rejected without a search, or FOUND if a search is
     needed.
     """
     refused = limits.refused_at_rest if limits.at_rest else limits.refused
@@ -215,7 +215,7 @@ def refused_at_once(limits: Limits) -> int:
 
 
 def lies_on_seabed(problem: LineProblem, arrays: ProfileArrays) -> bool:
-    """Return whether a piece other than chain of a sub-surface line lies on the seabed."""
+    """Return whether a sub-surface line has a piece other than chain on the seabed."""
     found, record = problem.work.found, problem.work.records[FINE]
     if found[SOUGHT] != BELOW:
         return False
@@ -226,14 +226,14 @@ def lies_on_seabed(problem: LineProblem, arrays: ProfileArrays) -> bool:
 
 
 def tilt_of(x: float, y: float, z: float) -> float:
-    """Return the angle of a vector from the vertical [degrees], 0 for a zero vector."""
+    """Return the angle between a vector and the vertical [degrees]; it is 0 for a zero vector."""
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
 def measure(
     problem: LineProblem, referee: Referee, arrays: ProfileArrays, results: Results, case: int
 ) -> None:
-    """Compute the results from the shape of the line, and write them to the row of the profile."""
+    """Compute the results from the shape of the line, and write them to row `case`."""
     found, record = problem.work.found, problem.work.records[FINE]
     nodes = int(found[NODES])
     find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
@@ -264,7 +264,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of the pieces at the head of the line, which form one rod."""
+    """Set the tilt of those pieces at the head of the line that form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
@@ -286,11 +286,12 @@ def measure_slopes(
     slopes: Floats,
     case: int,
 ) -> None:
-    """Write the derivatives of the depths by the current components to the row of a solved profile.
+    """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    For a step of each component the line is marched once, on the same segments and from the same
-    unknown. By the implicit function theorem, the unknown then moves by the change in the miss over
-    the slope of the miss. With several floats at the surface, the search is repeated instead.
+    For a small step in each component, the line is marched once, with the same segments and the
+    same value of the unknown. By the implicit function theorem, the unknown changes by minus the
+    change in the miss divided by the slope of the miss. With several floats at the surface, the
+    search is repeated instead.
     """
     problem, found, row = search.problem, search.problem.work.found, slopes[case]
     unknown = Unknown(
@@ -332,7 +333,11 @@ def measure_slopes(
 
 
 def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Floats) -> None:
-    """Write the depths of clamps and pieces (m + p,), as marched last, or extrapolated."""
+    """Write the depths of clamps and pieces to `depths` (m + p,).
+
+    The depths are those of the last march if `marched` is set, otherwise those of the extrapolated
+    shape.
+    """
     record, work = problem.work.records[FINE], problem.work
     nodes = int(work.left[MARCHED] if marched else work.found[NODES])
     height, row = (2 if marched else BETTER + 2), 0
@@ -347,8 +352,8 @@ def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Flo
 
 
 def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:
-    """Return the extrapolated position relative to the line's end [m], and the force [N], at a
-    node.
+    """Return the extrapolated position [m] and the force [N] at a node; x and y are relative to the
+    line's end.
     """
     x, y, z = record[BETTER], record[BETTER + 1], record[BETTER + 2]
     fx, fy, fz = record[BETTER + 3], record[BETTER + 4], record[BETTER + 5]
@@ -357,7 +362,7 @@ def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float
 
 
 def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
-    """Write the results of the clamps to the row of the profile, in order down the line."""
+    """Write the results of the clamps to row `case`, in order down the line."""
     record = problem.work.records[FINE]
     nodes, row = int(problem.work.found[NODES]), 0
     for n in range(1, nodes):
@@ -393,8 +398,9 @@ def used_buoyancy(problem: LineProblem) -> float:
 
 
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
-    """Copy the valid levels of a profile at or below the surface, sorted by depth. Return their
-    number, or -1 if two coincide.
+    """Copy the valid levels of a profile at or below the surface, sorted by depth.
+
+    Return the number of levels, or −1 if two levels have the same depth.
     """
     count = 0
     for j in range(depth.size):
@@ -416,7 +422,7 @@ def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -
 
 
 def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Interpolate a column of a table linearly at a depth; k is the index of the first deeper
+    """Interpolate column `c` of a table linearly at a depth; `k` is the index of the first deeper
     level.
     """
     if k == 0:
@@ -479,8 +485,8 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Return a column of a table at a depth (see `between`), without interpolation error if level k
-    is at this depth.
+    """Return column `c` of a table at a depth, as `between` does, but exactly if level `k` is at
+    this depth.
     """
     if k < count and table[k, 0] == depth:
         return float(table[k, c])

@@ -47,7 +47,7 @@ OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
 
 
 def status_of(leg: Leg, ending: int) -> int:
-    """Convert an outcome of the solver for a profile of a mooring to the index in `STATUSES`."""
+    """Convert the outcome of the solver for a profile to an index in `STATUSES`."""
     if ending == LIES_ON_SEABED:
         return STATUSES.index(leg.grounded_error("a piece").status)
     return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)
@@ -59,7 +59,9 @@ def ending_of(status: str) -> Ending:
 
 
 def endings(counts: Mapping[str, int]) -> dict[Ending, int]:
-    """Sum the numbers of profiles by status to numbers by category; an empty category has 0."""
+    """Convert numbers of profiles by status to numbers by category; a category without profiles has
+    0.
+    """
     ended = dict.fromkeys(Ending, 0)
     for status, count in counts.items():
         ended[ending_of(status)] += count
@@ -72,8 +74,10 @@ _AT_ONCE = 8192
 def implausible(
     depth: Floats, u: Floats, v: Floats, w: Floats | None, maximum_speed: float
 ) -> NDArray[np.bool_]:
-    """Return whether each level (n, k) has a speed above `maximum_speed` [m/s] or is deeper than
-    any ocean.
+    """Return whether each level (n, k) is implausible.
+
+    A level is implausible if its speed exceeds `maximum_speed` [m/s], or if it is deeper than any
+    ocean.
 
     An infinite speed counts as too fast. Levels above the surface and levels without a value are
     ignored.
@@ -86,7 +90,7 @@ def implausible(
 
 
 def first_implausible(record: Record, maximum_speed: float) -> str:
-    """Describe the first implausible value of a record with its time, level and size.
+    """Describe the first implausible current of a record by time, depth and speed.
 
     Raises InputError if the file is damaged.
     """

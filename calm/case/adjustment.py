@@ -46,8 +46,8 @@ class Adjustment:
     dimension : dimension of the value, a key of `calm.units.DIMENSIONS`
     now : value before the change
     range : default smallest and largest value
-    to : function that returns the mooring with a new value
-    bounded : whether the lower end of `range` is also a limit for a range given by the user
+    to : function that returns the mooring for a new value of the parameter
+    bounded : whether a range given by the user must not extend below the lower end of `range`
     whole : whether the value must be a whole number
     note : remark for the user
     """
@@ -212,9 +212,9 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
     Parameters
     ----------
-    text : a label, a point, and ``buoyancy``, ``length`` or ``count``. The label is that of one
-        part, or the common part of several numbered labels, such as ``glass`` for ``glass 1`` and
-        ``glass 2``; for a count it may be the label of an assembly
+    text : a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label is that of one
+        part, or the common beginning of numbered labels, such as ``glass`` for ``glass 1`` and
+        ``glass 2``. For a count, the label may also be that of an assembly
     file : the mooring in which the label is looked up
 
     Raises

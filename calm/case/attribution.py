@@ -63,17 +63,19 @@ replaced.
 
 @dataclass(frozen=True)
 class Attribution:
-    """Contributions of the drags of p pieces and clamped instruments.
+    """Contributions of the drag of each of p pieces and clamped instruments.
 
     The columns of `start` and `shares` are the depth and the excursion of a point of the line [m],
     and the used fraction of the surface float's buoyancy.
 
     Attributes
     ----------
-    parts : leg, piece and clamp (-1 for none) to which each drag belongs
+    parts : leg, piece and clamp on which each drag acts; the clamp is -1 if the drag acts on the
+        piece
     start : (3,) values without drag, or with the smallest drag
-    shares : (p, 3) contribution of each drag; the sums are the total change
-    miss : (3,) relative error of the sums before they were scaled to the total change
+    shares : (p, 3) contribution of each drag; the sum over the drags is the total change
+    miss : (3,) relative error of these sums before the contributions were scaled to the total
+        change
     """
 
     parts: list[SolverPart]
@@ -93,8 +95,9 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that prepares solutions close to given lines; it returns a function that solves
-        a variant of one line and returns the (3,) values at the point
+    near : function that takes lines and returns a second function, which starts from the solutions
+        for these lines; the second function solves a variant of one line and returns the (3,)
+        values at the point
     start : (3,) values without drag, in the columns of `Attribution`; None if the line has no
         unique shape without drag, in which case the shares begin at `LEAST_DRAG`
     whole : (3,) values with full drag
@@ -102,7 +105,7 @@ def attribute(
     Raises
     ------
     NoEquilibrium
-        The line has no equilibrium at a stage.
+        The line has no equilibrium at one of the intermediate drags.
     """
     parts = [(leg, *part) for leg, line in enumerate(lines) for part in _parts_with_drag(line)]
     least = 0.0
@@ -123,8 +126,9 @@ def attribute(
 
 
 def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None = None) -> Line:
-    """Return the line with its drags multiplied by factors; by default, clamps have the factors of
-    the pieces.
+    """Return the line with its drags multiplied by factors.
+
+    By default, the factor of the pieces also applies to the clamps.
     """
     return replace(
         line,
@@ -175,8 +179,9 @@ def _integral(
 
 
 def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return a function for the parameter `near` of `attribute`, for a single line and a point at a
-    clamp or at the top of a piece.
+    """Return the function `near` that `attribute` needs, for a single line.
+
+    The point is at a clamp or at the top of a piece.
     """
 
     def near(lines: Sequence[Line]) -> Varied:
@@ -188,8 +193,9 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
 
 
 def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return a function for the parameter `near` of `attribute`, for a net and a point at a clamp
-    or at the top of a piece.
+    """Return the function `near` that `attribute` needs, for a net.
+
+    The point is at a clamp or at the top of a piece.
     """
 
     def near(lines: Sequence[Line]) -> Varied:

@@ -50,9 +50,9 @@ _LAST = 1000
 class ResultColumn:
     """A column of a result table.
 
-    Each column is computed in one of four ways. `of_part` reads the piece or clamp of the file.
-    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor.
-    `derived` combines earlier columns. `of_row` is evaluated when an output shows a row.
+    Each column is computed by one of four functions. `of_part` reads the piece or clamp of the
+    file. `found` reads the arrays of a solved line; `at_anchor` then supplies the row of the
+    anchor. `derived` combines earlier columns. `of_row` is called when an output shows a row.
 
     Attributes
     ----------
@@ -61,13 +61,14 @@ class ResultColumn:
     description : meaning, for the manual and the NetCDF `long_name`
     outputs : outputs that show the column
     prefix : prefix of the name in NetCDF and batches
-    of_part : value for a piece or clamp of the file
-    found : values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
-    at_anchor : value for the anchor, from a `LineEnd`, or for a clamp on the anchor, from an
-        `OnAnchor`
-    derived : values (…, n) from a namespace of earlier columns and `part`, the n pieces or clamps
-    of_row : value from a row and the mooring file; no table stores it
-    worst : function that selects the value for the builder if several pieces share a row
+    of_part : returns the value for a piece or clamp of the file
+    found : returns the values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
+    at_anchor : returns the value for the anchor from a `LineEnd`, or for a clamp on the anchor from
+        an `OnAnchor`
+    derived : returns the values (…, n) from a namespace that contains the earlier columns and, as
+        `part`, the n pieces or clamps
+    of_row : returns the value from a row and the mooring file; no table stores this value
+    worst : selects the value shown in the builder if several pieces share a row
     place : rank from the left in printed tables; columns without a rank come last
     attributes : additional attributes of the NetCDF variable
     """
@@ -137,8 +138,8 @@ def column(
     ----------
     description, outputs, more : attributes of the `ResultColumn`
     title, unit, decimals : title, unit and decimals of the quantity. Without `unit`, the quantity
-        is the entry of `QUANTITIES` with the name of the field, whose heading `title` replaces. A
-        field without such an entry is text.
+        is the entry of `QUANTITIES` that has the name of the field, and `title` replaces the
+        heading of this entry. If there is no such entry, the column is text.
     in_repr : whether the `repr` of a row includes the field
     default : default value of the field
     """
@@ -192,7 +193,7 @@ def derive(columns: Iterable[ResultColumn], known: Mapping[str, Any]) -> dict[st
 
     Parameters
     ----------
-    known : the remaining columns by name, and `part`, which lists the pieces or clamps
+    known : the other columns by name, and `part`, which lists the pieces or clamps
     """
     rows, found = SimpleNamespace(**known), {}
     for one in columns:

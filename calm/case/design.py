@@ -117,13 +117,13 @@ class Design:
 
     @property
     def leg(self) -> Leg:
-        """The only leg of a mooring or a tow; raises UsageError for several legs."""
+        """The only leg of a mooring or a tow. Raises UsageError if there are several legs."""
         refuse_several(self.file)
         return self.legs[0]
 
     @property
     def moored(self) -> Leg:
-        """The only leg of a mooring; raises UsageError for a tow and for several legs."""
+        """The only leg of a mooring. Raises UsageError for a tow and for several legs."""
         refuse_all_but_moorings(self.file)
         return self.legs[0]
 
@@ -149,14 +149,15 @@ class Design:
 
     @cached_property
     def water(self) -> Water:
-        """Water depth, and current and density by level."""
+        """Water depth, and current and density at each level."""
         if self.given_water is not None:
             return self.given_water
         return self.water_of(self.environment) if self.several else self.legs[0].water
 
     def water_of(self, environment: Environment) -> Water:
-        """Return the water of an environment. If a leg of a net is held above the surface, there is
-        still air above the water.
+        """Return the water of an environment.
+
+        If a leg of a net is held above the surface, the levels extend into motionless air.
         """
         if not self.several:
             return assemble_water(environment)
@@ -190,8 +191,8 @@ class Design:
 
         Parameters
         ----------
-        label : label of the piece or clamp whose keys are changed; by default, keys of the file are
-            changed
+        label : label of the piece or clamp whose keys are changed; without it, top-level keys of
+            the file are changed
         environment : name of an entry of `environments` in the file, an environment file, or
             changed keys of the default environment
 
@@ -211,7 +212,7 @@ class Design:
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
-        """Return a copy of the design whose legs have the given lines, and optionally with other
+        """Return a copy of the design whose legs have the given lines and, optionally, another
         water.
         """
         near = self.standing if self.several else None
@@ -247,14 +248,14 @@ class Design:
 
     @cached_property
     def standing(self) -> NetSolution:
-        """Equilibrium of several legs in the water of the file. Raises NoEquilibrium if there is
-        none.
+        """Equilibrium of several legs in the water of the file.
+
+        Raises NoEquilibrium if there is no equilibrium.
         """
         return self.together(self.water, self.near)
 
     def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
-        """Solve several legs in given water. The search starts from another solution if one is
-        given.
+        """Solve several legs in given water; the search starts from the solution `near` if given.
 
         Raises NoEquilibrium if there is no equilibrium.
         """
@@ -271,9 +272,7 @@ class Design:
 
     @cached_property
     def typed_legs(self) -> tuple[Leg, ...]:
-        """Legs with `for_surface` set, which is true for a leg that floats at the surface in still
-        water.
-        """
+        """Legs whose `for_surface` states whether the leg floats at the surface in still water."""
         if not self.several:
             return self.legs
         try:
@@ -379,7 +378,7 @@ def _upside_down(result: LegResult) -> str:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Result:
-    """A converged design. Lengths and depths [m], forces [N], angles [degrees].
+    """Result of a converged design. Lengths and depths are in m, forces in N, angles in degrees.
 
     x and y are distances to the east and north. Their origin is the anchor, the tow point or, for
     several legs, the origin in the file. A result with one leg also has the attributes of this leg,
@@ -453,7 +452,7 @@ class Result:
 
     @property
     def water(self) -> Water:
-        """Water depth, and current and density by level."""
+        """Water depth, and current and density at each level."""
         return self.design.water
 
     @property
@@ -473,7 +472,9 @@ class Result:
 
     @property
     def leg(self) -> LegResult:
-        """Result for the only leg of a mooring or a tow; raises UsageError for several legs."""
+        """Result for the only leg of a mooring or a tow. Raises UsageError if there are several
+        legs.
+        """
         if self.several:
             raise UsageError(
                 f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
@@ -488,19 +489,19 @@ class Result:
 
     @property
     def anchor(self) -> AnchorLoad:
-        """Load on the anchor of the leg; raises UsageError for a tow."""
+        """Load on the anchor of the leg. Raises UsageError for a tow."""
         if self.leg.anchor is None:
             raise UsageError(f"{self.name} has no anchor")
         return self.leg.anchor
 
     @property
     def tow_point(self) -> TowPoint:
-        """Load of a tow on the ship; raises UsageError for a leg that is not towed."""
+        """Load of a tow on the ship. Raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.tow_point, self.name)
 
     @property
     def body(self) -> TowedBody:
-        """Values at the towed body; raises UsageError for a leg that is not towed."""
+        """Values at the towed body. Raises UsageError for a leg that is not towed."""
         return _of_a_tow(self.leg.body, self.name)
 
     @property
@@ -510,7 +511,7 @@ class Result:
 
     @property
     def still_shape(self) -> Shape | None:
-        """Shape of the leg in still water; None if this shape is not unique."""
+        """Shape of the leg in still water, or None if this shape is not unique."""
         return self.leg.still_shape
 
     @property
@@ -520,17 +521,20 @@ class Result:
 
     @property
     def strumming(self) -> Strumming | None:
-        """Strumming of the cables; None if the file sets no strumming law."""
+        """Strumming of the cables, or None if the file sets no strumming law."""
         return self.leg.strumming
 
     @property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the leg if strumming increases the drag of its cables; solved on first use."""
+        """Results of the leg for the case that strumming increases the drag of its cables.
+
+        The leg is solved when the attribute is first used.
+        """
         return self.leg.strumming_band
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Another equilibrium of the leg; None if none was found."""
+        """Values of another equilibrium of the leg, or None if none was found."""
         return self.leg.other_equilibrium
 
     @cached_property
@@ -564,7 +568,7 @@ class Result:
         }
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the line from the side on matplotlib axes, and return the axes.
+        """Draw a side view of the line on matplotlib axes, and return the axes.
 
         Without `ax` the axes are those of a new figure. Raises UsageError if matplotlib is not
         installed.
@@ -706,8 +710,10 @@ def load_in(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> list[Design]:
-    """Read a file as `load` does, once for each environment. None selects the default environment
-    and all environments that the file names.
+    """Read a file as `load` does, once for each environment.
+
+    If `environments` is None, these are the default environment and all environments that the file
+    names.
 
     Raises InputError with the mistakes of all environments.
     """

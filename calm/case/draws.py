@@ -75,9 +75,9 @@ def normals_of(samples: int, seed: int) -> Floats:
 def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
     """Convert standard normal numbers (n, causes) to draws.
 
-    A deviation is the standard deviation of a normal distribution about the specified value. A pair
-    is the 5th and 95th percentile of a distribution, which is normal for an angle and lognormal for
-    a factor.
+    If a deviation is specified, it is the standard deviation of a normal distribution about the
+    specified value. If a pair is specified, its values are the 5th and 95th percentiles of a
+    distribution that is normal for an angle and lognormal for a factor.
     """
     columns = [
         (_angles if name == _ANGLE else _factors)(getattr(uncertainty, name), normals[:, i])
@@ -102,7 +102,7 @@ def _factors(spread: Spread, normal: Floats) -> Floats:
 
 
 def drawn_line(line: Line, draw: Draw) -> Line:
-    """Return the line with the values of one random draw of its inputs."""
+    """Return the line for one random draw of the uncertain inputs."""
     cable, rises = line.flexible, line.buoyancy > 0.0
     drag = np.where(cable, draw.cable_drag, draw.rigid_drag)
     lift = np.where(cable, draw.cable_weight, np.where(rises, draw.buoyancy, 1.0))
@@ -130,8 +130,9 @@ def drawn_line(line: Line, draw: Draw) -> Line:
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:
-    """Return the water with the inputs of a draw. If the water depth changes, the levels keep their
-    depths below the surface.
+    """Return the water for one random draw of the uncertain inputs.
+
+    If the water depth changes, the depths of the levels below the surface stay the same.
     """
     turn = radians(draw.direction)
     east, north = draw.current * cos(turn), draw.current * sin(turn)
@@ -145,8 +146,10 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(NoMemory):
-    """Solver for moorings close to a solved one. It starts from the known equilibrium, and solves
-    from scratch if this fails.
+    """Solver for moorings that differ little from a solved one.
+
+    Each search starts from the known equilibrium; if this fails, the mooring is solved from
+    scratch.
     """
 
     def __init__(self, leg: Leg) -> None:

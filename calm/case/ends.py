@@ -24,7 +24,7 @@ from calm.solve import Solution
 
 
 def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:
-    """Return the load of a leg on its anchor; NaN for a leg without an anchor."""
+    """Return the load of a leg on its anchor; the values are NaN for a leg without an anchor."""
     if not leg.anchored:
         return AnchorLoad(**{each.name: nan for each in fields(AnchorLoad)})
     force, friction = solution.force[-1], leg.file.anchor_friction

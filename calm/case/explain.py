@@ -30,9 +30,7 @@ CHANGE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """Contribution of the drag of a piece or clamp; a row of `Causes`, where the values are
-    described.
-    """
+    """Contribution of the drag of one piece or clamp; a row of the table `Causes`."""
 
     index: int
     label: str
@@ -48,8 +46,8 @@ class Causes(ColumnTable[Cause]):
 
     Attributes
     ----------
-    index : (p,) index of the piece, or of the piece under the clamp
-    label : (p,) label
+    index : (p,) index of the piece, or of the piece that carries the clamp
+    label : (p,) label of the part
     clamped : (p,) whether the part is a clamp
     drag : (p,) horizontal drag force [N]
     knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities of the
@@ -75,7 +73,7 @@ class Explanation:
     Attributes
     ----------
     label : label of the explained piece or clamp
-    quantities : the columns of `causes` with a meaning: knockdown and excursion or, for a line
+    quantities : names of the meaningful columns of `causes`: knockdown and excursion or, for a line
         without a unique shape in still water, excursion and used buoyancy
     figures : values of the original mooring
     without_drag : part of each quantity that is not caused by drag

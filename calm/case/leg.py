@@ -42,8 +42,8 @@ class Leg:
     ----------
     file : file with this leg only; its pieces are counted from the upper end. If a leg that is not
         a tow has no anchor, its last piece is a stand-in with the id `STAND_IN`
-    for_surface : whether the leg is designed to reach the surface; with None, this follows from the
-        leg itself. Changed copies that are checked keep the setting of the original leg
+    for_surface : whether the leg is designed to reach the surface; if None, this is determined from
+        the leg itself. A changed copy made for a check keeps the value of the original leg
     memory : cache of solutions for earlier states of the file and for other environments
     given_line, given_water : replacements for the line and the water of the file
     """
@@ -101,8 +101,8 @@ class Leg:
 
     @cached_property
     def water(self) -> Water:
-        """Water of the leg: current over the ground and density by level, and the water depth at
-        the anchor.
+        """Water of the leg: depth at the anchor, and density and current over the ground at each
+        level.
         """
         return self.given_water or assemble_water(self.file.environment)
 
@@ -127,9 +127,9 @@ class Leg:
 
     @cached_property
     def line(self) -> Line:
-        """Pieces above the anchor as arrays; a fitted piece has its cut length.
+        """Pieces above the anchor as arrays, with a fitted piece at its cut length.
 
-        Raises NoEquilibrium if no length fits.
+        Raises NoEquilibrium if no cut length reaches the required depth.
         """
         if self.given_line is not None:
             return self.given_line
@@ -156,9 +156,9 @@ class Leg:
         )
 
     def cut(self, file: MooringFile) -> MooringFile:
-        """Return the file with the fitted piece at its cut length in this leg.
+        """Return the file in which the fitted piece has its cut length in this leg.
 
-        Raises NoEquilibrium if no length fits.
+        Raises NoEquilibrium if no cut length reaches the required depth.
         """
         if all(piece.length is not None for piece in file.pieces):
             return file
@@ -190,8 +190,9 @@ class Leg:
     def anchor_drag(self) -> float:
         """Drag of the falling anchor at 1 m/s [N/(m/s)²].
 
-        An anchor without `kt` has the drag of a cube with its displaced volume. If this volume is
-        unknown, it follows from the weight and the density of the material, by default steel.
+        An anchor without `kt` has the drag of a cube with its displaced volume. If the displaced
+        volume is unknown, it is computed from the weight and the density of the material, which is
+        steel by default.
         """
         anchor = self.file.anchor
         if anchor.kt is not None:
@@ -258,8 +259,8 @@ class Leg:
     def refuse_in_the_slope(self, solution: Solution) -> None:
         """Raise NoEquilibrium if a line would penetrate the seabed of a depth grid.
 
-        The solver assumes a plane seabed, so the grounded part may be below the grid. Its largest
-        depth below the grid is the tolerance for the suspended part.
+        The solver assumes a plane seabed, so the grounded part may be below the grid. The suspended
+        part may be as far below the grid as the grounded part.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:
@@ -283,7 +284,9 @@ class Leg:
         return solve_mooring(line, self.water, self.settings)
 
     def still_counterpart(self, solution: Solution) -> Solution | None:
-        """Solution of the line in still water; None for a tow, or if this shape is not unique."""
+        """Solution of the line in still water; None for a tow, or if the shape in still water is
+        not unique.
+        """
         if self.towed:
             return None
         floating = self.line.floating
@@ -292,7 +295,7 @@ class Leg:
 
     @cached_property
     def at_rest(self) -> Solution | None:
-        """Solution of the line without current and wind; None if its shape is not unique."""
+        """Solution of the line without current and wind, or None if the shape is not unique."""
         line, floating = self.line, self.line.floating
         if floating is not None:
             line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))

@@ -32,7 +32,7 @@ from calm.solve.solution import OtherEquilibrium
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class LegResult:
-    """Result of a leg in equilibrium. Lengths and depths [m], forces [N], angles [degrees].
+    """Result of a leg in equilibrium. Lengths and depths are in m, forces in N, angles in degrees.
 
     The components of a tow are listed from the ship down, and its shape begins at the free end.
     Tables are computed when they are first used.
@@ -40,8 +40,8 @@ class LegResult:
     Attributes
     ----------
     leg : the solved leg
-    solution : solution for its line
-    still : solution in still water; None without a unique shape
+    solution : solution for the line of the leg
+    still : solution in still water; None if the shape in still water is not unique
     profilers : results for each profiler at several positions; all other results are for profilers
         at their upper stops
     """
@@ -83,7 +83,7 @@ class LegResult:
 
     @property
     def miss(self) -> float:
-        """Height error of the lower end in the solution [m]."""
+        """Vertical distance between the lower end of the solution and its required position [m]."""
         return self.solution.miss
 
     @property
@@ -108,17 +108,17 @@ class LegResult:
 
     @cached_property
     def anchor_load(self) -> AnchorLoad:
-        """Load on the anchor; NaN for a leg without an anchor."""
+        """Load on the anchor, or NaN for a leg without an anchor."""
         return anchor_load(self.leg, self.solution)
 
     @cached_property
     def tow_point(self) -> TowPoint | None:
-        """Load of a tow on the ship; None for other legs."""
+        """Load of a tow on the ship, or None for other legs."""
         return tow_point_of(self.solution) if self.towed else None
 
     @cached_property
     def body(self) -> TowedBody | None:
-        """Values at the towed body; None for other legs."""
+        """Values at the towed body, or None for other legs."""
         return body_of(self.solution) if self.towed else None
 
     @cached_property
@@ -128,7 +128,7 @@ class LegResult:
 
     @cached_property
     def strumming(self) -> Strumming | None:
-        """Strumming of the cables; None if the file sets no strumming law."""
+        """Strumming of the cables, or None if the file sets no strumming law."""
         return strumming_of(self.file.solver, self.solution)
 
     @cached_property
@@ -161,7 +161,7 @@ class LegResult:
 
     @cached_property
     def still_shape(self) -> Shape | None:
-        """Shape of the leg in still water; None if this shape is not unique."""
+        """Shape of the leg in still water, or None if this shape is not unique."""
         if self.still is self.solution:
             return self.shape
         return None if self.still is None else shape_of(self.still)
@@ -178,7 +178,7 @@ class LegResult:
 
     @property
     def anchor(self) -> AnchorLoad | None:
-        """Load on the anchor; None for a leg without an anchor."""
+        """Load on the anchor, or None for a leg without an anchor."""
         return self.anchor_load if self.leg.anchored else None
 
     @property
@@ -198,7 +198,7 @@ class LegResult:
 
     @property
     def other_used_buoyancy(self) -> float:
-        """Used fraction of the surface float's buoyancy in another equilibrium; NaN if none was
+        """Used fraction of the surface float's buoyancy in another equilibrium, or NaN if none was
         found.
         """
         afloat = self.other is not None and self.other.used_buoyancy < 1.0
@@ -206,10 +206,10 @@ class LegResult:
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Depth of the free end in another equilibrium; None if none was found.
+        """Values of another equilibrium, such as the depth of the free end; None if none was found.
 
-        For a mooring, also the length on the seabed, the used fraction of the buoyancy, and the
-        anchor load.
+        For a mooring, the values include the length on the seabed, the used fraction of the
+        buoyancy, and the anchor load.
         """
         if self.other is None:
             return None
@@ -222,8 +222,9 @@ class LegResult:
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the line if strumming increases the drag of its cables, solved on first use;
-        None for a leg of a net.
+        """Results of the line for the case that strumming increases the drag of its cables.
+
+        The line is solved when the attribute is first used. The value is None for a leg of a net.
         """
         if self.leg.of_several:
             return None

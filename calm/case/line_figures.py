@@ -23,10 +23,12 @@ class LineFigures:
 
     Attributes
     ----------
-    solution, still : solutions in the current, and in still water for the knockdown
+    solution, still : solutions in the current and in still water; `still` is needed for the
+        knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
-    upper, lower : (n,) nodes at the ends of each piece, in the order of the file
-    top, bottom : (n, 3) positions of these ends: east, north, up [m]
+    upper, lower : (n,) indices of the nodes at the ends of each piece: the end that the file lists
+        first, and the other end
+    top, bottom : (n, 3) positions of these nodes: east, north, up [m]
     """
 
     def __init__(
@@ -63,13 +65,13 @@ class LineFigures:
 
     @property
     def tension_top(self) -> Floats:
-        """(n,) tensions at the end that the file lists first [N]."""
+        """(n,) tensions at the `upper` nodes of the pieces [N]."""
         tension: Floats = self.solution.tension[self.upper]
         return tension
 
     @property
     def tension_bottom(self) -> Floats:
-        """(n,) tensions at the end that the file lists last [N]."""
+        """(n,) tensions at the `lower` nodes of the pieces [N]."""
         tension: Floats = self.solution.tension[self.lower]
         return tension
 
@@ -83,8 +85,8 @@ class LineFigures:
 
     @property
     def least_tension(self) -> Floats:
-        """(n,) minimum tension in the suspended part of each piece [N]; NaN for a piece entirely on
-        the seabed.
+        """(n,) minimum tension in the suspended part of each piece [N], or NaN for a piece entirely
+        on the seabed.
         """
         tension = self.solution.tension
         hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
@@ -98,7 +100,7 @@ class LineFigures:
         [degrees].
 
         A piece without length has the angle of the tension. The pieces at the head of the line form
-        one rod and have its angle.
+        one rod and have the angle of this rod.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -114,7 +116,7 @@ class LineFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(n,) knockdown [m]; NaN if there is no solution in still water."""
+        """(n,) knockdown [m], or NaN if there is no solution in still water."""
         if self.still is None:
             return np.full(self.count, np.nan)
         before = self.still.piece_nodes[self._ahead, 1 if self.solution.line.towed else 0]
@@ -123,7 +125,7 @@ class LineFigures:
 
     @property
     def reynolds(self) -> Floats:
-        """(n,) largest Reynolds number, from flow speed and diameter; NaN for unknown diameters."""
+        """(n,) largest Reynolds number of each piece, or NaN if the diameter is unknown."""
         solution = self.solution
         middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
         speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
@@ -138,8 +140,8 @@ class ClampFigures:
     Attributes
     ----------
     clamps : (m,) clamps of the file
-    index : (m,) index of the piece under each clamp
-    position : (m, 3) east, north, up [m]
+    index : (m,) index of the piece that carries each clamp
+    position : (m, 3) positions: east, north, up [m]
     """
 
     def __init__(
@@ -163,8 +165,10 @@ class ClampFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(m,) tilt [degrees]. On a rigid piece this is the tilt of the piece; elsewhere it is the
-        angle of the mean of the tensions above and below the clamp.
+        """(m,) tilt [degrees].
+
+        On a rigid piece, this is the tilt of the piece. On a cable or chain, it is the angle of the
+        mean of the tensions above and below the clamp.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
@@ -176,7 +180,7 @@ class ClampFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(m,) knockdown [m]; NaN if there is no solution in still water."""
+        """(m,) knockdown [m], or NaN if there is no solution in still water."""
         if self.still is None:
             return np.full(len(self._elements), np.nan)
         before = self.still.position[np.flatnonzero(self.still.element_clamp >= 0)]
@@ -225,6 +229,6 @@ def leaning_of(vector: Floats) -> Floats:
 
 
 def catalogue_figures(parts: Sequence[Piece | Clamp], name: str) -> Floats:
-    """Return (n,) values of a catalogue field for pieces or clamps; NaN for unknown values."""
+    """Return (n,) values of a catalogue field for pieces or clamps, or NaN for unknown values."""
     values = [getattr(part.component, name, None) for part in parts]
     return np.array([np.nan if value is None else value for value in values])

@@ -30,8 +30,8 @@ def components_of(
 
     Parameters
     ----------
-    pieces : pieces in file order, without an anchor
-    still : solution in still water, for the knockdown
+    pieces : pieces in file order; the anchor is not included
+    still : solution in still water, from which the knockdown is computed
     """
     line = LineFigures(solution, still, pieces)
     return Components.made(pieces, lambda column: column.found and column.found(line))
@@ -50,7 +50,7 @@ def shape_of(solution: Solution) -> Shape:
 
 
 def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
-    """Append the anchor, upright below the lower end of the line, to the components."""
+    """Append the row of the anchor, which stands upright below the line, to the components."""
     end = LineEnd(above.rows(slice(-1, None))[0], anchor, depth)
     return Components.joined([above, _standing(Components, anchor, end)])
 

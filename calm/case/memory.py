@@ -27,8 +27,8 @@ T = TypeVar("T")
 class Memory:
     """Cache of solver outcomes by inputs, so that identical problems are solved only once.
 
-    Labels are not inputs, and solutions in still water do not depend on the current. Threads may
-    share the cache.
+    Labels are not part of the inputs, and solutions in still water are shared by all currents. The
+    cache may be used by several threads.
     """
 
     def __init__(self) -> None:

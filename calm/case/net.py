@@ -45,7 +45,7 @@ def _end(end: EndKeys, nodes: Mapping[str, int], leg: Leg) -> LegEnd:
 def solve_together(
     legs: Sequence[Leg], water: Water, settings: Settings, near: NetSolution | None
 ) -> NetSolution:
-    """Solve the legs of a net in given water, starting from another solution of the net if given.
+    """Solve the legs of a net in given water; the search starts from the solution `near` if given.
 
     Raises NoEquilibrium if no equilibrium passes every check.
     """

@@ -38,7 +38,8 @@ def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
 
 
 def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
-    """Find all parts with a given label or with this label and a number appended.
+    """Find the part with a given label or, if there is none, all parts with this label and a
+    number.
 
     Raises LookupError, with the nearest label, if no part matches.
     """
@@ -64,7 +65,7 @@ def _listed(labels: Sequence[str]) -> str:
 
 @contextmanager
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
-    """Add the label of the affected piece to errors of the solver (context manager).
+    """Context manager that adds the label of the affected piece to errors raised by the solver.
 
     `towed` is set for a tow, whose pieces the solver numbers from the lower end.
     """
@@ -85,7 +86,7 @@ default environment.
 
 @dataclass(frozen=True)
 class Origin:
-    """Source of a mooring; the attributes are the arguments of `load`."""
+    """Input from which a mooring is read; the attributes are the arguments of `load`."""
 
     path: str | Path
     environment: str | Path | None
@@ -105,7 +106,7 @@ class Origin:
         environment: OtherEnvironment | None,
         keys: Mapping[str, Any],
     ) -> Origin:
-        """Return the source with changed values, or with another environment.
+        """Return a copy of the origin with changed values, or with another environment.
 
         Parameters
         ----------
@@ -166,8 +167,8 @@ def _place_of(file: MooringFile, label: str) -> Location:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """Return the distance of every node of a line below the seabed of its file, (k+1,) [m]; NaN
-    outside the depth grid.
+    """Return the distance of each node below the seabed, shape (k + 1,) [m]; NaN outside the depth
+    grid.
 
     `depth` is the water depth at the origin or, for a leg, at its anchor [m].
     """

@@ -52,7 +52,8 @@ class ProfilerTravel:
 def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
     """Solve every profiler of a line along its path; the other profilers are at their upper stops.
 
-    Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`.
+    Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`
+    positions.
     """
     return tuple(_travel(leg, clamp) for clamp in profilers_in(leg))
 
@@ -97,11 +98,11 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 
 
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
-    """Return a file with fixed profilers, one of which may be at another position.
+    """Return a copy of a file in which no profiler travels; one profiler may be moved.
 
     Parameters
     ----------
-    place : place in the file of the profiler that is moved; None if none is moved
+    place : place in the file of the profiler to move; None to move none
     at : new unstretched distance of this profiler from the top of its wire [m]
     """
 

@@ -45,9 +45,7 @@ _OF_THE_FILE = "part"
 
 
 class Columnar:
-    """Table with its columns as attributes; for example, `table.depth` has the depths of all
-    rows.
-    """
+    """Table whose columns are attributes; for example, `table.depth` has the depths of all rows."""
 
     def __init__(self, **columns: Any) -> None:
         if sorted(columns) != sorted(self.names()):
@@ -61,7 +59,7 @@ class Columnar:
 
     @classmethod
     def names(cls) -> list[str]:
-        """Names of the columns, in their order."""
+        """Names of the columns, in table order."""
         raise NotImplementedError
 
     def __getstate__(self) -> dict[str, Any]:
@@ -75,7 +73,7 @@ class Columnar:
 class ColumnTable(Columnar, Generic[Row]):
     """Table stored by column.
 
-    A column is an array of numbers or a list. The column names are the fields of `record`.
+    A column is an array of numbers or a list. The columns have the names of the fields of `record`.
     """
 
     record: ClassVar[type[Any]]
@@ -99,7 +97,7 @@ class ColumnTable(Columnar, Generic[Row]):
         Parameters
         ----------
         parts : the piece or clamp of each row
-        value : function that computes the columns without `of_part` and `derived`
+        value : function that computes each column that has neither `of_part` nor `derived`
         """
         known: dict[str, Any] = {}
         for one in cls.columns():
@@ -149,11 +147,11 @@ class ColumnTable(Columnar, Generic[Row]):
         return tuple(map(self.record, *plain))
 
     def rows(self, chosen: slice) -> Self:
-        """Return a table of some of the rows."""
+        """Return a table that contains a slice of the rows."""
         return type(self)(**{name: part[chosen] for name, part in self.__getstate__().items()})
 
     def with_row(self, row: Row) -> Self:
-        """Return a copy of the table with one more row."""
+        """Return a copy of the table with a row appended."""
         last = {name: [getattr(row, name)] for name in self.names()}
         return self.joined([self, type(self)(**last)])
 
@@ -172,7 +170,10 @@ class ColumnTable(Columnar, Generic[Row]):
         return pandas.DataFrame({name: getattr(self, name) for name in names})
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset along the dimension `label`, including units and meanings."""
+        """Return a dataset along the dimension `label`.
+
+        The variables have their units and meanings as attributes.
+        """
         return _dataset(self.to_pandas(), self.columns(), "label")
 
 
@@ -229,7 +230,7 @@ def _planned(part: Piece | Clamp) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ComponentRow:
-    """One piece of a solved line: a row of `Components`, where the values are described."""
+    """One piece of a solved line; a row of the table `Components`."""
 
     part: Piece = column("the piece of the file", of_part=lambda piece: piece, in_repr=False)
     index: int = column(
@@ -403,9 +404,7 @@ class ComponentRow:
 
 @dataclass(frozen=True, slots=True)
 class ClampRow:
-    """One clamped instrument of a solved line: a row of `Clamps`, where the values are
-    described.
-    """
+    """One clamped instrument of a solved line; a row of the table `Clamps`."""
 
     prefix: ClassVar[str] = "clamp_"
 
@@ -540,7 +539,7 @@ class Clamps(ColumnTable[ClampRow]):
 
 
 def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
-    """Convert rows to JSON objects; None stands for unknown values."""
+    """Convert the rows of a table to JSON objects; None stands for unknown values."""
     own, of_the_file = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
     rows = []
     for row in table:
@@ -551,8 +550,9 @@ def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, A
 
 
 def table_columns(output: Output) -> list[ResultColumn]:
-    """Return the columns of a printed table from left to right, or the columns of the builder in
-    order of entry.
+    """Return the columns of a table in an output, from left to right.
+
+    The columns of the builder are in the order of their definition.
     """
     shown = shown_in((*OF_ROWS, *Components.columns()), output)
     return shown if output == Output.BUILDER else sorted(shown, key=lambda one: one.place)
@@ -566,7 +566,7 @@ class Shape:
     ----------
     depth, x, y : (k,) depth, east and north [m]
     tension : (k,) tension [N]
-    tilt : (k,) angle of the segment that ends at the node [degrees]
+    tilt : (k,) angle from the vertical of the segment that ends at the node [degrees]
     """
 
     prefix: ClassVar[str] = "shape_"
@@ -614,7 +614,10 @@ class Shape:
         return pandas.DataFrame(vars(self))
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset along the dimension `node`, including units and meanings."""
+        """Return a dataset along the dimension `node`.
+
+        The variables have their units and meanings as attributes.
+        """
         return _dataset(vars(self), self.columns(), "node")
 
 
@@ -625,8 +628,9 @@ _AN_END = Output.JSON | Output.NET_TABLE
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Error estimates of the solver; values for the anchor are None if there is no anchor, as in a
-    tow.
+    """Error estimates of the solver.
+
+    Values for the anchor are None if there is no anchor, as in a tow.
     """
 
     depth: float = column("estimate of the largest error of any depth or offset", Output.JSON)
@@ -706,7 +710,7 @@ class TowedBody:
 class EndLoad:
     """Load of a leg on its anchor or on another support.
 
-    Only anchors have the last four attributes.
+    The last four attributes are only set for an anchor.
     """
 
     leg: str = column("name of the leg", Output.JSON)
@@ -848,7 +852,7 @@ TOWED_ENDS = (
 
 
 class WithClamps(Protocol):
-    """Result that has pieces and clamps."""
+    """Protocol of results that have pieces and clamps."""
 
     @property
     def components(self) -> Components:
@@ -867,8 +871,8 @@ def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
 def item_numbers(*results: WithClamps) -> dict[str, str]:
     """Return the item number of each piece and clamp, by label; all documents use these numbers.
 
-    Pieces are numbered from 1 in the order of the results, such as the legs of a net. The number of
-    a clamp is the number of its piece and a letter.
+    Pieces are numbered from 1 through all `results`, which may be the legs of a net. The number of
+    a clamp is that of its piece, followed by a letter.
     """
     found: dict[str, str] = {}
     rows = (row for result in results for row in rows_down(result))

@@ -29,8 +29,9 @@ class Strumming:
 
 
 def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
-    """Return the frequency and the range of Cn over the cables; None without a strumming law or
-    without cables.
+    """Return the frequency and the range of Cn over the cables.
+
+    Return None if no strumming law is set or the line has no cable.
     """
     line, piece = solution.line, solution.element_piece
     cables = (line.diameter[piece] > 0.0) & (solution.element_clamp < 0) & (solution.cut > 0.0)
@@ -54,15 +55,17 @@ mooring lines.
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """Results for the line with the Cn of all cables multiplied by `factor`. Without an
-    equilibrium, they are None.
+    """Results for the line with the Cn of all cables multiplied by `factor`.
+
+    If there is no equilibrium, depth, knockdown and tension are None.
 
     Attributes
     ----------
     factor : factor on Cn [-]
     status : status of the solver for this line
     depth : depth of the top of a mooring, or of a towed body [m]
-    knockdown : knockdown of the top of a mooring, if it has a unique shape in still water [m]
+    knockdown : knockdown of the top of a mooring [m]; None if the shape in still water is not
+        unique
     tension : tension at the anchor or the ship [N]
     """
 
@@ -74,8 +77,9 @@ class StrummingBand:
 
 
 def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
-    """Solve a line with increased drag on its cables; `still_depth` is the depth of its top in
-    still water [m].
+    """Solve a line with increased drag on its cables.
+
+    `still_depth` is the depth of the top of the line in still water [m].
 
     Return None if no cable can strum, or if the file sets a strumming law.
     """

@@ -35,7 +35,7 @@ _EXAMPLE = "knockdown(top) <= 20 m"
 
 
 def pointed(option: str, text: str, column: int, message: str) -> UsageError:
-    """Return the error for a command option, with a caret below the invalid position."""
+    """Return the error for an invalid command option, with a caret below the invalid position."""
     return UsageError(f"{option}: {message}\n  {text}\n  {' ' * column}^")
 
 
@@ -48,7 +48,8 @@ class Target:
     text : the original text
     quantity : one of `QUANTITIES`
     label, place : label and place of the part; None for the top of the line and for the required
-        anchor weight. For the required anchor weight in a net, `label` is the name of the leg
+        anchor weight. In a net, however, the required anchor weight has the name of the leg as its
+        `label`
     relation : ``<=``, ``>=`` or ``=``
     limit : limit, in SI units or degrees
     """
@@ -66,7 +67,7 @@ class Target:
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
     def value(self, result: Result) -> float | None:
-        """Return the value of the quantity in a result; None for an undefined knockdown."""
+        """Return the value of the quantity in a result, or None if the knockdown is undefined."""
         if self.quantity == "required_weight":
             (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
             return anchor.required_weight
@@ -164,7 +165,8 @@ class Figures:
     ----------
     depth, knockdown, excursion : values at the line's top or at another part
     used_buoyancy : used fraction of the surface float's buoyancy; 1 if the float is submerged
-    tension, vertical, horizontal, required_weight : anchor load; None without an anchor
+    tension, vertical, horizontal, required_weight : load on the anchor, and required weight of the
+        anchor; None if there is no anchor
     """
 
     depth: float

@@ -46,7 +46,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Uncertain:
-    """Percentiles of a mooring's results for uncertain inputs; the percentiles are `LEVELS`.
+    """Percentiles `LEVELS` of the results of a mooring with uncertain inputs.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class Uncertain:
 
     @property
     def clamped(self) -> list[tuple[int, str]]:
-        """Index of the component, and label, for each clamp."""
+        """Index of the component that carries each clamp, and label of the clamp."""
         given = self.result.clamps
         return list(zip(given.index, given.label, strict=True))[: self.clamps.shape[2]]
 
@@ -145,7 +145,8 @@ def uncertain(
     samples : a power of two from `FEWEST` to `MOST`
     seed : seed of the scrambling; the same seed gives the same results
     mapped : function that applies the solver to blocks of samples, like `map`
-    normals : function that returns `normals_of(samples, seed)`, in case another process computes it
+    normals : function that returns `normals_of(samples, seed)`; another process may have computed
+        the numbers
 
     Raises
     ------

@@ -38,10 +38,11 @@ def is_synthetic(component: Component) -> bool:
 
 
 def counted_working_load(component: Component) -> float | None:
-    """Return the working load used to check a component [N]; None if there is none.
+    """Return the working load used to check a component [N], or None if there is none.
 
     Tables of synthetic ropes list a working load for lifting, which is a twelfth to a seventh of
-    the breaking load. Therefore only the breaking load of such a rope is checked, if it is known.
+    the breaking load. Therefore, if the breaking load of such a rope is known, only the breaking
+    load is checked.
     """
     if is_synthetic(component) and component.breaking_load is not None:
         return None
@@ -141,11 +142,10 @@ def _stiffness_unknown(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def unknown_stretch(component: Component, tension: float) -> list[float] | None:
-    """Return the strains of a synthetic rope for the published stiffnesses, in decreasing order
-    [-].
+    """Return the strains of a synthetic rope at a tension, for each published stiffness [-].
 
-    Return None if the component is not a synthetic rope or has its own stiffness, and an empty list
-    if no stiffness is published.
+    The strains are in decreasing order; the list is empty if no stiffness is published. Return None
+    if the component is not a synthetic rope, or if its definition specifies a stiffness.
     """
     if not isinstance(component, Cable) or not is_synthetic(component):
         return None
@@ -208,7 +208,8 @@ def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
     """Return the spheres and cylinders whose Reynolds number exceeds the valid range of their drag
     coefficient.
 
-    Each is returned with the limit of the range; the piece with the largest ratio is first.
+    Each piece is returned with the upper limit of its range. The piece that exceeds this limit by
+    the largest factor is first.
     """
     curves = [*result.leg.line.drag_curve, None]
     rows = [

@@ -50,7 +50,7 @@ LEAST_BELOW_RELEASE = 1.0
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Check that the line has an in-line release, and that opening it frees the mooring."""
+    """Check that the line has an in-line release, and that opening the release frees the line."""
     leg = handling.leg
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
@@ -127,11 +127,11 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """Check for a swivel between each wire that is not torque-balanced and the next tilting float.
+    """Check for a swivel between each wire that is not torque-balanced and a float at its end.
 
     Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
-    this rotation, so the wire kinks. A swivel at either end lets the wire turn, and so do chain and
-    synthetic rope, which transmit no torque.
+    this rotation, so the wire kinks. A swivel at either end lets the wire turn. Chain or synthetic
+    rope at an end also lets the wire turn, because neither transmits torque.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
@@ -186,7 +186,7 @@ _TOUCH = 0.05
 
 @rule("clamp-place", once=True)
 def clamp_place(handling: Handling) -> Iterator[Verdict]:
-    """Report clamps on a cable or chain that overlap or extend beyond its end."""
+    """Report clamps that overlap or that extend beyond the end of their cable or chain."""
     leg = handling.leg
     lengths = leg.line.length.tolist()
     remedy = "Move the clamp to a free position, or check its `at` and its length."
@@ -221,7 +221,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     """Report contacts between dissimilar metals, if both materials are known.
 
     Pieces and clamps that are `insulated` have no contact. Instrument clamps have plastic jaws, so
-    a clamp is in contact with its line only if its component has `insulated: false`.
+    a clamped item is in contact with the line only if its component has `insulated: false`.
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
@@ -241,10 +241,10 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Yield the contacts of dissimilar metals: the less noble part, the more noble part, and their
-    potential difference [V].
+    """Yield the contacts between dissimilar metals.
 
-    A part that is `insulated` has no contact.
+    Each contact is the less noble part, the more noble part, and their potential difference [V]. A
+    part that is `insulated` has no contact.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -270,8 +270,9 @@ _HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Check the grip of each clamp against its axial force [N], which comes from its submerged
-    weight and the drag of the current.
+    """Check the grip of each clamp against the force on the clamped item [N].
+
+    The force results from the submerged weight of the item and its drag in the current.
     """
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
@@ -286,11 +287,11 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
-    """Check the grip of each clamp against its larger axial force [N] during anchor descent and
-    ascent.
+    """Check the grip of each clamp against the larger of its axial forces in launch and recovery.
 
-    The descent speed is the maximum during the anchor drop, and the ascent speed is the terminal
-    rise speed. The drag of the clamped item is its drag in flow along the line.
+    Each force [N] results from the submerged weight of the clamped item and its drag in flow along
+    the line. The speed of the flow is the touchdown speed of the anchor in the launch, and the
+    terminal rise speed of the line in the recovery.
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -318,11 +319,12 @@ McLane Moored Profiler, user manual.
 
 @rule("profiler")
 def profiler(result: LegResult) -> Iterator[Verdict]:
-    """Check the tension, wire, path and drive force of each profiler at its present position.
+    """Check the tension, wire, path and drive force of each profiler at its current position.
 
-    Situations with the profiler at other positions are checked in the same way. Along the wire, the
-    flow past the profiler is at most its own speed plus the current times the sine of the tilt.
-    Wheel friction and the effect of compressibility on its weight are unknown and neglected.
+    Other positions of the profiler are checked as separate situations. The flow along the wire
+    past the profiler is at most its speed plus the current times the sine of the tilt.
+    Wheel friction, and the effect of compression on the weight of the profiler, are unknown and
+    neglected.
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):

@@ -72,10 +72,10 @@ def checked_environment(
 ) -> MooringInEnvironment:
     """Apply the rules to a leg in all its situations.
 
-    In the result, `findings` has all findings of the unchanged mooring, and the findings of other
-    situations that have a worse state. `tighter` has the findings of other situations with a larger
-    utilisation. A failure that occurs only with strumming cables becomes a warning, because the
-    cables may not strum.
+    In the result, `findings` contains all findings for the unchanged mooring, and any worse
+    findings for other situations. `tighter` contains findings for other situations that have a
+    larger utilisation. A failure that occurs only with strumming cables becomes a warning, because
+    it is uncertain whether the cables strum.
 
     Parameters
     ----------
@@ -123,10 +123,10 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Assess a mooring from its findings in all environments, and check launch, recovery and
-    breaks.
+    """Check launch, recovery and breaks of a mooring, and combine all findings in an assessment.
 
-    Launch, recovery and breaks are checked in the first environment that has an equilibrium.
+    Launch, recovery and breaks are checked in the first environment in which the mooring has an
+    equilibrium.
 
     Parameters
     ----------
@@ -170,8 +170,10 @@ def assessment_of(
 
 
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
-    """Add the codes of load cases to all findings. Set the anchor weight in all remedies to the
-    largest required weight.
+    """Return the environments with load-case codes added to all findings.
+
+    Remedies for an anchor that is too light are changed to name the largest weight that any finding
+    requires.
     """
     numbers = _numbers(in_environments)
     every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
@@ -203,7 +205,10 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Add the load case of the environment to findings about currents and drag coefficients."""
+    """Return the findings with load-case codes added to those on currents and drag coefficients.
+
+    Each code is that of the unchanged mooring in the environment of the finding.
+    """
     numbers = _numbers(in_environments)
     return [
         one.but(case=situations.case_of(numbers[one.environment], AS_GIVEN))
@@ -229,9 +234,7 @@ def _numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Yield the findings of the rules on currents and environments, which compare all environments
-    of a mooring.
-    """
+    """Yield the findings on currents and environments, for which all environments are compared."""
     for each in OF_ENVIRONMENTS:
         for leg, verdict in each.judge(legs):
             yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
@@ -244,16 +247,14 @@ OF_ENVIRONMENTS = (currents, environment)
 def findings_of_drag(
     results: Sequence[LegResult], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Yield the finding about drag coefficients, which takes all environments of a mooring into
-    account.
-    """
+    """Yield the finding on drag coefficients, if any, from the results in all environments."""
     for result, verdict in drag_coefficient.judge(results):
         environment = result.file.environment.name or OWN
         yield acceptance.of(drag_coefficient.find(verdict, name, environment))
 
 
 def moving(legs: Iterable[Leg]) -> bool:
-    """Return whether there is current or wind in the environment of any leg."""
+    """Return whether the environment of at least one leg has a current or wind."""
     return any(
         np.hypot(each.water.u, each.water.v).max() >= situations.LEAST_CURRENT
         or each.file.environment.wind is not None
@@ -264,14 +265,14 @@ def moving(legs: Iterable[Leg]) -> bool:
 def findings_of(
     situation: Situation, mooring: str, environment: str, *, day: date | None = None
 ) -> Iterator[Finding]:
-    """Yield the findings of all rules that are evaluated in each situation.
+    """Yield the findings of the rules that are evaluated in every situation.
 
-    Findings about a stand-in anchor are omitted, and so are rules that do not apply to a leg whose
-    top is held.
+    Findings about a substitute anchor are omitted. Rules that do not apply to a leg whose top is
+    held are omitted as well.
 
     Parameters
     ----------
-    mooring, environment : names used in the findings
+    mooring, environment : names of the mooring and the environment in the findings
     day : date on which acceptances must be valid; today by default
     """
     if situation.failure is not None:
@@ -306,7 +307,10 @@ def _judged(situation: Situation) -> LegResult:
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
-    """Return whether a rule applies to a piece of a line, which may be a leg of a net."""
+    """Return whether a rule applies to a piece of a line.
+
+    `piece` is the index of the piece. Fewer rules apply to a line that is a leg of a net.
+    """
     anchored = file.pieces[-1].use != STAND_IN
     applies = anchored or not (rule.of_anchor or piece == len(file.pieces) - 1)
     return applies and rule.name not in left_out_of_a_leg(file)
@@ -328,8 +332,9 @@ def _of(finding: Finding) -> tuple[str, Place | None]:
 
 
 def handled(leg: Leg, result: LegResult) -> Handling:
-    """Solve launch, recovery and breaks of a mooring in equilibrium; if one fails, record the
-    reason.
+    """Compute launch, recovery and breaks of a mooring from its equilibrium.
+
+    If launch or recovery has no solution, the result contains the reason instead.
     """
     launch = or_why_not(launch_of, leg)
     recovery = or_why_not(recovery_of, leg, result)
@@ -403,7 +408,7 @@ Key = tuple[str, "Place | None"]
 def with_probabilities(
     assessment: Assessment, samples: int, seed: int, mapped: Mapped = map
 ) -> Assessment:
-    """Add to each finding of an assessment the probability that its limit is exceeded.
+    """Return a copy of an assessment with the probability that each limit is exceeded.
 
     Parameters
     ----------

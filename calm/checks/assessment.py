@@ -50,9 +50,9 @@ draft.
 
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """A mooring that was solved in an environment, either unchanged or with one changed input.
+    """Solution of a mooring in an environment, either unchanged or with one changed input.
 
-    Either `result` or `failure` is None. Several environments may share a situation.
+    Exactly one of `result` and `failure` is None. Several environments may share a situation.
     """
 
     name: str
@@ -69,12 +69,11 @@ class MooringInEnvironment:
     environment : name of the environment
     leg : leg of the design; a net has one `MooringInEnvironment` per leg and environment
     situations : solved situations, beginning with the unchanged mooring
-    findings : all findings of the unchanged mooring, and findings of other situations with a worse
-        state
-    tighter : for each rule and part, the finding of another situation with a larger utilisation, if
-        any
-    accepted : accepted findings of every situation, including unlisted ones
-    lacking : findings of every situation that lack a value; not in `findings`
+    findings : all findings for the unchanged mooring, and any worse findings for other situations
+    tighter : for each rule and part, the finding with the largest utilisation in other situations,
+        if it is larger than in `findings`
+    accepted : accepted findings for all situations, including findings not in `findings`
+    lacking : findings that lack a component value, for all situations; they are not in `findings`
     """
 
     environment: str
@@ -87,7 +86,7 @@ class MooringInEnvironment:
 
     @property
     def result(self) -> LegResult | None:
-        """Result for the unchanged mooring; None without equilibrium."""
+        """Result for the unchanged mooring; None if it has no equilibrium."""
         return self.situations[0].result
 
 
@@ -98,15 +97,17 @@ class Assessment:
     Attributes
     ----------
     name : name of the mooring, unique among the moorings checked together
-    in_environments : one entry per environment, at least one
-    launch, recovery : solutions in the first environment; None if they could not be solved
+    in_environments : one entry per environment (for a net, per environment and leg)
+    launch, recovery : solutions in the first environment with an equilibrium; None if there is no
+        solution
     backup : results for a break at each connection above the release, from the top
     inventory : pieces and clamps as they are handled on deck
-    findings : findings on launch, recovery and breaks
+    findings : findings of the rules that are not evaluated in each environment, such as those on
+        launch, recovery and breaks
     losses : results for the loss of each buoyant element above the release, from the top
     limits : limits applied to the mooring
-    notices : notices on acceptances that have expired or are unused
-    draws : number of samples and seed of the probabilities; None without probabilities
+    notices : messages for the user, such as those about acceptances that have expired
+    draws : number of samples and random seed used for probabilities; None without probabilities
     """
 
     name: str
@@ -128,55 +129,47 @@ class Assessment:
 
     @property
     def file(self) -> MooringFile:
-        """Mooring file in the first environment (of the first leg, if there are several)."""
+        """Mooring file in the first environment; for a net, that of the first leg alone."""
         return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Yield the findings in all environments, and then the findings on launch, recovery and
-        breaks.
-        """
+        """Yield the findings in all environments, followed by those in `findings`."""
         for stand in self.in_environments:
             yield from stand.findings
         yield from self.findings
 
     @property
     def state(self) -> State:
-        """Worst state of all findings; pass if the worst state is accepted or not judged."""
+        """Worst state of all findings, but pass if that state is accepted or not judged."""
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
     @property
     def verdict(self) -> Conclusion:
-        """Conclusion from all findings of the mooring."""
+        """Conclusion of the design check, drawn from all findings."""
         return conclusion_of(self.every_finding())
 
     @property
     def draft(self) -> bool:
-        """Whether the assessment relies on an acceptance in an example file, which nobody has
-        signed.
-        """
+        """Whether an acceptance bears the placeholder name of example files, not a person's."""
         return any(
             one.accept is not None and one.accept.by == EXAMPLE for one in self.accepted_findings()
         )
 
     def every_finding(self) -> Iterator[Finding]:
-        """Yield all findings, and then the findings of other situations with a larger
-        utilisation.
-        """
+        """Yield all findings, followed by the findings in `tighter` of each environment."""
         yield from self.all_findings()
         yield from self.tighter_findings()
 
     def accepted_findings(self) -> list[Finding]:
-        """Return the governing accepted finding for each rule and component."""
+        """Return for each rule and component the accepted finding with the largest utilisation."""
         every = (*(one for stand in self.in_environments for one in stand.accepted), *self.findings)
         accepted = (one for one in every if one.accept is not None)
         found = grouped_by(accepted, lambda one: (one.rule, one.component))
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
-        """Yield the findings of other situations with a larger utilisation, environment by
-        environment.
-        """
+        """Yield the findings in `tighter` of each environment."""
         for stand in self.in_environments:
             yield from stand.tighter
 
@@ -185,9 +178,9 @@ class Assessment:
 class Handling:
     """Input of the rules that are evaluated once per mooring.
 
-    `launch` and `recovery` are solutions or the reasons why there are none; `backup` and `losses`
-    are the results for breaks and lost floats. `result` is the result in the first environment, or
-    None without equilibrium.
+    `launch` and `recovery` are solutions, or the reasons why there is no solution. `backup` and
+    `losses` are the results for breaks and lost floats. `result` is the equilibrium; None if there
+    is no equilibrium.
     """
 
     leg: Leg
@@ -200,9 +193,10 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Acceptances in a mooring file on a given day, for findings that fail or are unknown.
+    """Items of `checks: accept:` in a mooring file, applied on a given day.
 
-    `parts` maps labels to the pieces and clamps of the line.
+    The items apply to findings that fail or are unknown. `parts` maps labels to the pieces and
+    clamps of the line.
     """
 
     accepts: tuple[Accept, ...]
@@ -211,17 +205,16 @@ class Acceptance:
 
     @classmethod
     def of_file(cls, file: MooringFile, day: date | None) -> Acceptance:
-        """Return the acceptances in a mooring file that are valid on a given day (default:
-        today).
-        """
+        """Return the acceptances in a mooring file, for use on a given day (by default today)."""
         parts = {part.label: part for part in parts_of(file.pieces)}
         return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
-        """Mark a finding as estimated if it relies on an estimate, and as accepted if the file
-        accepts it.
+        """Apply the estimates and acceptances of the file to a finding; return the new finding.
 
-        An acceptance of the rule `missing` covers every rule that lacks a value of the component.
+        If a finding relies on an estimate, a pass becomes estimated and a failure becomes unknown.
+        A failure or an unknown that the file accepts becomes accepted. An acceptance of the rule
+        `missing` covers every rule that lacks a value of the component.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -241,7 +234,7 @@ class Acceptance:
         environment: str,
         situation: str = AS_GIVEN,
     ) -> Iterator[Finding]:
-        """Convert the verdicts of a rule to findings, and apply the acceptances."""
+        """Convert the verdicts of a rule to findings, and apply estimates and acceptances."""
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
@@ -264,7 +257,10 @@ class Acceptance:
         )
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """Yield notices on acceptances that do not apply or are unused."""
+        """Yield messages about acceptances that are unsigned, not valid today or unused.
+
+        `accepted` are the accepted findings.
+        """
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:
@@ -308,8 +304,8 @@ def _in_words(estimates: tuple[EstimatedFigure, ...]) -> str:
 def estimated(leg: Leg) -> Leg:
     """Return a copy of a leg in which the lower bounds of estimates replace missing values.
 
-    If the environment has waves or the float of the line is at the surface, these are the bounds
-    for a line that is moved by waves.
+    In an environment with waves, and for a line with a surface float, these are the lower bounds
+    for lines in waves.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):
@@ -326,7 +322,7 @@ def estimated(leg: Leg) -> Leg:
 
 
 def estimated_result(result: LegResult) -> LegResult:
-    """Return a copy of a result whose leg is the one returned by `estimated`."""
+    """Return a copy of a result in which `estimated` was applied to its leg."""
     judged = estimated(result.leg)
     return result if judged is result.leg else replace(result, leg=judged)
 

@@ -95,7 +95,7 @@ _NO_SOURCE = "has no `source` for its values"
 
 @dataclass(frozen=True)
 class CatalogueFinding:
-    """Fault in the definition of a component; `id` identifies the component."""
+    """A fault in the definition of the component with the given `id`."""
 
     id: str
     message: str
@@ -104,9 +104,9 @@ class CatalogueFinding:
 def check_catalogue(
     definitions: Mapping[str, Defined], known: Collection[str]
 ) -> list[CatalogueFinding]:
-    """List all findings about the definitions of a catalogue, ordered by component id.
+    """List all faults in the definitions of a catalogue, ordered by component id.
 
-    `known` contains all ids to which `prefer` or the parts of an assembly may refer.
+    `known` contains all ids to which `prefer` and the parts of an assembly may refer.
     """
     findings = []
     for identifier, definition in definitions.items():
@@ -157,7 +157,7 @@ def _sources(component: Component | Outline) -> Iterator[str]:
 
 
 def impossible(component: Component) -> Iterator[str]:
-    """Yield the values of a component that are impossible for its kind, size and material."""
+    """Yield messages about values that are impossible for a component's kind, size and material."""
     mass, volume, rating = component.mass, component.displaced_volume, component.depth_rating
     heavy = [*wet_weight_out_of_bounds(component)]
     yield from heavy
@@ -331,7 +331,7 @@ def _envelope(component: Component) -> float | None:
 
 @rule("figures", once=True)
 def figures(handling: Handling) -> Iterator[Verdict]:
-    """Report impossible or doubtful values, such as a load in N that was meant in kN.
+    """Report impossible or doubtful component values, such as a load in N instead of kN.
 
     A component that occurs several times is reported once.
     """
@@ -386,7 +386,7 @@ class MissingFigures:
 
 
 def missing_figures(definitions: Mapping[str, Defined]) -> list[MissingFigures]:
-    """List the components of a catalogue that have missing values, with these values.
+    """List the components of a catalogue that lack values, and the keys of the missing values.
 
     Assemblies are skipped because they have no values of their own.
     """

@@ -23,7 +23,7 @@ Number = float | None
 
 @dataclass(frozen=True)
 class Compared:
-    """Value of a quantity in two designs.
+    """The values of one quantity in two designs.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Compared:
     title : title for display
     quantity : name in `calm.quantities`; "" for a text
     before, after : values in SI units or degrees, or texts; None if unknown
-    states : if the value is a margin, the states of its rule in both designs
+    states : states of the rule in both designs if the value is a margin; otherwise None
     of_a_part : whether the value belongs to a piece or a clamp
     """
 
@@ -52,8 +52,8 @@ class Comparison:
     ----------
     names : names of the two designs
     differences : differences between the two files
-    figures : values side by side
-    notes : reasons for missing values
+    figures : computed values of both designs
+    notes : reasons why values are missing
     """
 
     names: tuple[str, str]
@@ -62,7 +62,7 @@ class Comparison:
     notes: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object; None stands for unknown values."""
+        """Return the comparison as a JSON object; unknown values are None."""
         found = self.differences
         return {
             "names": list(self.names),
@@ -87,8 +87,9 @@ _Figures = dict[str, tuple[str, str, Number | str]]
 
 
 def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:
-    """Solve, assess and compare two moorings, nets or tows. A design without equilibrium is
-    compared as far as possible.
+    """Solve, assess and compare two moorings, nets or tows.
+
+    A design without an equilibrium is compared as far as possible.
 
     Parameters
     ----------

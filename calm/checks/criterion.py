@@ -30,10 +30,10 @@ class JudgedPart:
 
     Attributes
     ----------
-    label, place : unique within the line
+    label, place : label and place in the file, both unique within the line
     component : definition of the part
     index : index of the piece, or of the piece that carries the clamp, counted from the top
-    clamp : index among all clamps of the line, as in results; None for a piece
+    clamp : index among all clamps of the line, as in the results; None for a piece
     """
 
     label: str
@@ -44,15 +44,16 @@ class JudgedPart:
 
 
 def pieces_of(leg: Leg) -> list[JudgedPart]:
-    """Return the pieces from the top to the anchor."""
+    """Return the pieces of a leg from the top to the anchor."""
     return [
         JudgedPart(each.label, each.place, each.component, each.index) for each in leg.file.pieces
     ]
 
 
 def parts_of(leg: Leg) -> list[JudgedPart]:
-    """Return the pieces above the anchor from the top down, then all clamps from the top down,
-    including clamps on the anchor.
+    """Return the pieces above the anchor, followed by all clamps; both from the top down.
+
+    Clamps on the anchor are included.
     """
     pieces = leg.file.pieces
     on = [piece.index for piece in pieces for _ in piece.clamps]
@@ -69,18 +70,20 @@ class Criterion:
 
     Attributes
     ----------
-    part : part to check; the top or the anchor for the line as a whole
+    part : part to check; for a quantity of the whole line, the top piece or the anchor
     quantity : a key of `READINGS`
-    limit : limit in SI units or degrees; None if a value that it requires is missing
-    words : function that returns message and remedy for a value (NaN if unknown)
+    limit : limit in SI units or degrees; None if the component lacks the value for it
+    words : function that takes the value (NaN if unknown) and the result, and returns message and
+        remedy
     least : whether the limit is a lower limit
     beyond : state if the limit is exceeded: fail or warn
-    silent : whether NaN means that the criterion does not apply, instead of an unknown value
-    source : source of the limit; "" for the source of the rule
-    lacks : missing key of the component if there is no limit
-    stated : function that converts value and limit to the customary quantity, which has the same
-        margin
-    stated_least : whether the limit of the customary quantity is a lower limit
+    silent : whether a value of NaN means that the criterion does not apply; otherwise it means that
+        the value is unknown
+    source : source of the limit; "" if it is the source of the rule
+    lacks : key of the missing component value, if `limit` is None
+    stated : function that takes the value and the result, and returns value and limit of a more
+        customary quantity
+    stated_least : whether the limit of that customary quantity is a lower limit
     """
 
     part: JudgedPart
@@ -96,7 +99,7 @@ class Criterion:
     stated_least: bool = False
 
     def verdict(self, result: LegResult) -> Verdict | None:
-        """Evaluate the criterion for a result; None if the criterion does not apply."""
+        """Evaluate the criterion for a result; return None if the criterion does not apply."""
         value = READINGS[self.quantity](result, self.part)
         if isnan(value) and self.silent:
             return None
@@ -115,7 +118,7 @@ class Criterion:
 
 
 def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdict]:
-    """Yield the most severe verdict on each part; `criteria` must be grouped by part."""
+    """Yield the most severe verdict on each part; criteria for the same part must be adjacent."""
     for _, group in groupby(criteria, key=lambda criterion: criterion.part):
         found = [verdict for each in group if (verdict := each.verdict(result)) is not None]
         if found:
@@ -125,7 +128,10 @@ def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdi
 def criteria(
     name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Leg], Iterator[Criterion]]], Rule]:
-    """Create the rule called `name` from a function that yields the criteria for a leg."""
+    """Return a decorator that creates the rule called `name` from a function.
+
+    The function yields the criteria for a leg. `of_anchor` is as in `Rule`.
+    """
 
     def of(criteria_of: Callable[[Leg], Iterator[Criterion]]) -> Rule:
         def judge(result: LegResult) -> Iterator[Verdict]:
@@ -186,11 +192,11 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
 def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Return every limit that the design check applies to a mooring.
 
-    Limits that the design does not set have their defaults; limits without default apply only if
-    set. The friction coefficient of an anchor, if specified, overrides `anchor_friction`. The list
-    includes load ratings that the line raises above those of the component, and all other settings
-    that make results look better. A mooring designed to reach the surface has a limit on the depth
-    of its top only if the design sets one.
+    Limits that the design does not set have their defaults; limits without a default apply only if
+    the design sets them. The friction coefficient of an anchor, if specified, overrides
+    `anchor_friction`. The result includes load ratings that the line raises above those of the
+    component, and all other settings that make the check more lenient. If `surface` is true, the
+    top of the mooring has a minimum depth only if the design sets one.
     """
     given = file.checks.minimum_top_depth is not None
     used = (
@@ -225,7 +231,7 @@ def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
 
 
 def cited(file: MooringFile, *names: str) -> str:
-    """Return the text about the named limits that differ from their defaults, or an empty text."""
+    """Describe the named limits that differ from their defaults; return "" if no limit differs."""
     return "; ".join(
         f"The design's own `{key.name}`, {limit_value_text(key, key.value)} instead of "
         f"{limit_value_text(key, key.default)}"
@@ -235,8 +241,9 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def limit_value_text(key: LimitKey, value: float | None) -> str:
-    """Format the value of a limit with its unit: times in days, fractions in percent, and a dash
-    for no value.
+    """Format a value of a limit with its unit, or return a dash if the value is None.
+
+    Times are in days, and fractions in percent.
     """
     if value is None:
         return "-"

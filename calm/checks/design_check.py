@@ -68,10 +68,10 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
 def environments_checked(
     design: Design, name: str, day: date | None = None
 ) -> list[MooringInEnvironment]:
-    """Solve a design in its environment and in all situations, and apply the rules to each leg.
+    """Solve a design in its environment in all situations, and apply the rules to each leg.
 
-    The list has one entry per leg. For a design without equilibrium, it has a single entry with the
-    reason.
+    The result has one entry per leg. For a design without an equilibrium, it has a single entry,
+    which contains the reason.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def environments_checked(
 
 
 def failed_environment(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
-    """Return the entry for a design that has no equilibrium, or whose check failed."""
+    """Return the entry of `environments_checked` for a design that could not be solved."""
     environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
     return assess.checked_environment((situation,), design.legs[0], name, environment)
 
@@ -104,12 +104,14 @@ def failed_environment(design: Design, name: str, failure: NoEquilibrium) -> Moo
 def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Check composition, breaks, launch and recovery of a design, and build the assessment.
+    """Check composition, breaks, launch and recovery of a design, and build its assessment.
+
+    For a net, launch and recovery are not checked.
 
     Parameters
     ----------
-    in_environments : results of `environments_checked`, one environment after the other
-    day : date on which acceptances must be valid
+    in_environments : entries of `environments_checked` for all environments, in order
+    day : date on which acceptances must be valid; today by default
     """
     if not in_environments[0].leg.of_several:
         return assess.assessment_of(name, in_environments, day)

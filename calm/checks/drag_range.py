@@ -27,12 +27,11 @@ _LegVerdict = tuple[LegResult, Verdict]
 
 @rule("drag-coefficient")
 def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
-    """Check that the Reynolds numbers of spheres and cylinders are in the range of their constant
-    drag coefficients.
+    """Check that the constant drag coefficients are valid at the Reynolds numbers in the current.
 
-    Yield at most one verdict per mooring, for the environment that exceeds the range most. The
-    verdict is a warning if the drag curve of a smooth shape would increase the knockdown, and not
-    judged otherwise.
+    The rule applies to spheres and cylinders. If a Reynolds number is too large, yield one verdict,
+    with the result for the environment in which the excess is largest. The verdict is a warning if
+    the drag curve of a smooth shape would increase the knockdown; otherwise it is not judged.
     """
     fast = [(result, fast_pieces(result)) for result in results]
     found = [(rows[0], result, rows) for result, rows in fast if rows]

@@ -96,7 +96,7 @@ DRAG_BOUNDS = {
 
 
 def drag_out_of_bounds(component: Component) -> Iterator[str]:
-    """Yield drag coefficients outside `DRAG_BOUNDS`."""
+    """Yield a message about each drag coefficient that is outside `DRAG_BOUNDS`."""
     for (kind, key), bounds in DRAG_BOUNDS.items():
         value = getattr(component, key, None)
         if component.kind != kind or value is None:
@@ -110,9 +110,7 @@ def drag_out_of_bounds(component: Component) -> Iterator[str]:
 
 
 def density_out_of_bounds(rope: Cable) -> Iterator[str]:
-    """Report a rope that floats although its material sinks, or that is too light for its
-    diameter.
-    """
+    """Yield a message if a rope is lighter in water than its material and diameter allow."""
     load_bearing = _load_bearing(rope)
     if not load_bearing:
         return
@@ -129,10 +127,10 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
 
 
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
-    """Return the minimum and maximum breaking load of a cable or chain [N], and the names of the
-    values from which they follow.
+    """Return the minimum and maximum plausible breaking load of a cable or chain [N].
 
-    Return None for other kinds.
+    The third item of the result names the values from which the two bounds are computed. Return
+    None for other kinds of components.
     """
     if isinstance(component, Chain):
         bars = 2.0 * rope_section(component)
@@ -161,12 +159,13 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 
 
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
-    """Yield loads too large for the kind and size of a component, and breaking loads far too small.
+    """Yield a message if a load rating of a component is implausibly large or small.
 
     Parameters
     ----------
-    most, size : maximum load of a component other than cable or chain [N] (inf if unknown), and the
-        names of the values from which it follows
+    most : maximum plausible load of a component that is neither a cable nor a chain [N]; inf if
+        unknown
+    size : names of the values from which `most` was computed
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:
@@ -187,7 +186,7 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
 
 
 def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
-    """Report an anchor or connector that weighs more in water than its mass and material allow."""
+    """Yield a message if an anchor or connector weighs more in water than its mass allows."""
     solid = materials.density_of(component.material)
     solid = getattr(component, "density", None) or solid
     if not (isinstance(component, Anchor) or component.role == "connector"):
@@ -215,8 +214,9 @@ Meteorological buoys in the catalogue have 2.
 
 
 def doubtful_figures(component: Component | Outline) -> Iterator[str]:
-    """Yield values that are possible but usually wrong: a buoyant instrument, or an unusual wind
-    area.
+    """Yield messages about values that are possible but usually wrong.
+
+    Examples are an instrument, release or connector that floats, and an unusual wind area.
     """
     if not isinstance(component, Rigid) or isinstance(component, Anchor):
         return
@@ -241,7 +241,7 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
 
 
 def contradicted_material(component: Component | Outline) -> Iterator[str]:
-    """Report a component whose `name` and `material` refer to different materials."""
+    """Yield a message if the `name` and `material` of a component refer to different materials."""
     named = {one.name: one for one in materials_in(component.name)}
     made_of = {one.name: one for one in materials_in(component.material)}
     if not named or not made_of or named.keys() & made_of.keys():
@@ -262,7 +262,7 @@ def _alike(one: Material, other: Material) -> bool:
 
 
 def words_of(component: Component | Outline) -> str:
-    """Join the name, material and note of a component to one text."""
+    """Join the name, material and note of a component in a single text."""
     return " ".join(filter(None, (component.name, component.material, component.note)))
 
 

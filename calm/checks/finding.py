@@ -31,17 +31,17 @@ HANDLING_LABEL = "launch, recovery, breaks"
 
 
 def environment_text(name: str) -> str:
-    """Describe an environment in print, such as `environment storm`."""
+    """Return the text that names an environment in print, such as `environment storm`."""
     return DEFAULT_ENVIRONMENT if name == OWN else f"environment {name}"
 
 
 class State(StrEnum):
-    """State of a rule, from the least to the most severe.
+    """State of a finding, from the least to the most severe.
 
-    A rule without a limit or a planned value for comparison is not judged. Unknown means that the
-    rule lacks a value; it is more severe than a warning because it may be a failure. Accepted is a
-    failure or an unknown that the design accepts with a reason. Estimated is a pass that relies on
-    the lower bound of an `estimate` instead of a published value.
+    Not judged: there is no limit or planned value for comparison. Estimated: the rule passes, but
+    relies on the lower bound of an `estimate` instead of a published value. Accepted: the rule
+    fails or is unknown, and the design accepts this with a reason. Unknown: the rule lacks a value;
+    this is more severe than a warning because the rule may fail.
     """
 
     PASS = "pass"
@@ -54,12 +54,12 @@ class State(StrEnum):
 
     @property
     def severity(self) -> int:
-        """Rank of the state: 0 for pass, larger for more severe states."""
+        """Rank of the state, 0 for pass and larger for more severe states."""
         return _SEVERITIES[self]
 
     @property
     def sign(self) -> str:
-        """Symbol of the state, legible without colour."""
+        """Symbol that shows the state without colour."""
         return "✓–◦≈~?!"[self.severity]
 
 
@@ -102,7 +102,7 @@ Sense = Literal["<=", ">="]
 
 @dataclass(frozen=True)
 class Lack:
-    """Component value that a rule needs and the file lacks.
+    """A component value that a rule needs, but that is missing from the file.
 
     Attributes
     ----------
@@ -116,16 +116,16 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """Missing value of a component, with all affected rules and pieces.
+    """A missing component value, with all rules and pieces that need it.
 
     Attributes
     ----------
-    component_id, kind : id, as in `use`, and kind of the component
+    component_id, kind : id of the component, as in `use`, and its kind
     quantity : key of the missing value
     needed_by : names of the rules that need the value
     pieces, places : labels and places of the affected pieces and clamps
-    class_estimate : estimate of the value, which is too low to satisfy the rules; None if there is
-        none
+    class_estimate : estimate of the value, whose lower bound does not satisfy the rules; None
+        without an estimate
     """
 
     component_id: str
@@ -155,15 +155,15 @@ class Verdict:
     Attributes
     ----------
     component, place : label and place of a piece or clamp; None for the mooring as a whole
-    value, limit : in SI units or degrees; None if unknown
-    sense : required relation of value and limit; None without a limit
+    value, limit : value and limit in SI units or degrees; None if unknown
+    sense : required relation between value and limit; None without a limit
     state : state of the rule
     message : text of the verdict, with value and limit
     remedy : suggested change; None if no change is needed
-    source : source of the limit; "" for the source of the rule
-    lacks : missing value of a component that the rule requires
-    missing : missing value with its rules and pieces; only in verdicts of the rule `missing`
-    case : code of the load case, if it differs from that of the environment and situation
+    source : source of the limit; "" if it is the source of the rule
+    lacks : component value that the rule requires but the file lacks; None if none is missing
+    missing : missing value with the rules and pieces that need it, for the rule `missing` only
+    case : code of the load case; None for the code of the environment and situation
     """
 
     component: str | None
@@ -180,9 +180,10 @@ class Verdict:
     case: str | None = None
 
     def but(self, **changed: Any) -> Self:
-        """Return a copy with changed fields.
+        """Return a copy of the verdict with changed fields.
 
-        A check has tens of thousands of verdicts, and `dataclasses.replace` takes far longer.
+        The fields are copied directly, because `dataclasses.replace` is too slow for the tens of
+        thousands of verdicts in a check.
         """
         values = vars(self) | changed
         values.pop("utilisation", None)  # a cached property of findings
@@ -192,16 +193,17 @@ class Verdict:
 
     @property
     def margin(self) -> float | None:
-        """Distance of the value from its limit, in its unit; negative if the limit is exceeded."""
+        """Distance between value and limit, in their unit; negative if the limit is exceeded."""
         if self.value is None or self.limit is None or self.sense is None:
             return None
         return self.limit - self.value if self.sense == "<=" else self.value - self.limit
 
     @property
     def utilisation(self) -> float | None:
-        """Demand over capacity: value over limit for a maximum, limit over value for a minimum.
+        """Ratio of demand to capacity; above 1 if the limit is exceeded.
 
-        It is infinite if there is no capacity, and None if the limit is missing or 0.
+        For an upper limit this is value / limit, and for a lower limit it is limit / value. The
+        ratio is infinite if there is no capacity, and None if the limit is missing or 0.
         """
         if self.margin is None or not self.limit or self.value is None:
             return None
@@ -213,19 +215,20 @@ class Verdict:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """Sort key of verdicts, worst first: state, then utilisation."""
+        """Sort key that puts the worst verdict first: by state, then by utilisation."""
         used = self.utilisation
         return -self.state.severity, inf if used is None else -used
 
 
 def no_capacity(verdict: Verdict) -> bool:
-    """Return whether a maximum is below zero because other loads use up the capacity."""
+    """Return whether an upper limit is negative because other loads use up the capacity."""
     return verdict.sense == "<=" and verdict.limit is not None and verdict.limit < 0.0
 
 
 def percent_used(utilisation: float) -> float:
-    """Return a utilisation in percent, rounded up to an integer so that any value above the limit
-    exceeds 100 %. It may be infinite.
+    """Return a utilisation in percent, rounded up to an integer; it may be infinite.
+
+    A utilisation above 1 therefore always exceeds 100 %.
     """
     percent = 100.0 * utilisation
     return float(ceil(percent - 1e-9)) if isfinite(percent) else percent
@@ -242,9 +245,9 @@ def at_most(
     *,
     least: bool = False,
 ) -> Verdict:
-    """Create the verdict on a value with an upper limit or, with `least`, a lower limit.
+    """Create the verdict on a value that has an upper limit.
 
-    `beyond` is the state if the limit is exceeded.
+    If `least` is true, the limit is a lower limit. `beyond` is the state if the limit is exceeded.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
@@ -265,12 +268,12 @@ def unknown(
     lacks: str = "",
     of: LinePart | None = None,
 ) -> Verdict:
-    """Create the verdict of a rule that lacks a value or does not apply.
+    """Create a verdict with the state unknown, because the rule cannot be evaluated.
 
     Parameters
     ----------
-    lacks : key of the missing component value, if this is the reason
-    of : piece or clamp whose value is missing, if it differs from `part`
+    lacks : key of the missing component value, if a component value is missing
+    of : piece or clamp whose value is missing; by default `part`
     """
     lacking = of or part
     lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
@@ -287,14 +290,14 @@ def verdict_on(
     sense: Sense | None = None,
     source: str = "",
 ) -> Verdict:
-    """Create a verdict on a part of the line, or on the whole mooring if the part is None."""
+    """Create a verdict on a part of the line, or on the whole mooring if `part` is None."""
     label, place = (None, None) if part is None else (part.label, part.place)
     return Verdict(label, value, limit, sense, state, message, remedy, place, source)
 
 
 @dataclass(frozen=True)
 class Rule:
-    """Named rule: evaluation function, quantity of its values, and source.
+    """A rule of the design check, with the function that evaluates it.
 
     Attributes
     ----------
@@ -302,14 +305,15 @@ class Rule:
     title : title for display
     quantity : name in `calm.quantities` that determines the unit of values and limits
     source : source of the rule and of its default limit
-    judge : function that yields verdicts from the evidence, which is a `LegResult` unless `once`
-    of_anchor : whether the rule checks the anchor, and is skipped if there is none
-    once : whether the rule is evaluated once per mooring, with a `Handling` as evidence, instead of
-        in each environment and situation
-    situation : situation of a rule that is evaluated once
-    case : load case of a rule that is evaluated once: L launch, R rise, B break, 0 still water
-    counted : replaces `judge` when the exceeded limits of random samples are counted
-    criteria : function that returns the criteria of a `Leg`, for evaluation in many profiles
+    judge : function that yields verdicts from the evidence, such as a `LegResult`
+    of_anchor : whether the rule checks the anchor, so that it is skipped if there is no anchor
+    once : whether the rule is evaluated once per mooring, with a `Handling` as evidence; otherwise
+        it is evaluated in each environment and situation
+    situation : name of the situation, for a rule that is evaluated once
+    case : code of the load case, for a rule that is evaluated once: L launch, R rise, B break, 0
+        still water
+    counted : function that replaces `judge` when exceeded limits are counted in random samples
+    criteria : function that yields the criteria for a `Leg`, which are evaluated in many profiles
     """
 
     name: str
@@ -349,8 +353,9 @@ def rule(
     situation: str = AS_GIVEN,
     case: str | None = None,
 ) -> Callable[[Callable[[Any], Iterator[Any]]], Rule]:
-    """Create the rule called `name`, whose texts are in `calm.files.rule_texts`, from its
-    evaluation function.
+    """Return a decorator that creates the rule called `name` from its evaluation function.
+
+    The texts of the rule are in `calm.files.rule_texts`. The parameters are as in `Rule`.
     """
     text = RULE_TEXTS[name]
 
@@ -367,10 +372,11 @@ def rule(
 class Finding(Verdict):
     """Verdict of a rule on a mooring in an environment and a situation.
 
-    `source` is the source of the rule and its limit. `situation` names the change to the design, or
-    is `AS_GIVEN`. For an accepted finding, `accept` is the entry in the file and `unaccepted` the
-    state without this entry. `probability` is the probability that the limit is exceeded, if it was
-    computed. `estimates` are the estimates on which the finding relies.
+    `source` is the source of the rule and its limit. `situation` names the change to the design; it
+    is `AS_GIVEN` for the unchanged design. For an accepted finding, `accept` is the entry in the
+    file, and `unaccepted` is the state that the finding would have without it. `probability` is the
+    probability that the limit is exceeded, if computed. `estimates` are the estimates on which the
+    finding relies.
     """
 
     mooring: str
@@ -384,11 +390,11 @@ class Finding(Verdict):
 
     @cached_property
     def utilisation(self) -> float | None:
-        """Demand over capacity; None if the rule defines no such ratio."""
+        """Ratio of demand to capacity; None if such a ratio is not meaningful for the rule."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the finding as a JSON object; an infinite utilisation (no capacity) is None."""
+        """Return the finding as a JSON object; an infinite utilisation is written as None."""
         used = self.utilisation
         figure = {} if self.missing is None else self.missing.to_dict()
         return {
@@ -428,7 +434,7 @@ _NOT_ACCEPTED = {
 
 
 def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:
-    """Group items by a key; groups are in order of their first items."""
+    """Group items by a key; groups are in the order of their first items."""
     groups: dict[_Key, list[_Item]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)
@@ -436,15 +442,14 @@ def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Ke
 
 
 def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
-    """Group findings by rule; rules are in order of their first findings."""
+    """Group findings by rule; rules are in the order of their first findings."""
     return grouped_by(findings, attrgetter("rule"))
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the most severe finding. Among equally severe findings, it has the largest
-    utilisation.
+    """Return the most severe finding; among equals, the one with the largest utilisation.
 
-    A finding that is not judged is returned only if there are no others.
+    A finding that is not judged is returned only if there is no other finding.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
@@ -452,10 +457,10 @@ def worst_of(findings: Iterable[Finding]) -> Finding:
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
-    """Return the finding with the largest utilisation. Among equal utilisations, it is the most
-    severe.
+    """Return the governing finding, which is the finding with the largest utilisation.
 
-    If no finding has a utilisation, return the most severe finding.
+    Of several findings with the same utilisation, the most severe governs. If no finding has a
+    utilisation, the most severe finding governs.
     """
     found = [*findings]
     used = [(use, one) for one in found if (use := one.utilisation) is not None]
@@ -465,11 +470,11 @@ def governing(findings: Iterable[Finding]) -> Finding:
 
 
 def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Select the findings to report for a rule: the governing finding, and the worst finding if its
-    state is more severe.
+    """Select the one or two findings of a rule to be reported.
 
-    The worst finding is omitted if it is only estimated or accepted, unless the governing finding
-    passes.
+    These are the finding with the largest utilisation and, if its state is more severe, the worst
+    finding. If the worst finding is only estimated or accepted, it is reported only if the other
+    finding passes. If no finding has a utilisation, only the worst finding is reported.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)
@@ -481,7 +486,7 @@ def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
-    """Return the governing finding of each rule; rules are in order of their first findings."""
+    """Return the governing finding of each rule; rules are in the order of their first findings."""
     return [governing(each) for each in by_rule(findings).values()]
 
 
@@ -492,7 +497,7 @@ def _is_overridden(finding: Finding) -> bool:
 
 
 def conclusion_of(findings: Iterable[Finding]) -> Conclusion:
-    """Return the conclusion from all findings of a mooring."""
+    """Derive the conclusion of the design check from all findings on a mooring."""
     found = [*findings]
     states = {one.state for one in found}
     if State.FAIL in states:

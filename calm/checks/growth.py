@@ -31,13 +31,13 @@ CHAIN_BREADTH = 1.8
 def grown(
     pieces: Sequence[files.Piece], given: LegResult, fouling: files.Fouling
 ) -> tuple[files.Piece, ...]:
-    """Return the pieces with biofouling on all parts above a given depth in still water.
+    """Return the pieces with biofouling on all parts above `fouling.depth` in still water.
 
-    A cable or chain that extends below this depth is split there; both parts keep its label.
+    A cable or chain that extends below this depth is split there, and both parts keep its label.
 
     Parameters
     ----------
-    given : result for the line without biofouling
+    given : result for the line without biofouling, which supplies the depths
     """
     gravity = given.leg.water.gravity
     return tuple(
@@ -76,11 +76,11 @@ def _grown_pieces(
 def grown_component(
     component: files.Component, fouling: files.Fouling, gravity: float
 ) -> files.Component:
-    """Return a component with biofouling all over its surface; an anchor is unchanged.
+    """Return a copy of a component with biofouling all over its surface; anchors are unchanged.
 
     Parameters
     ----------
-    gravity : gravity [m/s²]
+    gravity : gravitational acceleration [m/s²]
     """
     if isinstance(component, files.Anchor):
         return component

@@ -31,21 +31,22 @@ FAST_RISE_SPEED = 3.0
 
 
 def is_hauled_in(handling: Handling) -> bool:
-    """Return whether a line is recovered by hauling, because it has a surface float and no
-    release.
+    """Return whether a line is recovered by hauling it in from its surface float.
+
+    This is the case for a line with a surface float and no release.
     """
     return handling.leg.file.release is None and reaches_the_surface(handling.leg)
 
 
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Check the net buoyancy that remains to recover the release after a break or the loss of a
-    float.
+    """Check the net buoyancy that remains to lift the release after a break or a lost float.
 
     The line may break at any connection above the back-up floats, or lose any single buoyant
-    element. The net buoyancy should be at least a tenth of the lifted weight, and sufficient for a
-    rise at `minimum_rise_speed`. A compact line below a single float has no back-up buoyancy. A
-    surface mooring without floats below its buoy has none either, and is recovered by hauling.
+    element. The remaining net buoyancy should be at least `backup_margin` (by default a tenth) of
+    the lifted weight, and sufficient for a rise at `minimum_rise_speed`. A compact line below a
+    single float has no back-up buoyancy. A surface mooring without floats below its buoy has no
+    back-up buoyancy either, and is recovered by hauling.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
@@ -169,8 +170,9 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
 
 @rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
-    """Check the terminal rise speed of the line without its anchor, unless the line is hauled
-    in.
+    """Check the terminal rise speed of the line without its anchor.
+
+    The rise of a line that is hauled in is not judged.
     """
     if is_hauled_in(handling):
         message = "A line without a release is hauled in with its anchor, so it has no ascent."

@@ -17,15 +17,15 @@ class InventoryItem:
     Attributes
     ----------
     index : index of the piece, or of the piece that carries the clamp
-    use, label, role, kind : as in the file
+    use, label, role, kind : component id, label, role and kind, as in the file
     name : name of the component; None if it has none
-    clamped_on, at : label of the piece that carries a clamp, and distance from its upper end [m];
-        None for a piece
-    cut_length : length along the line [m]; None for a fitted cable if no length fits
+    clamped_on, at : label of the piece that carries the clamp, and distance of the clamp from the
+        upper end of that piece [m]; None for a piece
+    cut_length : length along the line [m]; None for a fitted cable if no length reaches its target
+        depth
     dry_mass : mass in air [kg]; None if unknown
-    wet_weight : weight in water of 1025 kg/m³, with the gravity of the file, positive down [N];
-        None if the length is unknown
-    items : number of equal components that form this item, such as the releases of a pair
+    wet_weight : weight in water of 1025 kg/m³, positive down [N]; None if the length is unknown
+    items : number of equal components that form this item, such as 2 for a pair of releases
     lift_mass : mass of a piece with its clamps [kg]; None for a clamp, or if a mass is unknown
     """
 
@@ -46,14 +46,14 @@ class InventoryItem:
 
 @dataclass(frozen=True)
 class Total:
-    """Totals over the items whose values are known.
+    """Total mass and weight of several items.
 
     Attributes
     ----------
-    dry_mass, missing_masses : mass in air [kg], and number of items of unknown mass; if there are
-        any, the total is a lower bound
-    wet_weight, missing_weights : weight in water, positive down [N], and number of items of unknown
-        weight
+    dry_mass, missing_masses : total mass in air [kg], and number of items whose mass is unknown and
+        not included
+    wet_weight, missing_weights : total weight in water, positive down [N], and number of items
+        whose weight is unknown and not included
     """
 
     dry_mass: float
@@ -63,7 +63,7 @@ class Total:
 
 
 def total_of(items: Sequence[InventoryItem]) -> Total:
-    """Sum the values of pieces and clamps."""
+    """Sum the masses in air and weights in water of pieces and clamps."""
     masses, weights = [each.dry_mass for each in items], [each.wet_weight for each in items]
     mass, weight = (sum(one for one in each if one is not None) for each in (masses, weights))
     return Total(mass, masses.count(None), weight, weights.count(None))
@@ -120,14 +120,15 @@ def _in_all(component: Component, figure: float | None, length: float | None) ->
 
 
 def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:
-    """Return the masses in air of a steel and of a concrete anchor with a given weight in water
-    [kg].
+    """Return the masses in air of a steel anchor and a concrete anchor [kg].
+
+    Both anchors have the given weight in water.
 
     Parameters
     ----------
     required_weight : required weight in water [N]
     density : density of the water [kg/m³]
-    gravity : acceleration of gravity [m/s²]
+    gravity : gravitational acceleration [m/s²]
     """
     steel, concrete = (
         required_weight / (gravity * (1.0 - density / material))

@@ -39,7 +39,7 @@ def joints(handling: Handling) -> Iterator[Verdict]:
 
 
 def bare_joints(pieces: Sequence[Piece]) -> list[tuple[Piece, Piece]]:
-    """Return the pairs of adjacent pieces that lack hardware between them, down the line."""
+    """Return the pairs of adjacent pieces that lack hardware between them, from the top down."""
     return [pair for pair in pairwise(pieces) if _needs_hardware(*pair)]
 
 

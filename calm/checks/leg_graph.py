@@ -41,10 +41,10 @@ class Break:
     Attributes
     ----------
     break_after, label : index and label of the piece above the break
-    margin : net buoyancy of the section that contains a release after the break [N]
+    margin : net buoyancy, after the break, of the section that contains the release [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
     required : required margin [N]
-    judged : whether a better design could avoid the loss of the release
+    judged : False if the break would strand the release in any design, so that it is not checked
     loose : net buoyancy of the section that breaks away at once and drifts, positive up [N]
     """
 
@@ -63,10 +63,10 @@ class Loss:
 
     Attributes
     ----------
-    index, label : index of the piece (or of the piece that carries the clamp), label of the lost
-        element
-    margin : net buoyancy of the release and the remaining pieces above it [N]
-    weight_lifted : weight in water of the non-buoyant pieces [N]
+    index : index of the lost piece, or of the piece that carries the lost clamp
+    label : label of the lost element
+    margin : net buoyancy that remains for the release and the pieces that rise with it [N]
+    weight_lifted : weight in water of the non-buoyant pieces that rise [N]
     required : required margin [N]
     place : place of the lost element in the file
     """
@@ -80,13 +80,13 @@ class Loss:
 
 
 class LegGraph:
-    """Graph of the connections between the pieces of a design, its nodes and its fixed ends.
+    """Graph of the connections between the pieces, nodes and fixed ends of a design.
 
     Pieces are identified by their index in the file. In each leg, only the lowest release opens.
 
     Parameters
     ----------
-    legs : the legs; none for a design without equilibrium
+    legs : legs of the design; empty if the design has no equilibrium
     lifts : net forces (n,) of the pieces of each leg with their clamps, without the anchor [N]
     """
 
@@ -116,18 +116,15 @@ class LegGraph:
 
     @classmethod
     def in_equilibrium(cls, results: Sequence[LegResult]) -> "LegGraph":
-        """Return the graph of a solved design, with the net forces of its pieces at their depths in
-        equilibrium.
-        """
+        """Return the graph of a solved design; net forces are those at the equilibrium depths."""
         lifts = [lifts_of(each.leg.line, each.leg.water, each) for each in results]
         return cls([each.leg for each in results], lifts)
 
     @classmethod
     def upright(cls, leg: Leg) -> "LegGraph":
-        """Return the graph of a single line, with the net forces of its pieces at their depths in
-        the upright line.
+        """Return the graph of a single line; net forces are those at depths in the upright line.
 
-        The graph is empty if no length fits.
+        The graph is empty if no length of the fitted piece reaches its target depth.
         """
         with suppress(NoEquilibrium):
             return cls([leg], [standing_lift(leg.line, leg.water)])
@@ -139,8 +136,9 @@ class LegGraph:
         return any(_SEABED in chain for chain in self.chains)
 
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
-        """Return the connected parts of the design after breaks; `cut` lists the leg and position
-        of each break.
+        """Return the connected parts into which breaks divide the design.
+
+        `cut` contains the leg and the position in the leg of each break.
         """
         parts: list[set[Hashable]] = []
         for number, chain in enumerate(self.chains):
@@ -167,8 +165,9 @@ class LegGraph:
 
     @property
     def coming_up(self) -> set[int]:
-        """Pieces that surface after all releases open. In a design without a release, these are all
-        pieces except anchors.
+        """Indices of the pieces that surface after all releases open.
+
+        In a design without a release, these are all pieces except anchors.
         """
         parts = self._rising(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}
@@ -176,20 +175,21 @@ class LegGraph:
     def breaks(self, whole: Leg) -> tuple[Break, ...]:
         """Return the breaks below every piece that surfaces, in file order.
 
-        The margin of a break refers to the section that contains a release after all releases have
-        opened. `loose` is the net buoyancy of the section that drifts off before the releases open.
-        For a break inside a cable, the margin lies between the margins of the breaks at both ends
-        of the cable.
+        The margin is the net buoyancy of the section that contains a release, after all releases
+        have opened. `loose` is the net buoyancy of the section that drifts off before the releases
+        open. The margin of a break inside a cable lies between the margins of the breaks at the two
+        ends of the cable.
 
         Consecutive floats with only connectors and chain between them form a cluster. Some breaks
-        strand the release in any design and are not judged: breaks inside the last cluster above a
-        release, and breaks between this cluster and the release, if they are at most `SHORT_LEAD`
-        apart. If this applies to all breaks, clusters are divided at chains, too. If there is still
-        only one cluster, no break is judged, and only the losses of floats are checked.
+        strand the release in any design and are not judged. These are breaks inside the last
+        cluster above a release, and breaks between this cluster and the release if the two are at
+        most `SHORT_LEAD` apart. If this applies to all breaks, clusters are divided at chains as
+        well. If there is still only one cluster, no break is judged, and only losses of floats are
+        checked.
 
         Parameters
         ----------
-        whole : all pieces of the design as one leg, for the limits of its check
+        whole : all pieces of the design as one leg, which supplies the limits of the check
         """
         rising = {one for part in self._rising(()) for one in part}
         before = {one for part in self._free(()) for one in part}
@@ -253,16 +253,16 @@ class LegGraph:
         return component.kind in what or component.role in what
 
     def losses(self, whole: Leg) -> tuple[Loss, ...]:
-        """Return the loss of each buoyant piece or clamp that would otherwise surface, in file
-        order.
+        """Return the effect of losing each buoyant piece or clamp that surfaces, one at a time.
 
         A lost element provides no buoyancy. If its mass and the density of its material are known,
-        it is assumed flooded and its weight in water is added; otherwise it is assumed gone. Cables
-        are never lost. The net forces of the other pieces do not change.
+        the element is assumed to be flooded, and its weight in water counts; otherwise it is
+        assumed to be gone. Cables are never lost. The net forces of the other pieces do not change.
 
         Parameters
         ----------
-        whole : all pieces of the design as one leg, for gravity and the limits of its check
+        whole : all pieces of the design as one leg, which supplies gravity and the limits of the
+            check
         """
         return tuple(loss for part in self._rising(()) for loss in self._losses_of(part, whole))
 
@@ -287,7 +287,7 @@ class LegGraph:
                 )
 
     def release_verdicts(self) -> Iterator[Verdict]:
-        """Report floats that remain attached to an anchor after all releases open."""
+        """Check that no float stays attached to an anchor after all releases open."""
         held = [
             self.pieces[one]
             for part in self.parts(self.opened)

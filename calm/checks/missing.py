@@ -23,16 +23,15 @@ _INSTEAD = {
 
 
 def alternatives(quantity: str) -> tuple[str, ...]:
-    """Return the keys of a component, any one of which can supply a missing value."""
+    """Return the component keys that can supply a missing value; any one of them suffices."""
     return quantity, *_INSTEAD.get(quantity, ())
 
 
 @rule(MISSING)
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
-    """Yield one verdict per component id and missing value, which represents all findings without
-    this value.
+    """Yield one verdict per component id and missing value, for all findings that lack the value.
 
-    Its message is that of the finding with the largest value, such as the largest depth or load.
+    The message is taken from the finding with the largest value, such as the largest depth or load.
     """
     for found in lacking.values():
         figure = found[0].missing
@@ -53,19 +52,20 @@ def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Ve
 
 
 def is_lacking(finding: Finding) -> bool:
-    """Return whether a finding is unknown because of a missing value that nobody has accepted."""
+    """Return whether a finding is unknown, and not accepted, because a value is missing."""
     return finding.state is State.UNKNOWN and finding.lacks is not None
 
 
 def gathered(
     lacking: Iterable[Finding], parts: Mapping[str, Piece | Clamp]
 ) -> dict[tuple[str, str], list[Finding]]:
-    """Group the findings that lack a value by component id and missing value, and attach the
-    `MissingFigure` of its group to each finding.
+    """Group the findings that lack a value by component id and missing value.
+
+    Each finding in the result has the `MissingFigure` of its group.
 
     Parameters
     ----------
-    parts : pieces and clamps of the line by their labels
+    parts : pieces and clamps of the line, by label
     """
 
     def value(finding: Finding) -> tuple[str, str]:
@@ -94,11 +94,12 @@ def with_missing(
     mooring: str,
     environment: str,
 ) -> list[Finding]:
-    """Replace the findings of a mooring that lack a value with findings of the rule `missing`.
+    """Replace the findings that lack a value with findings of the rule `missing`.
 
     Parameters
     ----------
-    mooring, environment : names used in the findings of `missing`
+    parts : pieces and clamps of the line, by label
+    mooring, environment : names of mooring and environment in the findings of `missing`
     """
     every = list(findings)
     lacking = gathered(filter(is_lacking, every), parts)

@@ -26,9 +26,9 @@ depth.
 class PlannedPart:
     """A piece or a clamp with a planned depth [m].
 
-    `least` and `most` are bounds of its depth in still water. They differ only if the line is slack
-    in still water and has no unique shape. In that case, they are the depth in the current and the
-    depth on a straight vertical line.
+    `least` and `most` are bounds on the depth of the part in still water. They differ only if the
+    line is slack in still water and has no unique shape. In that case, they are the depth in the
+    current and the depth that the part would have on a straight vertical line.
     """
 
     row: ComponentRow | ClampRow
@@ -38,9 +38,7 @@ class PlannedPart:
 
     @property
     def off(self) -> float:
-        """Depth error [m], positive if too deep; 0 if the planned depth is between `least` and
-        `most`.
-        """
+        """Depth error [m], positive if too deep; 0 if `planned` is between `least` and `most`."""
         return min(max(self.planned, self.least), self.most) - self.planned
 
 
@@ -96,7 +94,7 @@ def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]
 
 
 def planned_parts(result: LegResult) -> list[PlannedPart]:
-    """Return the pieces and clamps with a planned depth, down the line."""
+    """Return the pieces and clamps that have a planned depth, from the top down."""
     length = result.components.length
     above = np.cumsum(length) - length
     found = []

@@ -36,9 +36,9 @@ AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
 def reaches_the_surface(leg: Leg) -> bool:
     """Return whether the line is designed to have its float at the surface in still water.
 
-    A float with a key that only surface floats have is always intended for the surface, even if it
-    is too small to reach it. A line longer than the water depth has no unique shape in still water,
-    and is treated as a line that reaches the surface.
+    A float whose definition has a key that only surface floats have is always intended for the
+    surface, even if its buoyancy is too small. A line that is longer than the water depth has no
+    unique shape in still water, and is treated as a line that reaches the surface.
     """
     if leg.for_surface is not None:
         return leg.for_surface
@@ -51,9 +51,7 @@ def reaches_the_surface(leg: Leg) -> bool:
 
 
 def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
-    """Return the names of the rules that do not apply to a leg because of the supports of its
-    ends.
-    """
+    """Return the names of the rules that do not apply to a leg because of its end connections."""
     top, bottom = legs_of(file)[0].ends
     of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
     return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
@@ -61,12 +59,11 @@ def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
 
 @criteria("tilt")
 def tilt(leg: Leg) -> Iterator[Criterion]:
-    """Check the tilt of instruments and releases against their own limits and the limit of the
-    design.
+    """Check the tilt of instruments and releases against their own limits and the design's limit.
 
-    Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 for a single-point
-    Doppler current meter, 45 for a release, and 10 for a sediment trap. The limit for an ADCP is 20
-    degrees, and its data are unreliable above 15.
+    Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 degrees for a
+    single-point Doppler current meter, 45 degrees for a release, and 10 degrees for a sediment
+    trap. The limit for an ADCP is 20 degrees, and ADCP data are unreliable above 15 degrees.
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -109,12 +106,11 @@ def _doubtful_words(
 
 @criteria("depth-rating")
 def depth_rating(leg: Leg) -> Iterator[Criterion]:
-    """Check the depth ratings of floats and instruments against the depth in the current plus a
-    margin.
+    """Check that floats and instruments stay above their depth ratings by a margin.
 
-    A float that is knocked down below its rating implodes, and the line sinks. A surface float has
-    no depth rating; the rules `freeboard` and `reserve` cover a surface float that is pulled under
-    water.
+    Depths in the current are checked, because a float that is knocked down below its rating
+    implodes, and the line sinks. A surface float needs no depth rating; the rules `freeboard` and
+    `reserve` check whether a surface float is pulled under water.
     """
     margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
     for part in parts_of(leg):
@@ -153,9 +149,7 @@ _MEASURED = 0.2
 
 @rule("stretch")
 def stretch(result: LegResult) -> Iterator[Verdict]:
-    """Check the possible stretch of ropes of unknown stiffness, and the load under which ropes are
-    measured for cutting.
-    """
+    """Check ropes for unknown stretch, and the load under which their length was measured."""
     limit, lengths = _STRETCH * result.leg.water.depth, result.leg.line.length.tolist()
     rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
     for piece, length, tension in rows:
@@ -189,10 +183,10 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
 
 @criteria("top-depth")
 def top_depth(leg: Leg) -> Iterator[Criterion]:
-    """Check the minimum depth of the top of a sub-surface line, which must be clear of waves,
-    vessels and nets.
+    """Check that the top of a sub-surface line is deep enough to avoid waves, vessels and nets.
 
-    If the design sets no `minimum_top_depth`, a top above the default depth only causes a warning.
+    If the design does not set `minimum_top_depth`, a top above the default depth only causes a
+    warning.
     """
     given, label = leg.file.checks.minimum_top_depth, pieces_of(leg)[0].label
     if given is None and reaches_the_surface(leg):
@@ -227,7 +221,7 @@ limit.
 
 @rule("fish-bite")
 def fish_bite(result: LegResult) -> Iterator[Verdict]:
-    """Check the minimum depth of each synthetic rope against the depth of the fish-bite zone."""
+    """Check that the upper end of each synthetic rope is below the fish-bite zone."""
     limit, position = result.file.checks.fishbite_depth, result.file.position
     polar = position is not None and abs(position.latitude) >= _POLAR
     if result.leg.water.depth <= _SHELF or polar:
@@ -291,7 +285,7 @@ def _of_the_top(
 def reserve(leg: Leg) -> Iterator[Criterion]:
     """Check the reserve buoyancy of the surface float, as a fraction of its total buoyancy.
 
-    The default of 0.3 is an allowance for waves, which a static solution does not include.
+    The default limit of 0.3 is an allowance for waves, which a static solution does not include.
     """
     if not reaches_the_surface(leg):
         return
@@ -358,10 +352,10 @@ def _too_long(leg: Leg) -> str:
 def watch_circle(result: LegResult) -> Iterator[Verdict]:
     """Check the watch-circle radius √(L² - h²) of a surface float.
 
-    L is the line length from the float to the anchor, and h the height of the surface above the top
-    of the anchor. The line is assumed to be taut, which is the worst case. PacIOOS, for example,
-    states 1.73 times the depth at a scope of 2. The limit is `maximum_excursion`, if the design
-    sets it.
+    L is the line length from the float to the anchor, and h is the height of the surface above the
+    top of the anchor. The line is assumed to be taut, which is the worst case. PacIOOS, for
+    example, states a radius of 1.73 times the depth at a scope of 2. The limit is
+    `maximum_excursion`, if the design sets it.
     """
     limit = result.file.checks.maximum_excursion
     if not reaches_the_surface(result.leg):
@@ -380,8 +374,9 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
 
 @rule("scope")
 def scope(result: LegResult) -> Iterator[Verdict]:
-    """Report the scope of a surface mooring, which is cut length over water depth. There is no
-    limit.
+    """Report the scope of a surface mooring, which is its cut length divided by the water depth.
+
+    There is no limit.
     """
     if not reaches_the_surface(result.leg):
         return

@@ -31,20 +31,20 @@ from calm.solve import FreeMotion, Settings, part_of, plumb_speed, solve_rise
 
 @dataclass(frozen=True)
 class Recovery:
-    """Rise of a line without its anchor, which starts from equilibrium.
+    """Rise of a line without its anchor, starting from the equilibrium of the mooring.
 
     Attributes
     ----------
     released : index of the lowest piece that rises: the lowest release, whose lower hook opens, or
         the piece above the anchor if there is no release
     rise_speed : terminal speed of the rising line, positive up [m/s]; 0 if it does not rise
-    net_buoyancy : net buoyancy of the rising line, in equilibrium [N]
-    time_to_surface : time until the first buoyant piece surfaces [s]; None if none does
+    net_buoyancy : net buoyancy of the rising line at its depths in equilibrium [N]
+    time_to_surface : time until the first buoyant piece surfaces [s]; None if no piece surfaces
     tension_top, tension_bottom : (n,) tensions of the pieces above the anchor during the rise [N];
         NaN for pieces that do not rise
-    arrival : (n,) time at which each piece surfaces [s]; NaN if it stays below
-    order : pieces that are buoyant enough to surface alone, in order of surfacing
-    tangles : pieces that overtake, entirely or in part, pieces above them in the line
+    arrival : (n,) time at which each piece surfaces [s]; NaN for a piece that stays below
+    order : indices of pieces that are buoyant enough to surface alone, in order of surfacing
+    tangles : indices of pieces that overtake, entirely or in part, pieces above them in the line
     in_still_water : whether the rise was computed in still water, because the line doubles back
         and has no steady motion in the current
     length : (m,) stretched lengths of the rising pieces [m]; empty if the line does not rise
@@ -66,15 +66,15 @@ class Recovery:
 
     @property
     def hangs_at(self) -> Floats:
-        """(n,) depths of the upper ends of the pieces after all pieces have surfaced [m]."""
+        """(n,) depths of the upper ends of the pieces at the end of the rise [m]."""
         return np.array([self.depth_at(piece, 0.0) for piece in range(len(self.arrival))])
 
     def depth_at(self, piece: int, share: float) -> float:
-        """Return the depth of a point on a piece after all pieces have surfaced [m]; NaN if
-        unknown.
+        """Return the depth of a point on a piece at the end of the rise [m]; NaN if unknown.
 
-        The point is on the piece with the index `piece`, at the fraction `share` of its length from
-        its upper end. It is suspended from the nearest surfaced piece, measured along the line.
+        The point is on the piece with the index `piece`, at the fraction `share` of the piece's
+        length from its upper end. The point is suspended from the surfaced piece that is nearest
+        along the line.
         """
         up = np.isfinite(self.arrival[: len(self.length)])
         if piece >= len(up):
@@ -88,9 +88,7 @@ class Recovery:
         return float(np.concatenate([above, below, [self.seabed]]).min())
 
     def components(self) -> list[dict[str, Any]]:
-        """Return the results for the pieces above the anchor as dictionaries; None stands for
-        NaN.
-        """
+        """Return one dictionary of results per piece above the anchor; None stands for NaN."""
         columns = (self.tension_top, self.tension_bottom, self.arrival, self.hangs_at)
         names = ("tension_top", "tension_bottom", "arrival", "depth")
         rows = zip(*(column.tolist() for column in columns), strict=True)
@@ -101,11 +99,11 @@ class Recovery:
 
 
 def recovery_of(leg: Leg, result: LegResult) -> Recovery:
-    """Compute the recovery of a mooring from its equilibrium.
+    """Compute the rise of a mooring after its release, starting from its equilibrium.
 
     Parameters
     ----------
-    result : result of the mooring, which supplies the depths and stretched lengths in equilibrium
+    result : result of the mooring, which supplies depths and stretched lengths in equilibrium
 
     Raises
     ------
@@ -154,8 +152,9 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 
 
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
-    """Return the net forces (n,) of the pieces with their clamps, positive up [N], in water of the
-    density at their depths in equilibrium.
+    """Return the net forces (n,) of the pieces with their clamps, positive up [N].
+
+    They are computed with the water density at the depths of the pieces in equilibrium.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])

@@ -21,8 +21,10 @@ Part = Piece | Clamp
 
 @rule("serials-and-dates", once=True)
 def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
-    """Warn about repeated labels, serial numbers and release codes, codes without a release, and
-    dates in the wrong order.
+    """Warn about repeated or unmatched identifiers, and about dates in the wrong order.
+
+    Identifiers are labels, serial numbers and release codes. A release code is unmatched if the
+    line has no such release.
     """
     file = handling.leg.file
     parts = parts_of(file.pieces)

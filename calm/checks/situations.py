@@ -51,9 +51,14 @@ def case_of(environment: int, situation: str) -> str:
     Parameters
     ----------
     environment : number of the environment in file order, from 1
-    situation : name of the situation. The code is 0 for still water; otherwise it is the number
-        with a suffix: s strumming, g growth, h high water, l low water, d as deployed, p profiler
-        at its lower stop, q profiler at the maximum wire angle
+    situation : name of the situation
+
+    Notes
+    -----
+    The code is 0 for still water, and 0l for still low water. For the unchanged mooring, the code
+    is the number of the environment. For other situations, the code is this number with a suffix: s
+    for strumming, g for growth, h for high water, l for low water, d for the mooring as deployed, p
+    for a profiler at its lower stop, and q for a profiler at the maximum wire angle.
     """
     if situation in (STILL, STILL_LOW):
         return "0" if situation == STILL else "0l"
@@ -73,7 +78,7 @@ entry.
 def situations_of(design: Design) -> tuple[Situations, ...]:
     """Solve a design as given, and then in every situation that its file requires.
 
-    These situations are
+    These situations are:
 
     - still water;
     - high water, low water and still low water, if the environment has a `depth_range`;
@@ -82,9 +87,9 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
     - cables with Cn × 1.5, if no strumming law is in use;
     - the depth and lengths of `deployed`, if they differ from the design.
 
-    A fitted piece keeps the length from the design as given. Still water is omitted for a surface
-    line that is longer than the water depth, because the line is then slack and has no unique
-    shape.
+    In all situations, a fitted piece keeps the length that it has in the design as given. Still
+    water is omitted for a surface line that is longer than the water depth, because such a line is
+    slack and has no unique shape.
     """
     given = solved(AS_GIVEN, design)
     if given[0].result is None:
@@ -97,7 +102,10 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 
 
 def solved(name: str, design: Design) -> Situations:
-    """Solve a design in a named situation."""
+    """Solve a design; return one situation with the given name for each of its legs.
+
+    Without an equilibrium, the result has a single situation, which contains the reason.
+    """
 
     # environments of equal depth and density share the solution in still water
     environment = replace(design.environment, name=None)
@@ -149,8 +157,9 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the file with changed water and the name of the situation: still water, still low
-    water, high water, low water.
+    """Yield the name of each situation with changed water, and the file for this situation.
+
+    The situations are still water, still low water, high water and low water, as applicable.
     """
     environment, tide = file.environment, file.environment.depth_range
     if water.moving or environment.wind is not None:
@@ -164,8 +173,9 @@ def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, Moor
 
 
 def strumming_file(file: MooringFile) -> MooringFile | None:
-    """Return the file with Cn × 1.5 for its cables; None if the file has a strumming law or no
-    cables.
+    """Return the file with Cn × 1.5 for all cables, which represents strumming.
+
+    Return None if the file has a strumming law or no cables.
     """
     if file.solver.strumming is not None:
         return None
@@ -189,7 +199,7 @@ SOUNDING = 1.0, 0.023
 
 
 def as_deployed(design: Design) -> Design:
-    """Return the design with the depth, position, serial numbers and cut lengths in `deployed`.
+    """Return the design with the depth, position, serial numbers and cut lengths from `deployed`.
 
     A fitted piece keeps its design length, unless `deployed` specifies a length.
 
@@ -198,7 +208,7 @@ def as_deployed(design: Design) -> Design:
     UsageError
         The file has no key `deployed`.
     NoEquilibrium
-        The design has a fitted piece, and no length fits.
+        The design has a fitted piece, and no length reaches its target depth.
     """
     file = design.file
     if file.deployed is None:
@@ -237,9 +247,10 @@ def differs(designed: MooringFile, deployed: MooringFile) -> bool:
 
 @rule("as-deployed", once=True, case="d")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """Check the depth of the top of the upright line, as deployed, against its design depth.
+    """Check the depth of the top of the line as deployed against its depth in the design.
 
-    For a surface mooring, the change in water depth is checked instead.
+    Both are depths in the upright line. For a surface mooring, the change in water depth is checked
+    instead.
     """
     leg = handling.leg
     if leg.file.deployed is None:
@@ -315,7 +326,7 @@ LEAST_CURRENT = 0.01
 
 @rule("equilibrium")
 def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Report that there is no equilibrium."""
+    """Report that the mooring has no equilibrium, with the reason."""
     message = f"{failure.status}: {failure.message}"
     yield verdict_on(None, State.FAIL, message, failure.advice)
 
@@ -345,10 +356,10 @@ WEAK_BESIDE_OTHERS = 0.02
 
 @rule("current")
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
-    """Check the strongest current of all environments, and report depths that the current profiles
-    do not cover.
+    """Check the strongest current, and report depths that current profiles do not cover.
 
-    Yield each verdict with the leg in the affected environment.
+    `legs` contains one leg per environment. Yield each verdict with the leg in the affected
+    environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
     for leg, speed in zip(legs, speeds, strict=True):

@@ -27,11 +27,11 @@ WEIGHT_OF_A_HINGE = 0.5
 
 
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
-    """Return the allowable load of a component in service [N]; None if its working load and
-    breaking load are unknown.
+    """Return the allowable load of a component in service [N]; None without any load rating.
 
-    It is the smaller of the working load and the breaking load divided by the safety factor. The
-    factor is that for a surface mooring, for synthetic rope or for steel.
+    The allowable load is the smaller of the working load and the breaking load divided by the
+    safety factor. The safety factor is that for surface moorings if `surface` is true; otherwise it
+    is that for synthetic rope or that for steel.
     """
     return lesser_load(component, 1.0, safety_factor(component, factors, surface))
 
@@ -39,7 +39,8 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
 def lesser_load(component: Component, working_factor: float, factor: float) -> float | None:
     """Return the smaller of working load × `working_factor` and breaking load / `factor` [N].
 
-    For a synthetic rope with both loads, only the breaking load counts.
+    For a synthetic rope with both load ratings, only the breaking load counts. Return None if the
+    component has no load rating.
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -50,8 +51,9 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load that a component without loads should have: `breaking_load` for
-    cables and chains, `working_load` for other components.
+    """Return the key of the load rating to request for a component without any load rating.
+
+    This is `breaking_load` for cables and chains, and `working_load` for other components.
     """
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
@@ -60,8 +62,8 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
     """Return whether the line tension passes through a piece.
 
     The top piece, the anchor and a piece at the free end of a leg are loaded at one end only, and
-    the shackle next to them carries their load. A hinge without length and weight, which other
-    programs use in their designs, is not hardware.
+    the shackle next to them carries their load. The result is also False for a hinge without length
+    and weight, which occurs in designs from other programs.
     """
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
@@ -71,13 +73,19 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
 
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
-    """Return the safety factor on breaking load that applies to a component."""
+    """Return the safety factor on breaking load that applies to a component.
+
+    `surface` is true for a surface mooring.
+    """
     factor: float = getattr(factors, safety_factor_name(component, surface))
     return factor
 
 
 def safety_factor_name(component: Component, surface: bool) -> str:
-    """Return which `safety_factor` of the file applies to a component."""
+    """Return the key in `safety_factor` that applies to a component, such as `steel`.
+
+    `surface` is true for a surface mooring.
+    """
     if surface:
         return "surface"
     return "synthetic" if is_synthetic(component) else "steel"
@@ -85,11 +93,11 @@ def safety_factor_name(component: Component, surface: bool) -> str:
 
 @criteria("strength")
 def strength(leg: Leg) -> Iterator[Criterion]:
-    """Compare the maximum tension in each piece with its working load, and with its breaking load
-    divided by the safety factor.
+    """Compare the maximum tension in each piece with its allowable load.
 
-    The top piece and the anchor are checked only if they have a load, because no tension passes
-    through them.
+    The allowable load is the smaller of the working load and the breaking load divided by the
+    safety factor. The top piece and the anchor are checked only if they have a load rating, because
+    no tension passes through them.
 
     UFC 4-159-03 table 3-7 requires a factor of 3 on the breaking strength of new chain and wire.
     Oceanographic practice is 3 to 5, with the larger values for synthetic ropes and surface
@@ -134,15 +142,18 @@ def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: s
     Parameters
     ----------
     tension : load [N]
-    when : operation, such as " during the descent"
-    bound : " at most" if the load is an upper bound
+    when : text that names the operation, such as " during the descent"
+    bound : " at most" if the load is an upper bound, otherwise empty
     """
     what = "Tension in" if isinstance(part.component, Flexible) else "Load on"
     return f"{what} {part.label}{when} is{bound} {say('load', tension)}"
 
 
 def no_load_known(load: str) -> tuple[str, str]:
-    """Return message and remedy for a piece without a working load and a breaking load."""
+    """Return message and remedy for a piece whose working load and breaking load are unknown.
+
+    `load` is the text of `load_text`.
+    """
     message = f"{load}; its working load and breaking load are unknown."
     return message, "Set the `working_load` or `breaking_load` of the part."
 
@@ -151,8 +162,9 @@ def no_load_known(load: str) -> tuple[str, str]:
 def release_load(leg: Leg) -> Iterator[Criterion]:
     """Check the load on every release, in service and at opening, against its rated loads.
 
-    At opening, a release carries the tension below it, which must not exceed its `opening_load`. If
-    this is unknown, the allowable load in service applies, and the message says so.
+    At opening, a release carries the tension of the line below it, which must not exceed its
+    `opening_load`. If `opening_load` is unknown, the allowable load in service applies instead, and
+    the message mentions this.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -190,13 +202,13 @@ def _release_words(
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Report weak links: pieces with less than half the strength of the cables on both sides, and a
-    tension above half of their own strength.
+    """Report weak links in the line.
 
-    A line of uneven strength carries unnecessary weight, and it parts at its weak link. If there is
-    no weak link, the piece closest to being one is reported. Chain is excluded because it is
-    oversized against wear. Loads that are only lower bounds of an estimate are excluded because
-    they are no measure of relative strength.
+    A weak link has less than half the strength of the cables on both sides, and its tension exceeds
+    half of its own strength. A line of uneven strength carries unnecessary weight, and parts at its
+    weak link. If there is no weak link, the piece that comes closest is reported. Chain is excluded
+    because it is oversized to allow for wear. Load ratings that are only lower bounds of an
+    estimate are excluded because they do not show the relative strength.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
     loads = [
@@ -251,14 +263,13 @@ def _steps(
 
 @criteria("slack")
 def slack(leg: Leg) -> Iterator[Criterion]:
-    """Check the minimum tension in each wire and rope above the release, or in the whole line
-    without a release.
+    """Check the minimum tension in each wire and rope above the release.
 
-    A slack line wears, kinks and takes snap loads. Mooring groups require about 500 to 1000 N above
-    the release at slack water. No published rule exists, so the defaults are 500 N for wire and 300
-    N for rope. Pieces with ``slack: allowed`` and line on the seabed are exempt. In a line that is
-    shorter than `SHORT_LEAD` above its release, the tension depends on the floats alone, so only a
-    limit set by the design applies.
+    Without a release, the whole line is checked. A slack line wears, kinks and takes snap loads.
+    Mooring groups require about 500 to 1000 N above the release at slack water. No published rule
+    exists; the defaults are 500 N for wire and 300 N for rope. Pieces with ``slack: allowed`` and
+    line on the seabed are exempt. If the line above the release is shorter than `SHORT_LEAD`, its
+    tension depends on the floats alone, so only a limit that the design sets applies.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
@@ -294,8 +305,8 @@ _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 def anchor_weight(leg: Leg) -> Iterator[Criterion]:
     """Check that the anchor's weight in water is at least factor × (V + H / friction).
 
-    V and H are the vertical and horizontal anchor load. This is Dewey's rule for deadweights, with
-    a factor of 1.5.
+    V and H are the vertical and horizontal anchor load. This is Dewey's rule for deadweight
+    anchors, in which the factor is 1.5.
     """
     weight = _weight(leg)
 
@@ -340,8 +351,9 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("anchor-sliding", of_anchor=True)
 def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
-    """Check that the horizontal anchor load H is at most friction × (weight in water / factor -
-    V).
+    """Check that the horizontal anchor load is at most friction × (weight in water / factor - V).
+
+    V is the vertical anchor load, positive up.
     """
     weight, factor = _weight(leg), leg.file.checks.anchor_factor
     friction, seabed = leg.file.anchor_friction, leg.file.environment.seabed
@@ -384,11 +396,9 @@ all of them in the same situation.
 def with_one_weight(
     findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
 ) -> Iterator[Finding]:
-    """Give all findings about an anchor that is too light the same remedy, which states the largest
-    required weight.
+    """Yield the findings, with the same remedy in all findings on an anchor that is too light.
 
-    `governing` has the finding with the largest required weight, by place of the anchor (see
-    `heaviest`).
+    The remedy states the largest required weight. `governing` is the result of `heaviest`.
     """
     for one in findings:
         lead = governing.get(one.place)
@@ -397,8 +407,9 @@ def with_one_weight(
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
-    """Return the finding with the largest required weight for each anchor that is too light, by
-    place of the anchor.
+    """Return for each anchor that is too light the finding with the largest required weight.
+
+    The keys of the result are the places of the anchors.
     """
     found: dict[Place | None, Finding] = {}
     for one in findings:

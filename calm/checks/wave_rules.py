@@ -28,9 +28,10 @@ _SET_WAVES = "Set `waves:` in the environment: a design sea state, and a scatter
 
 @dataclass(frozen=True)
 class MooringInWaves:
-    """A mooring in the waves of its environment.
+    """A mooring and its analysis in the waves of its environment.
 
-    `waves` is the analysis, the reason why it failed, or None if the environment has no waves.
+    `waves` is the analysis, or the reason why the analysis failed; None in an environment without
+    waves.
     """
 
     leg: Leg
@@ -50,11 +51,11 @@ class MooringInWaves:
 
 @rule("wave-strength")
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Check the loads of each piece against its maximum tension in waves.
+    """Check the maximum tension of each piece in waves against its load ratings.
 
-    The limits are its working load, and its breaking load divided by the factor that API RP 2SK
-    requires for a dynamic analysis. For a surface mooring whose environment has no waves, the
-    result is unknown.
+    The limits are the working load of the piece, and its breaking load divided by the factor that
+    API RP 2SK requires for a dynamic analysis. The result is unknown for a surface mooring in an
+    environment without waves.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
@@ -87,8 +88,9 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 @rule("wave-slack")
 def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Check that the minimum tension of each piece in waves is positive, because a slack line takes
-    snap loads.
+    """Check that the tension of each piece in waves stays positive.
+
+    A slack line takes snap loads.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
@@ -108,8 +110,9 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
 
 @rule("fatigue")
 def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Check that the fatigue life of every piece with a published fatigue curve is at least the
-    service time × the factor.
+    """Check the fatigue life in waves of every piece that has a published fatigue curve.
+
+    The life must be at least the service time × the required factor.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):

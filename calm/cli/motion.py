@@ -106,6 +106,7 @@ def motion(
       calm motion mooring.yaml --currents adcp.nc --pressures all.csv --cross-validate -o depths.nc
       calm motion mooring.yaml --pressures two.csv -o depths.nc
     """
+    import xarray  # noqa: F401  # a missing extra is reported before a fault of a file
 
     from calm.batch import finished, profiles
     from calm.batch.compiling import compile_solver

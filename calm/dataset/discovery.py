@@ -46,12 +46,15 @@ _KEPT_BEGIN = ("creator_", "platform_", "site_", "principal_investigator", "publ
 
 
 def written() -> str:
-    """Return the time of writing in ISO 8601, or the time in SOURCE_DATE_EPOCH if set."""
+    """Return the current time in ISO 8601 format, or the time in SOURCE_DATE_EPOCH if set."""
     return f"{source_date() or datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def hashed(path: Path) -> str:
-    """Return a file name with the SHA-256 hash of the file; a folder is returned without a hash."""
+    """Return the name of a file, followed by the SHA-256 hash of the file.
+
+    For a folder, only the name is returned.
+    """
     if not path.is_file():
         return path.name
     with path.open("rb") as file:
@@ -72,7 +75,7 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 def coverage(
     time: NDArray[np.datetime64], depth: NDArray[np.floating[Any]], place: Sequence[float]
 ) -> Attributes:
-    """Return the attributes for the coverage in time, depth and position.
+    """Return the global attributes that describe the coverage in time, depth and position.
 
     Parameters
     ----------
@@ -106,8 +109,9 @@ def coverage(
 
 
 def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
-    """Return the attributes for the range of depths [m]. The result is empty if all depths are
-    NaN.
+    """Return the global attributes that describe the range of depths [m].
+
+    The result is empty if all depths are NaN.
     """
     known = depth[np.isfinite(depth)]
     if not known.size:
@@ -121,14 +125,12 @@ def vertical_extent(depth: NDArray[np.floating[Any]]) -> Attributes:
 
 
 def mooring_in(title: str) -> str:
-    """Return the name of the mooring from the title of a file, which has the form ``NAME:
-    CONTENTS``.
-    """
+    """Return the name of the mooring in the title of a file; the title is ``NAME: CONTENTS``."""
     return title.rpartition(": ")[0] or title
 
 
 def archive_id(name: str, start: np.datetime64, product: str) -> str:
-    """Return an `id` in the OceanSITES form: site, month of the first time, product."""
+    """Return an `id` in the OceanSITES form, which contains site, first month and product."""
     site = "".join(letter if letter.isalnum() else "-" for letter in name)
     return f"OS_{site}_{np.datetime_as_string(start, 'M').replace('-', '')}_D_{product}"
 
@@ -153,8 +155,8 @@ def with_flags(
     Parameters
     ----------
     variables : variables of the result
-    names : for each variable to be flagged, the names of its other ancillary variables, such as
-        standard deviations
+    names : names of the flagged variables, each with the names of its other ancillary variables,
+        such as standard deviations
     cell_methods : CF attribute `cell_methods` of the flagged variables
     """
     found = []

@@ -38,8 +38,10 @@ _ZEROS = bytes(1 << 20)
 
 
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
-    """Create a NetCDF file for a layout. Time-dependent variables are chunked by `block` and left
+    """Return the content of a new NetCDF file for a layout, in which time-dependent variables are
     empty.
+
+    These variables are divided into chunks of `block` times.
     """
     import h5netcdf
 
@@ -79,14 +81,14 @@ def write_netcdf(
     path: Path,
     last: Callable[[], Attributes] = dict,
 ) -> None:
-    """Write a file block by block, under a temporary name until it is complete.
+    """Write a NetCDF file block by block; it has a temporary name until it is complete.
 
     Parameters
     ----------
     block : number of times in a block
-    blocks : the results of `packed`, in order; one is in memory at a time
-    last : function that returns attributes known only after the last block; the layout has
-        placeholders for them, which are numbers or texts of the same length
+    blocks : results of `packed`, in order; only one block is in memory at a time
+    last : function that returns the attributes known only after the last block. In the layout,
+        these attributes are placeholders: numbers, or texts of the same length
 
     Raises
     ------
@@ -134,7 +136,8 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the chunk shape of a time-dependent variable. The last chunk has the same shape.
+    """Return the chunk shape of a time-dependent variable, which also applies to an incomplete last
+    chunk.
 
     Parameters
     ----------
@@ -203,7 +206,8 @@ def of_net(
 ) -> list[Variable]:
     """Adapt the variables of a single line to a net.
 
-    Offsets become relative to the origin, and variables with the leg index of each part are added.
+    The descriptions of offsets refer to the origin. Variables with the leg names, and with the leg
+    index of each part, are added.
 
     Parameters
     ----------
@@ -240,7 +244,9 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes; a numeric variable also has the ACDD attribute `coverage_content_type`."""
+        """Attributes; those of a numeric variable include the ACDD attribute
+        `coverage_content_type`.
+        """
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
@@ -279,8 +285,9 @@ def numbers(
     coordinates: str,
     values: Mapping[str, NDArray[Any]] | None = None,
 ) -> list[Variable]:
-    """Create numeric variables with their coordinates. A variable that is itself a coordinate is
-    not listed among its own coordinates.
+    """Create numeric variables with their coordinates.
+
+    A variable that is itself a coordinate is not listed among its own coordinates.
 
     Parameters
     ----------
@@ -332,13 +339,14 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Create the CF station variables of a mooring, and return the names to append to
-    `coordinates`.
+    """Create the CF station variables of a mooring.
+
+    The names to append to the attribute `coordinates` are returned with them.
 
     Parameters
     ----------
-    place : latitude and longitude [degrees north, degrees east]; without them the dataset has
-        no discrete sampling geometry in the sense of CF
+    place : latitude and longitude [degrees north, degrees east]; without them the dataset has no
+        discrete sampling geometry in the sense of CF
     of_what : object at this position, for the attribute `long_name`
     """
     label = np.array(name, dtype=np.str_)
@@ -360,7 +368,7 @@ def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Varia
 
 
 def source_date() -> datetime | None:
-    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if it is not set."""
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC, or None if it is not set."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     return datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else None
 
@@ -368,7 +376,7 @@ def source_date() -> datetime | None:
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
     """Return global attributes about the origin of a result; unknown attributes are empty.
 
-    The only date is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    The only date used is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
     Parameters
     ----------

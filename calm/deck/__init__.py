@@ -44,7 +44,7 @@ _Listed = TypeVar("_Listed")
 
 @dataclass(frozen=True)
 class RecoveredItem:
-    """Piece or clamp in the order of surfacing.
+    """A piece or clamp that rises after release; a list of such items is in order of surfacing.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class RecoveredItem:
     time : time after release [s]; None if the part does not surface
     hangs_at : depth of a clamp, or of the upper end of a piece, after all buoyant pieces have
         surfaced [m]; None if unknown
-    by_itself : whether the part is buoyant enough to surface alone
+    by_itself : whether the part is buoyant enough to surface on its own
     """
 
     item: DeckItem
@@ -63,16 +63,16 @@ class RecoveredItem:
 
 @dataclass(frozen=True)
 class Lift:
-    """One lift: a piece at the rail with its clamps, and the line already over the side.
+    """One lift: the piece at the rail with its clamps.
 
     Attributes
     ----------
     index, label : index and label of the piece
-    mass : mass of the lift in air [kg]; None if a mass is unknown, or for a cable, which is paid
-        out instead
-    weight : weight of the lift in water, positive down [N]; None if a length is unknown
-    hanging : weight in water of everything over the side, including the lift, positive down [N]:
-        the load on a winch if all of this is suspended from it; negative if it floats
+    mass : mass of the lift in air [kg]; None if a mass is unknown, and for a cable or chain, which
+        is paid out instead
+    weight : weight of the lift in water [N], positive down; None if a length is unknown
+    hanging : weight in water of everything over the side, including the lift [N], positive down and
+        negative if buoyant. This is the load on a winch that carries everything over the side
     """
 
     index: int
@@ -88,10 +88,10 @@ class Lifts:
 
     Attributes
     ----------
-    deployment : lifts in the order over the side
+    deployment : lifts in the order in which they go over the side
     recovery : lifts from the top of the line down to the release
-    unknown : labels of all pieces and clamps of unknown mass in air, any of which may be part of
-        the heaviest lift
+    unknown : labels of all pieces and clamps whose mass in air is unknown; any of them may belong
+        to the heaviest lift
     """
 
     deployment: tuple[Lift, ...]
@@ -100,7 +100,7 @@ class Lifts:
 
     @property
     def heaviest(self) -> Lift | None:
-        """Heaviest lift of known mass in air."""
+        """Heaviest lift among those whose mass in air is known."""
         known = [lift for lift in self.deployment if lift.mass is not None]
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
@@ -115,11 +115,12 @@ class Deck:
     environment : name of this environment
     order : deployment order
     parts : every piece and clamp down the line, leg by leg in a net
-    deployment, recovery : parts in the order over the side, and in order of surfacing
-    rise : rise of the line without its anchor; None without a solution, and for a net
-    cuts, hardware, shipped, lifts, instruments : contents of the sheets with these names
-    plan : plan of the anchor drop, or the reason why there is none; None for an anchor-first
-        deployment, and for a net
+    deployment, recovery : parts in the order in which they go over the side, and in the order in
+        which they surface
+    rise : rise of the line without its anchor; None for a net, or if the rise could not be computed
+    cuts, hardware, shipped, lifts, instruments : contents of the sheets of the same names
+    plan : plan of the anchor drop, or the reason why it could not be computed; None for an
+        anchor-first deployment, and for a net
     notes : missing information, with reasons
     assessment : result of the design check
     """
@@ -143,7 +144,7 @@ class Deck:
 
     @property
     def file(self) -> MooringFile:
-        """File as read, in the environment of the sheets."""
+        """The mooring file as read, with the environment of the sheets."""
         return self.result.file
 
     @cached_property
@@ -152,8 +153,8 @@ class Deck:
         return item_numbers(self.result)
 
     def leg(self, index: int) -> str:
-        """Return the name of the leg that contains the piece with this index. A single line has no
-        name.
+        """Return the name of the leg that contains the piece with this index, or "" for a single
+        line.
         """
         number = leg_numbers(self.file)[index]
         return self.result.legs[number].name if self.result.several else ""
@@ -161,7 +162,7 @@ class Deck:
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]
     ) -> Iterator[tuple[str, list[_Listed]]]:
-        """Yield the name of each leg with its items; a single line is one group."""
+        """Yield the name of each leg with the items of this leg; a single line is one group."""
         for name, group in groupby(items, key=lambda one: self.leg(index(one))):
             yield name, [*group]
 
@@ -173,7 +174,9 @@ def deck_of(
     streamed: float | None = None,
     course: float | None = None,
 ) -> Deck:
-    """Create the deck sheets of a mooring, or of a net (without anchor drop and ascent).
+    """Create the deck sheets of a mooring or a net.
+
+    The sheets of a net contain neither the anchor drop nor the ascent.
 
     Parameters
     ----------
@@ -187,7 +190,7 @@ def deck_of(
     NoEquilibrium
         The mooring has no equilibrium in the first environment.
     UsageError
-        The ship does not stream the line, or not to the required distance.
+        At `ship_speed` the line does not stream behind the ship, or not as far as `streamed`.
     """
     first = moorings[0]
     notes: list[str] = []
@@ -286,10 +289,10 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the parts that rise: first those that surface, in order of surfacing, then those that
-    stay below.
+    """List the parts that rise: in order of surfacing, followed by those that stay below the
+    surface.
 
-    Without a solution for the rise, there are no times and the parts are in line order.
+    If `recovery` is None, the times are None and the parts are in line order.
 
     Parameters
     ----------

@@ -28,16 +28,17 @@ class DeckItem:
     ----------
     part : piece or clamp in the mooring file
     index : index of the piece, or of the piece that carries the clamp
-    on : label of the piece that carries a clamp; None for a piece
-    at : distance of a clamp from the upper end of its piece, unstretched [m]
+    on : label of the piece that carries the clamp; None for a piece
+    at : unstretched distance of a clamp from the upper end of its piece [m]; None for a piece
     of_length : unstretched length of the piece that carries a clamp [m]
-    cut_length, stretched : lengths of a piece [m]; None for a clamp
-    depth, height : depth and height above the seabed of a clamp, or of the upper end of a piece [m]
+    cut_length, stretched : unstretched and stretched length of a piece [m]; None for a clamp
+    depth, height : depth, and height above the seabed, of a clamp or of the upper end of a piece
+        [m]
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial number in the design, or the serial numbers of all items of the part
-    deployed_serial, remark : serial number and remark in `deployed`; the serial number defaults to
-        that in the design
+    serial : serial number in the design, or serial numbers of all items of the part
+    deployed_serial, remark : serial number and remark in `deployed`; without an entry, the serial
+        number is that in the design
     apart : whether connecting hardware is drawn in a separate row because it governs a check or has
         an open finding
     """
@@ -75,13 +76,14 @@ class DeckItem:
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth in still water [m]; None if there is none."""
+        """Planned depth in still water [m], or None if there is none."""
         return self.part.planned_depth
 
     @property
     def hardware(self) -> str:
-        """Short name of a connector, such as `13 mm shackle`; the size is the one in the full name,
-        if given there.
+        """Short name of a connector, such as `13 mm shackle`.
+
+        The size is written as in the full name, if the full name begins with a size.
         """
         sized = _SIZED.fullmatch(self.part.use)
         if sized is None:
@@ -115,7 +117,7 @@ class DeckItem:
 
     @property
     def is_connector(self) -> bool:
-        """Whether the item is in-line connecting hardware, not a cable, chain or clamp."""
+        """Whether the item is connecting hardware in the line, but not a cable, chain or clamp."""
         return self.role == "connector" and self.on is None and self.is_rigid
 
     @property
@@ -129,8 +131,8 @@ class DeckItem:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Distance of a clamp from the upper end of its piece, or the distances of both stops of a
-        profiler [m].
+        """Distance of a clamp from the upper end of its piece [m]; for a profiler, the distances of
+        both stops.
         """
         travel = getattr(self.part, "travel", None)
         ends = (self.at,) if travel is None else (min(end, self.of_length or end) for end in travel)
@@ -154,8 +156,8 @@ class DeckRow:
 
     Attributes
     ----------
-    items : consecutive equal pieces, or equal clamps
-    floats : equal floats on the cable or chain
+    items : consecutive equal pieces, or consecutive equal clamps
+    floats : equal floats clamped on the cable or chain in `items`
     between, after : hardware between the items, and after the last item
     """
 
@@ -191,14 +193,15 @@ class DeckRow:
 
     @property
     def name(self) -> str:
-        """Names of the items with their counts. A chain with floats has the name of the floats."""
+        """Names of the items with their counts; for a chain with floats, the name of the floats."""
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
     @property
     def cluster(self) -> tuple[object, ...]:
-        """Key for grouping chains with floats: consecutive rows with the same key are joined. Empty
-        for other items.
+        """Key for joining chains with floats: consecutive rows with the same key are joined.
+
+        The key is empty for other items.
         """
         if not self.floats or any(one._has_own_data for one in (*self.items, *self.floats)):
             return ()
@@ -224,7 +227,7 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
 def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
     """Group consecutive items into the rows in which they are listed or drawn, in line order.
 
-    In a list, hardware is in the row of the piece before it, even if clamps on this piece are
+    In a list, hardware is in the row of the preceding piece, even if clamps on this piece are
     listed in between. In a drawing, hardware follows the clamps, and hardware marked as `apart` has
     a separate row.
     """
@@ -291,8 +294,9 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
-    """Return the labels of pieces that have an open finding, or govern a check with a utilisation
-    above `SHOWN_USE`.
+    """Return the labels of pieces that are drawn separately because of the design check.
+
+    These pieces have an open finding, or they govern a check with a utilisation above `SHOWN_USE`.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)
@@ -354,7 +358,7 @@ def _deck_item(
 
 @dataclass(frozen=True)
 class Extreme:
-    """Extreme depth [m], and the environment in which it occurs."""
+    """Extreme depth [m] of a part, and the environment in which this depth occurs."""
 
     depth: float
     environment: str
@@ -385,7 +389,8 @@ def instruments_of(
     """List the instruments, the floats and frames that hold an instrument, and the releases, down
     the line.
 
-    `results` lists the name and the result of each environment, beginning with that of the sheets.
+    `results` lists the name and the result of each environment; the environment of the sheets is
+    first.
     """
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []

@@ -30,8 +30,10 @@ LEAST_TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class Mark:
-    """Mark for a clamp on a cable: label and distance from the upper end [m], measured under the
-    load of the cable.
+    """Mark on a cable where an instrument is clamped.
+
+    `label` is the label of the clamp. `at` is the distance from the upper end [m], measured while
+    the cable is under the load `Cut.load`.
     """
 
     label: str
@@ -45,15 +47,15 @@ class Cut:
     Attributes
     ----------
     item : the piece
-    length, load : length to measure [m], and the load under which it is measured [N]
+    length, load : length to measure [m], and load under which this length is measured [N]
     unstretched : length without load [m]
-    marks : clamp marks down the cable, measured under the same load
-    termination : termination in the file, or None
-    tolerance : tolerance of the length [m]
+    marks : marks for the clamps, from the top of the cable down
+    termination : termination given in the file, or None
+    tolerance : allowed error of the length [m]
     effect : increase in depth of the top of the line or leg if the piece is longer by the fraction
         `LENGTH_ERROR` [m]; None if the longer line has no equilibrium
-    over, onto : sequence numbers of a wire or rope, over the side and, in reverse order, onto the
-        drum; None for a chain
+    over, onto : sequence number in which a wire or rope goes over the side, and sequence number in
+        which the wire or rope is spooled onto the drum, which is the reverse; None for a chain
     """
 
     item: DeckItem
@@ -156,7 +158,7 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """Stock of one kind of connecting hardware.
+    """Number of connecting-hardware items of one kind and component that a line needs.
 
     Attributes
     ----------
@@ -164,7 +166,7 @@ class Stock:
     use, name : id and name of the component; accessories have only a name
     count : number in the line
     length : total length of chains [m]
-    basis : how the number is determined, if the item is not itself a piece of the line
+    basis : method by which the number is determined, if the item is not itself a piece of the line
     """
 
     kind: str
@@ -176,8 +178,9 @@ class Stock:
 
     @property
     def spares(self) -> int:
-        """Number of spares, which is one tenth rounded up, but at least two for small parts and one
-        for others.
+        """Number of spares: one tenth of `count`, rounded up.
+
+        There are at least two spares for a small part, and at least one for any other part.
         """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
@@ -191,8 +194,8 @@ def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
     """List the connectors and chains of a line or of legs, with their accessories.
 
     A shackle has a bolt with nut and cotter pin, unless its definition mentions a screw pin. A
-    cable whose termination mentions a thimble has one at each end. For each contact of dissimilar
-    metals, an isolator is listed, and an anode for the less noble piece.
+    cable whose termination mentions a thimble has a thimble at each end. Each contact of dissimilar
+    metals needs an isolator, and an anode for the less noble piece.
     """
     parts = [one for leg in legs for one in leg]
     groups: dict[tuple[str, str], list[DeckItem]] = {}
@@ -275,14 +278,14 @@ class ShippedComponent:
 
     Attributes
     ----------
-    use, name, count : id, name and number of the component
+    use, name, count : id and name of the component, and number of items
     units : number of units; larger than `count` if the component has several units, such as a pair
         of releases
     length : total length of cable or chain [m]
     mass : total of the known masses in air [kg]
     volume : total of the known volumes, without packing [m³]
-    missing_masses, missing_volumes : number of unknown values; if there are any, the total is a
-        lower bound
+    missing_masses, missing_volumes : number of unknown masses and number of unknown volumes; if any
+        are unknown, the total is a lower bound
     """
 
     use: str
@@ -297,12 +300,12 @@ class ShippedComponent:
 
     @property
     def known_mass(self) -> float | None:
-        """Mass, or its lower bound; None if no mass is known."""
+        """Total mass, which may be a lower bound [kg]; None if no mass is known."""
         return None if self.missing_masses == self.count else self.mass
 
     @property
     def known_volume(self) -> float | None:
-        """Volume, or its lower bound; None if no volume is known."""
+        """Total volume, which may be a lower bound [m³]; None if no volume is known."""
         return None if self.missing_volumes == self.count else self.volume
 
 
@@ -327,10 +330,10 @@ def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
 
 
 def volume_of(component: Component, length: float | None) -> float | None:
-    """Return the volume of a piece [m³]; None if unknown.
+    """Return the volume of a piece [m³], or None if unknown.
 
-    The volumes of spheres, cylinders and cables are computed from their dimensions; other pieces
-    have their displaced volume.
+    The volumes of spheres, cylinders and cables are computed from their dimensions; for other
+    pieces, the displaced volume is returned.
     """
     if isinstance(component, Sphere):
         return pi * component.diameter**3 / 6.0

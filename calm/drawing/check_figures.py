@@ -42,7 +42,7 @@ _LEAST = 0.45  # smallest share of the height used for the water depth
 
 @dataclass(frozen=True)
 class DrawnCase:
-    """A load case in the drawing: its code and its legs."""
+    """A load case in the drawing: its code and the results for its legs."""
 
     code: str
     legs: Sequence[LegResult]
@@ -50,10 +50,10 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label next to the line: a part, its text, and its depth as text.
+    """A label next to the line: a part, the text of the label, and the depth of the part as text.
 
-    `at` is the depth of the part and its positions east and north [m]; None for a cable. `tag` is
-    the mark and the number of its open finding.
+    `at` is the depth of the part and its position to the east and north [m]; None for a cable.
+    `tag` is the mark and the number of the open finding on the part.
     """
 
     part: ShownPart
@@ -77,17 +77,16 @@ def grey(svg: str) -> str:
 def elevation(
     title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
 ) -> tuple[str, float]:
-    """Draw the elevation of the mooring as SVG, with equal scales. Also return the scale [m per
-    point].
+    """Draw the elevation of the mooring as SVG; also return the scale of both axes [m per point].
 
     The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
     other cases are thin lines. The current of the first case is drawn on the left. The labels and
-    their symbols are on the right, from the top down. A wide mooring leaves no space for labels, so
+    their symbols are on the right, from the top down. If a wide mooring leaves no space for labels,
     only the positions of the parts are marked.
 
     Parameters
     ----------
-    cases : load cases, all drawn in the vertical plane of the first one
+    cases : load cases, all drawn in the vertical plane of the first case
     labels : labels, from the top down
     size : width and height of the drawing
     """
@@ -235,8 +234,8 @@ class PieceBar(NamedTuple):
     Attributes
     ----------
     number : number of the piece in the line
-    tension, capacity : maximum tension, and the capacity; None if unknown
-    launch, launch_capacity : maximum tension and capacity during the launch
+    tension, capacity : maximum tension, and capacity; an unknown capacity is None
+    launch, launch_capacity : maximum tension and capacity during the launch; None if unknown
     judged : whether the capacity of the piece is checked
     """
 
@@ -293,7 +292,7 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
 def beside_row(part: ShownPart, height: float, *, first: bool = False, last: bool = False) -> str:
     """Draw the line and the symbol of a part as SVG, for a table row.
 
-    The line begins in the row of the first part, and ends in the row of the last part.
+    If `first` is true, the line begins at the symbol; if `last` is true, the line ends there.
     """
     page = _row_picture(height, ", ".join(part.labels))
     middle = height / 2
@@ -329,7 +328,7 @@ def seabed_row(height: float) -> str:
 
 
 def row_height(part: ShownPart) -> float:
-    """Return the minimum row height for the symbol of a part."""
+    """Return the minimum height of a table row with the symbol of a part."""
     if part.sign.symbol in LINES:
         return 19.0
     scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE

@@ -30,9 +30,9 @@ class Scale:
 
     Attributes
     ----------
-    low : value at the left or the lower edge; it may be larger than `high`
+    low : value at the left or the lower edge; may be larger than `high`
     high : value at the right or the upper edge
-    logarithmic : whether the scale is logarithmic; both values are then positive
+    logarithmic : whether the scale is logarithmic; `low` and `high` are then positive
     """
 
     low: float
@@ -40,8 +40,9 @@ class Scale:
     logarithmic: bool = False
 
     def share(self, value: ArrayLike) -> Floats:
-        """Return the positions of values as fractions, 0 at `low` and 1 at `high`; NaN if a
-        logarithm is undefined.
+        """Return the positions of values as fractions, 0 at `low` and 1 at `high`.
+
+        A value without a logarithm gives NaN if the scale is logarithmic.
         """
         given: Any = np.asarray(value, dtype=np.float64)
         if not self.logarithmic:
@@ -51,7 +52,7 @@ class Scale:
 
 
 def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
-    """Return a linear scale for all finite values, with a margin; 0 to 1 if there are none."""
+    """Return a linear scale for all finite values, with a margin; 0 to 1 if none is finite."""
     every = np.concatenate([np.ravel(np.asarray(each, dtype=np.float64)) for each in values])
     every = every[np.isfinite(every)]
     if not every.size:
@@ -98,15 +99,16 @@ class Tick(NamedTuple):
 
 
 def numbers(low: float, high: float, most: int) -> list[Tick]:
-    """Return about `most` ticks at round numbers between two values, in either order."""
+    """Return about `most` ticks at round numbers between `low` and `high`, in either order."""
     low, high = min(low, high), max(low, high)
     values = round_numbers(low, high, most)
     return [Tick(value, number(value).replace("-", "\N{MINUS SIGN}")) for value in values]
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return at most about `most` ticks at whole numbers from `first` to `last`, in equal round
-    steps.
+    """Return about `most` ticks or fewer at whole numbers from `first` to `last`.
+
+    The steps between the ticks are equal, round numbers.
     """
     wanted = max((last - first) / max(most, 1), 1.0)
     power = 10 ** floor(log10(wanted))
@@ -123,7 +125,7 @@ def decades(low: float, high: float) -> list[Tick]:
 
 
 def moments(begin: np.datetime64, end: np.datetime64, most: int) -> list[Tick]:
-    """Return at most about `most` ticks at round times; their values are seconds since 1970."""
+    """Return about `most` ticks or fewer at round times, with values in seconds since 1970."""
     edges = np.array([begin, end])
     first, last = seconds(edges)
     wanted = (last - first) / max(most, 1)
@@ -159,7 +161,7 @@ def _days(months: Any, step: int) -> Any:
 
 
 def round_numbers(low: float, high: float, most: int) -> list[float]:
-    """Return about `most` round numbers between `low` and `high`, and at least two."""
+    """Return about `most` round numbers between `low` and `high`, but at least two."""
     raw = (high - low) / max(most, 1)
     power = 10.0 ** floor(log10(raw))
     step = next(power * each for each in _STEPS if power * each >= raw * (1.0 - 1e-9))
@@ -181,7 +183,7 @@ class Stroke(NamedTuple):
     """Colour, width [pt] and dashes of a line.
 
     `dashes` are the lengths of dashes and gaps [pt]; empty for a solid line. A `square` line
-    extends by half its width at both ends, so that even the shortest line is visible.
+    extends beyond both ends by half its width, so that even the shortest line is visible.
     """
 
     colour: str
@@ -190,7 +192,7 @@ class Stroke(NamedTuple):
     square: bool = False
 
     def attributes(self) -> dict[str, float | str]:
-        """Attributes of an SVG element."""
+        """Attributes that give this stroke to an SVG element."""
         written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
         if self.dashes:
             written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
@@ -208,7 +210,7 @@ _SAMPLE, _GAP = 16.0, 5.0  # points: length of the line next to a text, and the 
 
 
 class LegendEntry(NamedTuple):
-    """Legend entry: text with a line or with a mark (form, width [pt], colour)."""
+    """Legend entry: text, and a line or a mark (symbol, width [pt], colour)."""
 
     text: str
     line: Stroke | None = None
@@ -216,7 +218,7 @@ class LegendEntry(NamedTuple):
 
 
 class Graph:
-    """An SVG graph with a white background. Its width and height are in points."""
+    """An SVG graph with a white background; width and height are in points."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size
@@ -237,9 +239,13 @@ class Graph:
         *,
         clipped: bool = False,
     ) -> Axes:
-        """Add axes at a position on the graph [pt], with ranges from left to right and upward.
+        """Add axes to the graph.
 
-        With `clipped`, lines are clipped at the frame.
+        Parameters
+        ----------
+        left, top, width, height : position and size of the axes on the graph [pt]
+        across, up : scale from left to right, and scale from bottom to top
+        clipped : whether lines are clipped at the frame
         """
         return Axes(self, (left, top, width, height), across, up, clipped)
 
@@ -256,7 +262,7 @@ class Graph:
         Parameters
         ----------
         place : upper left corner [pt]
-        across, row : width of a column, height of a row [pt]
+        across, row : width of a column, and height of a row [pt]
         """
         for number, entry in enumerate(entries):
             x = place[0] + number % columns * across
@@ -306,8 +312,11 @@ class Axes:
             self.drawn.path(path, **stroke.attributes())
 
     def lines(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
-        """Draw separate line segments between points of shape (2, n); segments with NaN are
-        skipped.
+        """Draw n separate line segments; segments with NaN are skipped.
+
+        Parameters
+        ----------
+        x, y : (2, n) coordinates of the two ends of each segment
         """
         (x1, x2), (y1, y2) = np.broadcast_arrays(self.x(x), self.y(y))
         for ends in zip(x1.tolist(), y1.tolist(), x2.tolist(), y2.tolist(), strict=True):
@@ -362,7 +371,7 @@ class Axes:
         anchor: str = "start",
         colour: str = INK,
     ) -> None:
-        """Write a text next to a point; `shift` is its distance to the right and down [pt]."""
+        """Write a text next to a point, shifted to the right and down by `shift` [pt]."""
         at = float(self.x(x)) + shift[0], float(self.y(y)) + shift[1]
         self.drawn.letters(*at, text, size=self.graph.size, anchor=anchor, colour=colour)
 
@@ -372,8 +381,9 @@ class Axes:
         self.graph.pen.write(self.left, self.top - 0.8 * size, text, self.width, size=size)
 
     def bars(self, at: ArrayLike, value: ArrayLike, width: float, colours: Sequence[str]) -> None:
-        """Draw vertical bars from zero to the given values; `width` is in units of the horizontal
-        axis.
+        """Draw vertical bars from zero to the given values.
+
+        `width` is in units of the horizontal axis.
         """
         centres = np.asarray(at, dtype=np.float64)
         edges = self.x(centres - width / 2), self.x(centres + width / 2)
@@ -386,7 +396,7 @@ class Axes:
                 )  # fmt: skip
 
     def mark(self, x: float, y: float, sign: str, size: float, colour: str) -> None:
-        """Draw a mark at a point (see `draw_mark`)."""
+        """Draw a mark at a point; the arguments are as in `draw_mark`."""
         draw_mark(self.drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
 
     def frame(
@@ -399,7 +409,7 @@ class Axes:
         grid: bool = False,
         numbered: tuple[bool, bool] = (True, True),
     ) -> None:
-        """Draw the frame with its ticks; call it after everything inside the frame is drawn.
+        """Draw the frame and its ticks; call this after everything inside the frame has been drawn.
 
         Parameters
         ----------
@@ -444,7 +454,7 @@ class Axes:
             pen.draw("g", transform=turned).letters(0.0, 0.0, text, size=size, anchor="middle")
 
     def scale_above(self, ticks: Sequence[Tick], label: str) -> None:
-        """Draw a second scale above the frame; tick positions are values of the horizontal axis."""
+        """Draw a second scale above the frame; the ticks are at values of the horizontal axis."""
         pen, size = self.graph.pen, self.graph.size
         for tick in ticks:
             x = float(self.x(tick.value))
@@ -470,7 +480,8 @@ def _path(x: Floats, y: Floats) -> str:
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
     """Draw a mark of width `size` [pt] at a point.
 
-    Filled marks: o, s (square), D (diamond), v and ^ (triangles); line marks: +, | (vertical).
+    `sign` is the form of the mark. Filled marks are o (circle), s (square), D (diamond), and v and
+    ^ (triangles). Line marks are + (cross) and | (vertical line).
     """
     half = size / 2
     if sign == "o":

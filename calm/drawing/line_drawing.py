@@ -58,12 +58,12 @@ _FASTER, _IN_PLANE = Stroke(WATER_COLOUR, 1.4), Stroke(WATER_COLOUR, 1.0, (3.0, 
 def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
     """Draw a mooring, a net or a tow from the side and from above, as SVG.
 
-    The elevation of a mooring is in the vertical plane of its anchor and its free end. The
+    The elevation of a mooring is in the vertical plane through its anchor and its free end. The
     elevation of a net is in the plane in which the net is widest. The elevation of a tow is in the
-    plane of the tow, with the ship at distance 0. The line in still water is dashed, and the
-    uncertainty of a mooring is shown as a band behind the line. A second graph shows the speed of
-    the water past the line, and its component in the plane of the elevation. The plan is omitted if
-    a tow stays in its plane.
+    vertical plane of the tow direction, with the ship at distance 0. The line in still water is
+    dashed, and the uncertainty of a mooring is shown as a band behind the line. A second graph
+    shows the speed of the water past the line, and its component in the plane of the elevation. The
+    plan is omitted if the line of a tow stays in this plane.
     """
     plane = line_picture.plane_of(result)
     side = line_picture.elevation_of(result, uncertain=uncertain)
@@ -129,9 +129,7 @@ def draw_elevation(
     written: Sequence[tuple[str, PictureMark]],
     depths: Scale,
 ) -> None:
-    """Draw the side view of the line between surface and seabed, with the names of its parts in a
-    column.
-    """
+    """Draw the side view of the line, with a column of the names of its parts."""
     _, _, width, _ = place
     widest = max((text_width(text, _SIZE) for text, _ in written), default=0.0)
     room = min(widest, _LONGEST_NAME)
@@ -213,13 +211,13 @@ def draw_flow(
     depths: Scale,
     what: str,
 ) -> None:
-    """Draw current speed against depth and, if it differs, the component in a vertical plane.
+    """Draw current speed against depth and, if different, its component in a vertical plane.
 
     Parameters
     ----------
-    flow : (n,) depth [m], speed to the east and to the north [m/s]
+    flow : depths (n,) [m], and velocities (n,) to the east and to the north [m/s]
     plane : (2,) direction of the plane, east and north
-    what : words after "speed" in the label of the scale
+    what : words that follow "speed" in the label of the scale
     """
     depth, u, v = flow
     speed, in_plane = np.hypot(u, v), along(u, v, plane)

@@ -28,7 +28,7 @@ NAMED_ROLES = ("float", "instrument", "release", "anchor")
 
 
 class LineKind(Enum):
-    """Kind of a line in a picture; each output format draws the kinds differently."""
+    """Kind of a line in a picture, which determines how an output format draws the line."""
 
     LINE = "line"
     STILL = "still"
@@ -39,7 +39,7 @@ class LineKind(Enum):
 
 @dataclass(frozen=True)
 class Polyline:
-    """A line in a picture: `x` to the right, `y` along the vertical axis of the picture [m]."""
+    """A line in a picture: `x` to the right, and `y` along the vertical axis of the picture [m]."""
 
     kind: LineKind
     x: Floats
@@ -49,10 +49,10 @@ class Polyline:
 
 @dataclass(frozen=True)
 class PictureMark:
-    """A marked point of the line: component, name and role of the part, and its depth [m].
+    """A marked point of the line: component id, name, role and depth [m] of a part.
 
-    `x` and `y` are coordinates in the picture [m]; in `named_parts`, they are distances to the east
-    and north [m].
+    `x` and `y` are coordinates in the picture [m]. In the marks from `named_parts`, `x` and `y` are
+    distances to the east and north [m].
     """
 
     use: str
@@ -74,7 +74,7 @@ class LinePicture:
     top, bottom : depths at the upper and lower edge of a side view, with margins [m]
     height : water depth of a mooring, or height of a towed line [m]
     surface : whether there is a sea surface at depth 0
-    seabed : depth of the seabed [m]; None if it is not in the picture
+    seabed : depth of the seabed [m]; None if the seabed is not in the picture
     ship : position of the towing ship
     across, up : labels of the axes, with units
     """
@@ -91,7 +91,7 @@ class LinePicture:
     seabed: float | None = None
 
     def span(self) -> tuple[float, float]:
-        """Return the minimum and maximum `x`; zero is included, the line in still water is not."""
+        """Return the minimum and maximum `x`, including zero but not the line in still water."""
         reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
         return min(0.0, *(float(x.min()) for x in reach)), max(
             0.0, *(float(x.max()) for x in reach)
@@ -101,7 +101,7 @@ class LinePicture:
 def elevation_of(
     result: AnyResult, overlays: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
-    """Return the side view of a line, in the vertical plane of its excursion or tow direction.
+    """Return the side view of a line, in the vertical plane of its excursion or of the tow.
 
     Parameters
     ----------
@@ -156,12 +156,12 @@ def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
 def from_the_side(
     shape: Shape, plane: Floats, kind: LineKind = LineKind.LINE, label: str = ""
 ) -> Polyline:
-    """Project a shape onto a vertical plane: distances in the plane, and depths.
+    """Project a shape onto a vertical plane; return the line of distances in the plane and depths.
 
     Parameters
     ----------
     plane : (2,) direction of the plane, east and north
-    kind, label : kind of the line, and its text in a legend
+    kind, label : kind of the line in the picture, and text for this line in a legend
     """
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
@@ -200,16 +200,14 @@ def _band(uncertain: Uncertain) -> Polyline:
 def plane_of(result: AnyResult) -> Floats:
     """Return the horizontal direction (east, north) of the side view.
 
-    It points from the anchor to the free end of a mooring (east for an upright mooring), along the
-    largest extent of a net, or from the ship backward for a tow.
+    The direction is from the anchor to the free end of a mooring (east for an upright mooring),
+    along the largest extent of a net, or backward from the ship of a tow.
     """
     return plane_of_legs(result.legs)
 
 
 def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
-    """Return the horizontal direction (east, north) of the side view for one leg or for the legs of
-    a net; see `plane_of`.
-    """
+    """Return the direction of the side view for one leg or all legs of a net, as in `plane_of`."""
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
@@ -242,26 +240,35 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: AnyResult) -> float:
-    """Return the depth of the deepest seabed in the picture [m]: at an anchor, or at the end of a
-    slope that is drawn.
+    """Return the depth of the deepest seabed in the picture [m].
+
+    This seabed is at an anchor, or at the end of a slope that is drawn.
     """
     beds = (float(bed.y.max()) for bed in _beds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
-    """Return the coordinates of points (east, north) along a horizontal direction."""
+    """Return the distances of points along a horizontal direction.
+
+    Parameters
+    ----------
+    x, y : distances of the points to the east and north [m]
+    plane : (2,) direction, east and north
+    """
     return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
 
 
 def current_between(
     water: Water, top: float, bottom: float, samples: int = 200
 ) -> tuple[Floats, Floats, Floats]:
-    """Return depths, and the current to the east and north at these depths [m/s]. All levels of the
-    current profile are included.
+    """Return depths, and the current to the east and north at these depths [m/s].
+
+    All levels of the current profile are included.
 
     Parameters
     ----------
+    water : water with the current
     top, bottom : range of depths [m]
     samples : minimum number of depths
     """
@@ -274,7 +281,8 @@ def current_between(
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
-    For a mooring or a net this is the current. For a tow, the speed of the ship is added.
+    For a mooring or a net, this velocity is the current. For a tow, the velocity due to the motion
+    of the ship is added.
     """
     water, tow = result.water, result.file.tow
     if tow is None:
@@ -293,9 +301,7 @@ def along_the_line(shape: Shape) -> Floats:
 
 
 def named_parts(result: AnyResult) -> list[PictureMark]:
-    """Return the floats, instruments, releases and anchors, whether in line or clamped, in file
-    order.
-    """
+    """Return all floats, instruments, releases and anchors, also if clamped, in file order."""
     parts = []
     for row, clamps in rows_down(result):
         ends = (
@@ -315,7 +321,7 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
     """Return the names to write in a drawing, each with its part.
 
     Adjacent parts of the same component share a name, such as ``glass 1–6``, if their labels differ
-    only by a number at the end and they are at most `near` [m] apart in depth.
+    only by a number at the end and the parts are at most `near` [m] apart in depth.
     """
     runs: list[list[PictureMark]] = []
     for part in parts:
@@ -335,17 +341,17 @@ def differ_by_number(label: str, other: str) -> bool:
 
 
 def together(labels: list[str]) -> str:
-    """Join labels that differ only by a number at the end to one name: ``glass 1–6``."""
+    """Join labels that differ only by a number at the end to one name, such as ``glass 1–6``."""
     return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Shift positions so that they are at least `gap` apart, but as close as possible to the
-    `wanted` positions, which are in ascending order.
+    """Shift positions so that they are at least `gap` apart, but as little as possible.
 
-    Between `start` and `end`, the sum of the squared shifts is minimal. If not all positions fit,
-    they extend beyond the end. After subtraction of the gaps before each position, this is an
-    isotonic regression: descending runs are replaced by their mean.
+    The positions `wanted` are in ascending order. The new positions are between `start` and `end`,
+    and the sum of the squared shifts is minimal. If there is not enough room, the positions extend
+    beyond `end`. The method subtracts the gaps from the positions and applies isotonic regression,
+    which replaces each descending run by its mean.
     """
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):

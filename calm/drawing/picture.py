@@ -15,8 +15,9 @@ _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 
 
 def check_format(path: Path) -> None:
-    """Raise UsageError, with the allowed formats, if a picture cannot have the suffix of the given
-    file name.
+    """Raise UsageError if the suffix of a file name is not that of a picture format.
+
+    The message lists the allowed formats.
     """
     if path.suffix.lower() not in FORMATS:
         allowed = f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}"
@@ -24,10 +25,9 @@ def check_format(path: Path) -> None:
 
 
 def image(svg: str, suffix: str) -> bytes:
-    """Convert a drawing to the content of an SVG, PNG or PDF file. A PDF page has the size of the
-    drawing.
+    """Convert a drawing to the content of an SVG, PNG or PDF file.
 
-    The suffix is one of `FORMATS`, in upper or lower case.
+    The suffix is one of `FORMATS`, in upper or lower case. A PDF page has the size of the drawing.
     """
     kind = suffix.lower().removeprefix(".")
     if kind == "svg":
@@ -48,9 +48,7 @@ def within_xml(text: str) -> str:
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """Prefix the identifiers in a drawing, so that several drawings on a page have distinct
-    identifiers.
-    """
+    """Add a prefix to the identifiers in a drawing, to make them unique on a page of drawings."""
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
 
 
@@ -64,12 +62,12 @@ _IN_ASCII = str.maketrans({
 
 
 def printable(text: str) -> str:
-    """Replace characters that XML or a terminal cannot show with a mark."""
+    """Replace characters that XML or a terminal cannot show with a replacement character."""
     return re.sub(_UNPRINTABLE, "\ufffd", text)
 
 
 def in_ascii(text: str) -> str:
-    """Replace the symbols of units and arithmetic with ASCII text: ``27 deg`` for ``27°``.
+    """Replace the symbols of units and arithmetic with ASCII text, such as ``27°`` with ``27 deg``.
 
     Letters are not changed.
     """
@@ -77,7 +75,7 @@ def in_ascii(text: str) -> str:
 
 
 def encodable(encoding: str | None, signs: str) -> bool:
-    """Return whether an output encoding can represent given characters."""
+    """Return whether an output encoding can represent all the given characters."""
     try:
         signs.encode(encoding or "ascii")
     except (UnicodeEncodeError, LookupError):

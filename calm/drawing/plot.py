@@ -27,7 +27,7 @@ _STYLES: dict[LineKind, dict[str, Any]] = {
 
 
 def empty_figure(width: float, height: float, **options: Any) -> Figure:
-    """Create a figure of a given size [inches], which opens no window."""
+    """Create a figure of a given size [inches] without opening a window."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), **options)
@@ -39,10 +39,10 @@ _ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
 
 
 def figure_svg(figure: Figure) -> str:
-    """Convert a figure to SVG without prologue and metadata. Letters remain text.
+    """Convert a figure to SVG without prologue and metadata; letters remain text.
 
-    A style sheet inside the drawing would apply to the whole page, so its settings become
-    attributes.
+    A style sheet in the drawing would apply to the whole page, so its settings are converted to
+    attributes of elements.
     """
     import matplotlib
 
@@ -59,7 +59,7 @@ def figure_svg(figure: Figure) -> str:
 
 
 def plot_elevation(side: LinePicture, ax: Axes | None = None) -> Axes:
-    """Draw a side view on matplotlib axes, by default on a new figure."""
+    """Draw a side view on matplotlib axes; by default, these are on a new figure."""
     if ax is None:
         ax = empty_figure(6.0, 6.0, layout="constrained").subplots()
     if side.surface:

@@ -26,7 +26,7 @@ def typeset(
     kind: Literal["pdf", "png"],
     timestamp: int | None = None,
 ) -> bytes:
-    """Typeset a typst template. A PNG contains only the first page.
+    """Typeset a typst template; a PNG contains only the first page.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def typeset(
 
 
 def lacking(texts: Iterable[str]) -> str:
-    """Return the characters that the fonts lack. Each is listed once, in order of occurrence."""
+    """Return the characters that are not in the fonts, each once, in order of occurrence."""
     held, known = list(texts), signs()
     unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
     if not unknown:  # almost always, since a report has millions of characters
@@ -57,9 +57,10 @@ def lacking(texts: Iterable[str]) -> str:
 
 
 def legible(text: str) -> str:
-    """Replace each character that the fonts lack with �.
+    """Replace each character that is not in the fonts with �.
 
-    A single missing character would otherwise make typst show a drawing's whole label as boxes.
+    Otherwise, a single missing character would make typst show the whole label of a drawing as
+    boxes.
     """
     unknown = lacking([text])
     return text.translate(dict.fromkeys(map(ord, unknown), "\ufffd")) if unknown else text
@@ -67,10 +68,10 @@ def legible(text: str) -> str:
 
 @cache
 def signs() -> frozenset[int]:
-    """Return the code points of the characters in the regular font, from its OpenType `cmap` table
-    (format 12).
+    """Return the code points of the characters in the regular font.
 
-    Source: OpenType 1.9, chapters `otff` and `cmap`.
+    The code points are read from the `cmap` table of the font, which has format 12. Source:
+    OpenType 1.9, chapters `otff` and `cmap`.
     """
     font = (FONTS / "DejaVuSans.ttf").read_bytes()
     tables = int.from_bytes(font[4:6], "big")

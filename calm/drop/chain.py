@@ -27,22 +27,23 @@ SHORT_SHARE = 0.02
 
 @dataclass(frozen=True)
 class Elements:
-    """The k loads on the bars of a chain, sorted by bar. Every bar has at least one.
+    """The k loads on the bars of a chain, sorted by bar; every bar has at least one load.
 
     Attributes
     ----------
-    bar : (k,) index of its bar
+    bar : (k,) index of the bar on which the load acts
     place : (k,) position on the bar, from 0 at its upper node to 1 at its lower node
     piece : (k,) index of the piece to which the load belongs; -1 for a clamp
-    buoyancy, volume : (k,) totals in reference water [N], [m³]
+    buoyancy, volume : (k,) net buoyancy [N] and displaced volume [m³] in reference water
     normal_drag, tangential_drag : (k,) total Kn and Kt [N/(m/s)²]
-    directional : (k,) False if the drag is Kn|V|V, whatever the direction of the flow
+    directional : (k,) whether the drag depends on the direction of the flow; otherwise the drag is
+        Kn|V|V
     flexible : (k,) whether the load belongs to a cable or chain
     thinning, lift : (k,) as in `Line`
     push : (3, k) force of the wind [N]
     height : (k,) length of a rigid load, from its top to its lower end [m]
-    out : (k,) whether the load is mounted above the float, so that it is in air if the float is at
-        the surface
+    out : (k,) whether the load is mounted above the float, so that the load is in air if the float
+        is at the surface
     curve : (k,) drag curves of smooth spheres and cylinders; None for other loads
     """
 
@@ -74,11 +75,11 @@ class Elements:
 
     @cached_property
     def share(self) -> Floats:
-        """(2, k) fractions of each load that act on the upper and on the lower node of its bar."""
+        """(2, k) fractions of each load that act on the upper and on the lower node of the bar."""
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:
-        """Sum values per load (..., k) to values per bar (..., n)."""
+        """Sum the values of the loads (..., k) on each bar; return values per bar (..., n)."""
         total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
         return total
 
@@ -89,17 +90,17 @@ class Elements:
 
 @dataclass(frozen=True)
 class FloatOnChain:
-    """The uppermost float: table of its properties at the surface against its draft.
+    """Properties of the uppermost float at the surface, tabulated against its draft.
 
     Attributes
     ----------
-    element : index of the load that is the float
+    element : index of the load that represents the float
     height : height of the float [m]
-    weight : weight in air [N]
-    draft : (m,) draft divided by the height of the float, 0 to 1, increasing
-    immersed, drag : (m,) immersed share of the volume, and drag as a share of the drag when fully
-        immersed
-    push : (m, 2) force of the wind to the east and north [N]
+    weight : weight of the float in air [N]
+    draft : (m,) draft as a fraction of the height, increasing from 0 to 1
+    immersed, drag : (m,) immersed fraction of the volume, and drag as a fraction of the drag of the
+        fully immersed float
+    push : (m, 2) wind force towards the east and north [N]
     """
 
     element: int
@@ -113,22 +114,23 @@ class FloatOnChain:
 
 @dataclass(frozen=True)
 class BarChain:
-    """Chain of n bars between n + 1 nodes, free end first.
+    """Chain of n straight bars between n + 1 nodes, free end first.
 
     Attributes
     ----------
     line : line that the chain represents
     length : (n,) unstretched length of the bars [m]
-    piece : (n,) index of the piece of each bar; the last one if several rigid pieces share a bar
-    compliance : (n,) strain per tension, 1/EA [1/N]
+    piece : (n,) index of the piece that each bar represents; if several rigid pieces share a bar,
+        the index of the last of these pieces
+    compliance : (n,) strain per unit tension, 1/EA [1/N]
     elongation : for every cable with an elongation curve, its bars and the knots of the curve
-    elements : the loads
-    bars : (p, 2) first bar of every piece, and the bar after its last; equal for a piece without
-        length
+    elements : loads on the bars
+    bars : (p, 2) index of the first bar of every piece, and index after its last bar; the two are
+        equal for a piece without length
     span : (p, 2) position of the upper end of each piece on its first bar, and of its lower end on
         its last bar, 0 to 1
-    clamp_bar, clamp_place : (m,) bar of each clamp, and position on this bar, 0 to 1
-    afloat : the uppermost float; None if its hull is unknown
+    clamp_bar, clamp_place : (m,) bar of each clamp, and position of the clamp on this bar, 0 to 1
+    afloat : properties of the uppermost float at the surface; None if its hull is unknown
     """
 
     line: Line
@@ -145,12 +147,12 @@ class BarChain:
 
 
 def chain_of(line: Line, count: int) -> BarChain:
-    """Represent a line by a chain of bars, with about `count` bars for its cables and chains.
+    """Represent a line by a chain of bars.
 
     Parameters
     ----------
     line : line above an anchor, free end first
-    count : approximate number of bars of all cables and chains
+    count : approximate number of bars that represent all cables and chains together
 
     Raises
     ------

@@ -46,7 +46,10 @@ _MOST = 20
 
 @dataclass(frozen=True)
 class Fineness:
-    """Resolution: approximate numbers of bars of cables and chains, and of time steps."""
+    """Resolution of a fall: approximate numbers of bars and time steps.
+
+    `bars` counts the bars of all cables and chains together.
+    """
 
     bars: int
     steps: int
@@ -54,10 +57,10 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Ship:
-    """Ship that drops the anchor: its velocity to the east and north over the ground [m/s].
+    """Ship that drops the anchor, with its velocity over the ground to the east and north [m/s].
 
     `streamed` is the horizontal distance from the anchor to the free end at the release [m]; None
-    uses the distance that results under tow.
+    means the distance that results under tow.
     """
 
     east: float
@@ -76,10 +79,10 @@ class Motion:
 def towed(
     line: Line, water: Water, anchor: FallingAnchor, ship: Ship, fineness: Fineness
 ) -> ChainState:
-    """Compute the line as it streams behind the ship, with its lower end at the origin.
+    """Compute the shape of the line that streams behind the ship, with its lower end at the origin.
 
-    If the required distance is shorter than the distance under tow, the line has the shape of a
-    slower tow. If it is longer, the free end is held at the required distance.
+    If `ship.streamed` is shorter than the distance that results under tow, the line has the shape
+    of a slower tow. If `ship.streamed` is longer, the free end is held at that distance.
 
     Raises
     ------
@@ -154,7 +157,7 @@ def fall(
 
 
 def nothing_limits() -> NoEquilibrium:
-    """Return the exception for a fall without drag, whose speed would be unlimited."""
+    """Return the exception to raise for a fall without drag, in which the speed has no limit."""
     return Status.NO_EQUILIBRIUM.because(
         "The speed of the line is unlimited, since neither the line nor its anchor has drag.",
         advice="Set the drag of its pieces, or `kt` of the anchor.",
@@ -164,7 +167,7 @@ def nothing_limits() -> NoEquilibrium:
 def settle(
     line: Line, water: Water, anchor: FallingAnchor, landed: ChainState, fineness: Fineness
 ) -> Motion:
-    """Compute how a line settles after the touchdown of its anchor.
+    """Compute the motion of a line from the touchdown of its anchor until the line is at rest.
 
     Raises
     ------

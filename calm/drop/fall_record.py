@@ -21,20 +21,20 @@ MOMENTS = 5
 
 @dataclass(frozen=True)
 class DepthReached:
-    """Largest depth of a piece or clamp while the line falls and settles.
+    """Largest depth that a piece or clamp reaches while the line falls and settles.
 
-    Depths are those of the upper end of a piece, as in all tables, but the rating is compared with
-    the depth of the deeper end, as in the design check.
+    As in all tables, the depth of a piece is that of its upper end. As in the design check, the
+    depth rating is compared with the depth of the deeper end.
 
     Attributes
     ----------
     part : the piece or clamp
     rest : depth of the upper end at rest [m]
     greatest : largest depth of the upper end [m]
-    time : time of the largest depth, from the release of the anchor [s]; None if the largest depth
+    time : time from the release of the anchor to the largest depth [s]; None if the largest depth
         exceeds the depth at rest by no more than `OVERSHOOT`
     rating : depth rating of the part [m]; None if unknown
-    beyond : whether the deeper end exceeds the rating
+    beyond : whether the deeper end goes below the depth rating
     """
 
     part: Piece | Clamp
@@ -61,7 +61,11 @@ class Pull:
 
 @dataclass(frozen=True)
 class ShapeInTime:
-    """Shape of the line at one time: distance `x` towards the float and depth of the nodes [m]."""
+    """Shape of the line at one time, given by the nodes.
+
+    `x` is the horizontal distance of each node from the position of the anchor at the release,
+    positive towards the float [m]. `depth` is the depth of each node [m].
+    """
 
     time: float
     name: str
@@ -78,8 +82,8 @@ class FallPath:
     time : time since the release [s]
     anchor_depth : depth of the lower end of the anchor [m]
     anchor_speed : downward speed of the anchor [m/s]
-    anchor_x, float_x : horizontal distance of anchor and free end from the release position,
-        towards the float [m]
+    anchor_x, float_x : horizontal distances of the anchor and the free end from the position of
+        the anchor at the release, positive towards the float [m]
     float_depth : depth of the free end [m]
     anchor_tension : tension of the line at the anchor [N]
     """
@@ -94,14 +98,17 @@ class FallPath:
 
 
 def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
-    """Return the positions (m, 3) [m] of points given by bar and position on the bar, 0 to 1."""
+    """Return the positions (m, 3) of points on bars [m].
+
+    Each point is given by the index of its bar and its place on that bar, from 0 to 1.
+    """
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
 
 
 def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the positions (p, 3) of the upper and the lower ends of all pieces [m]."""
+    """Return the positions (p, 3) of the upper ends of all pieces, and of their lower ends [m]."""
     first, end = chain.bars.T
     last = np.maximum(end - 1, first)
     return place_of(state, first, chain.span[:, 0]), place_of(state, last, chain.span[:, 1])
@@ -110,12 +117,12 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
     """Return the tensions (n, 2) at the upper and the lower end of every bar [N].
 
-    Bars under compression have zero tension: in the first moment, the anchor pushes the pieces next
-    to it, where a real line becomes slack.
+    A bar under compression has zero tension. Compression occurs just after the release, when the
+    anchor pushes the adjacent pieces, where a real line would become slack.
 
     Parameters
     ----------
-    within : whether loads at the very ends of a bar are excluded; otherwise they are included
+    within : whether to exclude the loads that act exactly at the ends of a bar
     """
     on = mover.chain.elements
     strain, _ = mover.strain(state.tension)
@@ -135,7 +142,7 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
     Parameters
     ----------
     toward : (2,) horizontal unit vector from the anchor to the free end at the start
-    anchor_height : height of the end of the line above the lower end of the anchor [m]
+    anchor_height : height of the lower end of the line above the lower end of the anchor [m]
     """
     states = drop.states
     foot, top = (np.array([state.node[i] for state in states]) for i in (-1, 0))
@@ -151,9 +158,9 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
 
 
 def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
-    """Return the shapes at equal intervals from release to touchdown, and the shape at rest.
+    """Return the shapes of the line at equal intervals from release to touchdown, and at rest.
 
-    The shape at rest is omitted if `rest` is None.
+    The shape at rest is omitted if `rest` is None. `toward` is as in `path_of`.
     """
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
@@ -169,7 +176,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """Return the largest depths, until rest, of floats and parts that hold an instrument."""
+    """Return the largest depths that floats and parts with instruments reach before rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     upper, deeper = np.array([_depths(chain, state) for state in states]).swapaxes(0, 1)
@@ -207,11 +214,11 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 
 
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
-    """Return the tensions at the ends of all pieces (t-1, p, 2), and their maxima [N].
+    """Return the tensions at the ends of all pieces (t-1, p, 2), and their maximum per piece [N].
 
-    The first state is omitted, because the flow past the line under tow differs from the flow after
-    the release. Pieces that are rigidly connected to the free end form one bar and share the
-    tensions at its ends.
+    The first of the t states is omitted, because the flow past the line under tow differs from the
+    flow after the release. Pieces that are rigidly connected to the free end form one bar, and all
+    have the tensions at the ends of that bar.
     """
     tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])
     ends = _ends_of_pieces(drop, tension)
@@ -234,10 +241,10 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 
 
 def rest_difference(result: LegResult, rest: Motion) -> float:
-    """Return the largest distance between a piece's end at rest and in equilibrium [m].
+    """Return the largest distance between a piece's end at rest and its equilibrium position [m].
 
-    Pieces on the seabed are excluded if the line touches down before its anchor. In the equilibrium
-    they lie at the level of the seabed, but here they lead up to the top of the anchor.
+    Pieces on the seabed are excluded. In the equilibrium they lie at the level of the seabed, but
+    in the computed rest position they lead up to the top of the anchor.
     """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)

@@ -34,25 +34,25 @@ CHECK_FINENESS = Fineness(bars=50, steps=50)
 class Launch:
     """Fall of a line behind its anchor, which is released while the ship tows the line.
 
-    The line is towed at 1 m/s against the current. The jerk as the line straightens and the swing
-    of the line are neglected.
+    The line is towed at 1 m/s against the current. Two effects are neglected: the jerk when the
+    line straightens, and the swing of the line.
 
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : touchdown speed [m/s] if the tangential drag of cables, chains and cylinders,
-        and the drag of the anchor, are doubled and halved in the last time step; NaN if this step
-        has no solution
+    fall_speed_band : two touchdown speeds [m/s] from a repeated last time step, first with twice
+        and then with half the anchor drag and the tangential drag of cables, chains and cylinders;
+        NaN if the repeated step has no solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,
         from release to touchdown [N]
     anchor_drag_known : False if the anchor has no `kt`, so that the drag of a cube is assumed
     greatest_speed, greatest_tension : largest touchdown speed [m/s], and largest tension (n,) in
-        every piece [N]; if the drag of the anchor is unknown, the last time step without this drag
-        is considered as well
-    tangles : pieces that are upside down at touchdown, wholly or in part, because the line above
-        has overtaken them
+        every piece [N]; if the drag of the anchor is unknown, these include a last time step
+        without that drag
+    tangles : indices of pieces that are upside down at touchdown, wholly or in part, because the
+        line above has overtaken them
     """
 
     fall_speed: float
@@ -67,7 +67,7 @@ class Launch:
     tangles: tuple[int, ...]
 
     def components(self) -> list[dict[str, Any]]:
-        """Tensions of the pieces above the anchor, with their names in JSON."""
+        """Return one dictionary of tensions [N] per piece above the anchor, for JSON."""
         pairs = zip(self.tension_top.tolist(), self.tension_bottom.tolist(), strict=True)
         return [
             {"index": index, "tension_top": top, "tension_bottom": bottom}
@@ -81,7 +81,7 @@ def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
     Raises
     ------
     NoEquilibrium
-        As in `fall`.
+        The tow or the fall has no solution; the statuses are those of `towed` and `fall`.
     """
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))
@@ -132,29 +132,29 @@ def falling_line(leg: Leg) -> Line:
 
 
 def falling_anchor(leg: Leg) -> FallingAnchor:
-    """Return weight and drag of the anchor of a mooring, for its fall."""
+    """Return the anchor of a mooring with the weight and drag that apply during the fall."""
     return FallingAnchor(leg.anchor_weight, leg.anchor_drag)
 
 
 def course_into_current(water: Water) -> float:
-    """Return the course against the surface current, or north in still water [degrees]."""
+    """Return the course against the surface current [degrees]; 0 (north) in still water."""
     east, north, _ = water.current_at(np.zeros(()))
     return bearing_of(-east, -north) if east or north else 0.0
 
 
 def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None) -> Ship:
-    """Return the velocity of the ship that tows the line of a mooring.
+    """Return the ship that tows the line of a mooring, with its velocity.
 
     Parameters
     ----------
-    speed, course : speed and course over the ground [m/s], [degrees]
+    speed, course : speed [m/s] and course [degrees] over the ground
     streamed : horizontal distance from the anchor to the free end at the release [m]; by default
         the distance that results under tow
 
     Raises
     ------
     UsageError
-        The ship does not move through the water, or the line is shorter than `streamed`.
+        The ship is too slow through the water, or the line is shorter than `streamed`.
     """
     east, north = speed * sin(radians(course)), speed * cos(radians(course))
     u, v, _ = leg.water.current_at(np.zeros(()))

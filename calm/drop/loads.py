@@ -18,13 +18,13 @@ at rest would have no resistance to motion.
 
 @dataclass(frozen=True)
 class WaterColumn:
-    """Water properties against depth, with their vertical gradients.
+    """Water properties as functions of depth, with their vertical gradients.
 
     Attributes
     ----------
-    water : the sea
-    skin : depth below the surface over which a float with unknown hull loses its buoyancy as it
-        emerges [m]
+    water : levels and properties of the water
+    skin : depth below the surface [m] within which an emerging float with an unknown hull loses its
+        buoyancy
     """
 
     water: Water
@@ -40,7 +40,7 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return current and its increase per metre of depth (3, k), and density, at k depths."""
+        """Return three arrays for k depths: current (3, k), its increase per metre, and density."""
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
@@ -57,9 +57,12 @@ class Loads:
     Attributes
     ----------
     force : (3, k) force [N]
-    by_flow : (3, 3, k) derivative of the force by the velocity of the water past the load [N/(m/s)]
-    by_axis : (3, 3, k) derivative by changes of the unit axis of the bar normal to itself [N]
-    by_height : (3, k) derivative by height, including the change of the current [N/m]
+    by_flow : (3, 3, k) derivative of the force with respect to the velocity of the water past the
+        load [N/(m/s)]
+    by_axis : (3, 3, k) derivative of the force with respect to the unit axis of the bar, for
+        changes normal to the axis [N]
+    by_height : (3, k) derivative of the force with respect to height, including the effect of the
+        vertical gradient of the current [N/m]
     """
 
     force: Floats
@@ -84,11 +87,11 @@ def loads_on(
     ----------
     height : (k,) height of the loads above the surface [m]
     velocity : (3, k) velocity of the loads over the ground [m/s]
-    axis : (3, k) unit axis of their bars, downward along the line
-    strain : (k,) strain of their bars
+    axis : (3, k) unit axis of the bar of each load, pointing down the line
+    strain : (k,) strain of the bar of each load
     variation : (k,) ratio of the drag of a smooth body at its Reynolds number to its constant drag;
         1 for other loads
-    slowest : speed below which drag is linear in the speed [m/s]
+    slowest : speed below which the drag is proportional to the speed [m/s]
     """
     on = chain.elements
     current, shear, density = sea.at(-height)

@@ -38,7 +38,7 @@ _UNIT = np.eye(3)
 
 
 class NoStep(ArithmeticError):
-    """Newton's method has no solution for this time step; it may have one for a shorter step."""
+    """Newton's method does not converge for this time step; a shorter step may converge."""
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
@@ -58,7 +58,7 @@ class FallingAnchor:
     Attributes
     ----------
     weight : weight in water at the seabed [N]
-    drag : K of the drag K|V|V in reference water [N/(m/s)²]; 0 if unknown
+    drag : coefficient K of the drag K|V|V in reference water [N/(m/s)²]; 0 if unknown
     """
 
     weight: float
@@ -72,9 +72,9 @@ class ChainState:
     Attributes
     ----------
     time : time since the release [s]
-    node : (n+1, 3) position of the nodes east, north, up [m]
+    node : (n+1, 3) positions of the nodes to the east, to the north and up [m]
     tension : (n,) tension at the midpoint of the bars [N]
-    velocity : (n+1, 3) mean velocity over the last step [m/s]
+    velocity : (n+1, 3) mean velocities of the nodes in the last time step [m/s]
     """
 
     time: float
@@ -89,9 +89,12 @@ class Mover:
 
     Attributes
     ----------
-    held : whether the lower end is fixed; otherwise it falls with the anchor
+    chain, sea, anchor : chain of bars, water around the chain, and anchor at its lower end
+    held : whether the lower end of the chain is fixed; otherwise the lower end falls with the
+        anchor
     bedded : whether the seabed supports the line
-    tether : (2,) horizontal position at which the free end is held [m]; None if it can move
+    tether : (2,) horizontal position at which the free end is held [m]; None if the free end can
+        move
     """
 
     chain: BarChain
@@ -102,10 +105,11 @@ class Mover:
     tether: Floats | None = None
 
     def stepped(self, state: ChainState, step: float, gently: bool = False) -> ChainState:
-        """Return the state at the end of a time step [s].
+        """Return the state of the chain at the end of a time step of length `step` [s].
 
-        For a line at rest, the first iterations use a drag that is linear in the speed, which helps
-        the quadratic drag to converge. `gently` does the same for a moving line.
+        For a line at rest, the first iterations use a drag that is proportional to the speed,
+        because Newton's method then converges more easily. With `gently`, this is also done for a
+        moving line.
 
         Raises
         ------
@@ -143,7 +147,7 @@ class Mover:
 
     @cached_property
     def scale(self) -> float:
-        """Scale of forces [N]: weight of the anchor plus the sum of all absolute buoyancies."""
+        """Scale of forces [N]: weight of the anchor plus the sum of the absolute buoyancies."""
         return self.anchor.weight + float(np.abs(self.chain.elements.buoyancy).sum())
 
     def loads(
@@ -154,9 +158,13 @@ class Mover:
         variation: Floats,
         slowest: float = SLOWEST,
     ) -> tuple[Loads, Floats, Floats]:
-        """Compute the forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
+        """Compute the forces on all loads, and the unit axes (3, n) and lengths (n,) of the bars.
 
-        Inputs are positions and velocities of the nodes (3, n+1), and strains of the bars (n,).
+        Parameters
+        ----------
+        node, velocity : (3, n+1) positions [m] and velocities [m/s] of the nodes
+        strain : (n,) strain of the bars
+        variation, slowest : as in `loads_on`
         """
         on = self.chain.elements
         bar, (above, below) = on.bar, on.share
@@ -172,9 +180,9 @@ class Mover:
         return loads, axis, length
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
-        """Return the strain (n,) of the bars and its derivative [1/N].
+        """Return the strain (n,) of the bars, and its derivative with respect to tension [1/N].
 
-        A rope under compression has the strain of zero tension.
+        A rope under compression has the same strain as a rope without tension.
         """
         strain, growth = self.chain.compliance * tension, self.chain.compliance.copy()
         for bars, knots in self.chain.elongation:
@@ -188,7 +196,10 @@ class Mover:
     def anchor_force(
         self, node: Floats, velocity: Floats, slowest: float = SLOWEST
     ) -> tuple[Floats, Floats]:
-        """Return weight plus drag of the falling anchor [N], and its derivative by velocity."""
+        """Return the force on the falling anchor, and its derivative with respect to velocity.
+
+        The force (3,) is the weight in water plus the drag [N].
+        """
         current, _, density = self.sea.at(-node[2, -1:])
         flow = current[:, 0] - velocity[:, -1]
         k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
@@ -199,8 +210,8 @@ class Mover:
     def variation(self, state: ChainState) -> Floats:
         """Return the ratio (k,) of the drag of smooth bodies to their constant drag.
 
-        The drag depends on the Reynolds number, which is taken from the motion of the last step.
-        The ratio is 1 for other loads.
+        The drag depends on the Reynolds number, which is computed from the motion in the last step.
+        For loads that are not smooth bodies, the ratio is 1.
         """
         on = self.chain.elements
         variation = np.ones(len(on.bar))

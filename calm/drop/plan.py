@@ -32,13 +32,14 @@ SHORT_FALL = 60.0
 
 @dataclass(frozen=True)
 class RunStart:
-    """Start of the run, where the first piece is deployed, and length of the run.
+    """Start of the ship's run, at which the first piece is deployed.
 
     Attributes
     ----------
-    distance : distance to the target along the ship's course [m]; negative if past the target
-    time : time until the release of the anchor [s]
-    place : position east and north of the target [m]
+    distance : distance from the start to the target along the ship's course [m]; negative if the
+        start is past the target
+    time : time from the start to the release of the anchor [s]
+    place : position of the start east and north of the target [m]
     """
 
     distance: float
@@ -48,38 +49,39 @@ class RunStart:
 
 @dataclass(frozen=True)
 class DropPlan:
-    """Plan of an anchor drop, anchor last, with the line streamed behind the ship.
+    """Plan for dropping a mooring anchor last, with the line streamed behind the ship.
 
     Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
-    clockwise from north. Horizontal distances are positive towards the float, the direction in
-    which the line streams behind the anchor.
+    clockwise from north. Horizontal distances are positive towards the float, which is the
+    direction in which the line streams behind the anchor.
 
     Attributes
     ----------
     ship_speed, course : speed and course of the ship over the ground
     streamed : horizontal distance from the anchor to the free end at the release of the anchor
     astern : direction from the anchor to the free end at the release
-    fall_time : time until the touchdown of the anchor
+    fall_time : time from the release to the touchdown of the anchor
     fall_back : horizontal distance from the release to the touchdown, towards the float
-    aside : distance of the touchdown to the right of the line from the release towards the float
-    time_error, distance_error : numerical errors of `fall_time`, and of `fall_back` and `aside`:
-        twice the sum of the changes for time steps and for bars of twice the length; `time_error`
-        is at least 0.05 % of `fall_time`
-    fall_time_band, fall_back_band : range for half and twice the drag of the anchor, smaller value
-        first
+    aside : distance of the touchdown to the right of a line from the release towards the float
+    time_error : estimated numerical error of `fall_time`, at least 0.05 % of `fall_time`
+    distance_error : estimated numerical error of `fall_back` and `aside`; like `time_error`, it is
+        twice the sum of the changes that result from doubling the time steps and the bar lengths
+    fall_time_band, fall_back_band : smallest and largest value for anchor drags from half to twice
+        the drag used
     touchdown_speed : speed of the anchor at touchdown
     greatest_tension : maximum tension in the line, from release to touchdown
     tow_past : distance past the target, along the course, at which the anchor is released
-    let_go : position of the release of the anchor, east and north of the target
-    deck_time : time to handle a piece, by its role [s]; None if not specified
-    start : start of the run, with the float deployed first; None without a deck time
-    anchor_drag : K of the drag of the anchor [N/(m/s)²]
-    drag_known : False if the file has no value, so that the drag of a cube is assumed
-    path, moments, pulls : time series, shapes of the line, and maximum tensions of the pieces
+    let_go : position at which the anchor is released, east and north of the target
+    deck_time : time to handle a piece on deck, by the role of the piece [s]; None if not specified
+    start : start of the run, at which the float is deployed; None without deck times
+    anchor_drag : coefficient K of the drag K|V|V of the anchor [N/(m/s)²]
+    drag_known : False if the file gives no anchor drag, so that the drag of a cube is assumed
+    path, moments, pulls : time series of the fall, shapes of the line, and maximum tensions in the
+        pieces
     depths : largest depths of floats and of parts that hold an instrument; empty if the line
         settles away from its equilibrium
-    rest_difference : largest distance between a piece at rest and its equilibrium position; None if
-        the line is slack in still water and has no unique equilibrium
+    rest_difference : largest distance between a piece's end at rest and its equilibrium position;
+        None if the line is slack in still water and has no unique equilibrium
     """
 
     mooring: Design = field(repr=False)
@@ -109,10 +111,10 @@ class DropPlan:
     rest_difference: float | None
 
     def position(self, place: tuple[float, float]) -> Position | None:
-        """Return the geographic position of a point given in m east and north of the target.
+        """Return the geographic position of a point, given in m east and north of the target.
 
         Return None if the position of the target is unknown. The conversion uses the tangent plane
-        of the WGS 84 ellipsoid and is accurate within 1 m up to 10 km from the target.
+        of the WGS 84 ellipsoid, and is accurate to 1 m within 10 km of the target.
         """
         target = self.mooring.file.position
         if target is None:
@@ -123,7 +125,7 @@ class DropPlan:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings about assumptions and doubtful results of the plan."""
+        """Warnings about the assumptions and the doubtful results of the plan."""
         texts = []
         if not self.drag_known:
             texts.append("The anchor has no `kt`; the drag of a cube of equal volume is assumed.")
@@ -227,17 +229,17 @@ def drop_plan(
     course : course of the ship over the ground [degrees]; by default against the current at the
         surface, or north in still water
     result : result of the mooring in the same environment, if already solved
-    fineness : resolution of the chain and its steps
-    deck_time : time to handle a piece on deck, by its role [s]; without it, the start of the run is
-        not computed, because handling takes most of the time
+    fineness : resolution of the chain and of time
+    deck_time : time to handle a piece on deck, by the role of the piece [s]; if None, the start of
+        the run is not computed, because handling takes most of the time
 
     Raises
     ------
     UsageError
-        The ship does not move through the water, the line is shorter than `streamed`, or the file
+        The ship is too slow through the water, the line is shorter than `streamed`, or the file
         contains a tow or several legs.
     NoEquilibrium
-        As `Design.solve`; ``anchor-lifts`` if the anchor does not pull the line down,
+        As in `Design.solve`; also ``anchor-lifts`` if the anchor does not pull the line down, and
         ``not-converged`` if a time step has no solution.
     """
     leg = mooring.moored

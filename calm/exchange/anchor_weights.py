@@ -19,10 +19,10 @@ _LEAST = 100.0  # smallest guessed weight in N
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
     """Set the weight of each anchor that has no weight in the file, or that the line would lift.
 
-    The new weight is the weight that `calm check` requires in this current; the shape of the line
-    does not depend on it. If the line has no equilibrium, weights in the file are unchanged, a
-    missing weight is set to a value that holds any line, and `calm run` reports the problem. The
-    mooring file will be written to `output`.
+    The new weight is the weight that `calm check` requires in the current of the file. The shape of
+    the line does not depend on this weight. If the line has no equilibrium, weights in the file are
+    unchanged, and a missing weight is set to a value that holds any line. `output` is the path of
+    the mooring file that will be written.
     """
     last = design.items if design.legs else design.items[-1:]
     anchors = [item.component for item in last if item.component.kind == "anchor"]

@@ -18,8 +18,9 @@ def _kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """Choose a mooring-file id for each component, by the identity of the object (Python's `id()`).
+    """Choose an id in the mooring file for each component.
 
+    Return the chosen ids in a dictionary whose keys are the Python `id()` of the component objects.
     Components with equal values share an id. Ids in `taken` are not used.
     """
     components = list(components)

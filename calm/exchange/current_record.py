@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 class CurrentRecord:
     """Currents `u`, `v`, `w` [m/s] by time and level.
 
-    `depth` has the depths of the levels [m]. `days` are counted from the date `epoch`.
+    `depth` holds the depths of the levels [m]. `days` are the times, in days after the date
+    `epoch`.
     """
 
     days: NDArray[np.float64]

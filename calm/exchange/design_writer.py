@@ -45,7 +45,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Write a design as a mooring file; return its text and the guesses in it."""
+    """Convert a design to a mooring file; return its text and the guesses that it contains."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__}, with the values of that file.")
     for note in design.notes:
@@ -213,8 +213,8 @@ def figure_text(key: str, value: model.FigureOrWord, *, per_metre: bool, in_kilo
 
     Parameters
     ----------
-    key : field of the component
-    value : value in SI units
+    key : name of the field in the component
+    value : value in SI units, or a word
     per_metre : whether forces and masses are per metre
     in_kilograms : whether forces are shown in kilograms-force
     """

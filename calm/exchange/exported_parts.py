@@ -39,15 +39,15 @@ class ExportedPart:
     ----------
     use, label, role : as in the mooring file
     component : definition of the component
-    flexible : whether it is a cable or chain, whose values are per metre
+    flexible : whether the part is a cable or chain, whose values are per metre
     length : unstretched length [m]
     buoyancy : net buoyancy in reference water, positive up [N or N/m]
-    net, density : net buoyancy [N or N/m] and density of the water [kg/m³] at the depth of the part
-        in the upright line
+    net, density : net buoyancy [N or N/m] of the part and density of the water [kg/m³], at the
+        depth that the part has in the upright line
     kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre if flexible]
     directional : whether the drag depends on the direction of the flow relative to the axis
     stiffness : EA [N]; 0 if inextensible
-    clamps : clamps on the part, with their distances from its upper end [m]
+    clamps : clamps on the part, with their distances from the upper end of the part [m]
     """
 
     use: str
@@ -77,7 +77,7 @@ class ExportedPart:
 
     @property
     def likely_mass(self) -> float:
-        """Mass in air [kg or kg/m], as specified, else estimated from weight and size."""
+        """Mass in air [kg or kg/m]: the specified mass, or an estimate from weight and size."""
         if self.mass is not None:
             return self.mass
         hull = getattr(self.component, "hull", None)
@@ -96,10 +96,10 @@ class ExportedPart:
 
         Parameters
         ----------
-        density : uniform density of the water in the other program [kg/m³]; the area then gives the
-            same drag there as that of the part in its own water. By default, the area refers to
-            reference water
-        along : whether to return the tangential drag area instead of the normal one
+        density : uniform density of the water in the other program [kg/m³]; with the returned area,
+            the drag in that water equals the drag of the part in its own water. By default, the
+            area refers to reference water
+        along : whether to return the tangential instead of the normal drag area
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
         return own if density is None else own * self.density / density
@@ -107,7 +107,7 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Sum of net force, mass and drag areas of the parts at one point or on one stiff length.
+    """Sums of net force, mass and drag areas over the parts at one point or on one rigid segment.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class PartLoad:
     along: float = 0.0
 
     def merge(self, other: PartLoad) -> None:
-        """Add another sum."""
+        """Add the sums of another load to these sums."""
         self.names += other.names
         self.net += other.net
         self.mass += other.mass
@@ -133,7 +133,7 @@ class PartLoad:
         self.along += other.along
 
     def add(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part without its clamps; its drag is multiplied by `share`."""
+        """Add a part without its clamps; the drag of the part is multiplied by `share`."""
         areas = (share * part.area(self.density, along=along) for along in (False, True))
         self.merge(PartLoad(self.density, [part.use], part.net, part.likely_mass, *areas))
 
@@ -152,11 +152,11 @@ class PartLoad:
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     """Register values under a name, and return this name.
 
-    A number is appended to the preferred name if it already has other values.
+    If the preferred name is already registered with other values, a number is appended to the name.
 
     Parameters
     ----------
-    known : values by name, to which the values are added
+    known : registered values by name; the new values are added to this dictionary
     name : preferred name
     figures : values in the format of the file
     """
@@ -168,9 +168,12 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 
 
 def place_along(path: Floats, share: float) -> Coordinates:
-    """Interpolate the position at the fraction `share` of the length of a part.
+    """Interpolate the position at a given fraction of the length of a part.
 
-    `path` are the positions (n, 3) of the nodes of the part.
+    Parameters
+    ----------
+    path : (n, 3) positions of the nodes of the part
+    share : fraction of the length from the first node, 0 to 1
     """
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -180,7 +183,7 @@ def place_along(path: Floats, share: float) -> Coordinates:
 
 @dataclass(frozen=True)
 class ExportedTow:
-    """Velocity of the ship to the east and north [m/s], and height of the sheave [m]."""
+    """Velocity of the ship to the east and north [m/s], and sheave height above the water [m]."""
 
     east: float
     north: float
@@ -194,20 +197,22 @@ class ExportedLine:
     Attributes
     ----------
     name : name of the file
-    parts : parts of a mooring from the top down without the anchor, or of a tow from the ship
-    anchor : the anchor, and its weight including clamps [N]; None for a tow
-    depth, levels : water depth [m], and current and density by level, from the surface down
+    parts : parts of a mooring from the top down, without the anchor; or parts of a tow from the
+        ship
+    anchor : the anchor, and its weight including that of its clamps [N]; None for a tow
+    depth : water depth [m]
+    levels : current and density at each level, from the surface down
     gravity : acceleration of gravity [m/s²]
     wind : wind velocity to the east and to the north [m/s]
     tow : the ship of a tow; None for a mooring
-    afloat, has_draft : whether the line reaches the surface, and whether the hull of its float is
-        known
-    riding : used share of the net buoyancy of the float, and its drag as a share of the drag when
-        immersed; both are 1 below the surface
-    windage : wind area of the float [m²], and its drag coefficient
+    afloat : whether the line reaches the surface
+    has_draft : whether the hull of the float is known
+    riding : share of the net buoyancy of the float that is used, and drag of the float as a share
+        of its drag when immersed; both are 1 for a submerged float
+    windage : wind area of the float [m²], and drag coefficient of this area
     omitted : features that no other program can represent
     solve : function that finds the equilibrium
-    ends : connections of the upper and the lower end of a leg of a net; None for a single line
+    ends : connections of the upper and the lower end, for a leg of a net; None for a single line
     """
 
     name: str
@@ -228,20 +233,20 @@ class ExportedLine:
 
     @property
     def mean_density(self) -> float:
-        """Mean density of the levels [kg/m³], for programs with uniform density."""
+        """Mean density of the levels [kg/m³], for programs in which the density is uniform."""
         return sum(row[4] for row in self.levels) / len(self.levels)
 
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
         """Return the features that the other program cannot represent.
 
-        They are those in `more`, followed by `omitted`, without repetitions.
+        The list has the features in `more`, followed by those in `omitted`, without repetitions.
         """
         return tuple(dict.fromkeys((*more, *self.omitted)))
 
     def paths(self) -> list[Floats]:
         """Return the positions (n, 3) of the nodes of each part in equilibrium, from the top down.
 
-        Positions are east, north and depth [m]. Raises NoEquilibrium if there is no equilibrium.
+        Each position is east, north and depth [m]. Raise NoEquilibrium if there is no equilibrium.
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
@@ -262,9 +267,9 @@ class ExportedLine:
     def float_as_point(self, density: float) -> tuple[float, float]:
         """Return net force [N] and drag area [m²] of a point that represents a submerged float.
 
-        Some programs treat a float as a point without an axis at the end of the line, in the flow
-        there and in water of uniform `density` [kg/m³]. The result gives the same load on the line
-        as in CALM. If there is no equilibrium, the values of the float itself are returned.
+        Some programs treat a float as a point at the end of the line, in water of uniform `density`
+        [kg/m³]. With the returned values, such a point exerts the same load on the line as the
+        float in CALM. If there is no equilibrium, the values of the float itself are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)
@@ -287,7 +292,7 @@ class ExportedLine:
 
 @dataclass(frozen=True)
 class ExportedDesign:
-    """A design for export: its name, and a single line or the legs of a net."""
+    """A design for export: its name and its lines, one line or the legs of a net."""
 
     name: str
     legs: tuple[ExportedLine, ...]

@@ -35,13 +35,13 @@ def export_file(
     ----------
     to : name of a registered format that can be written
     environment : name of an environment in the file, or path of an environment file
-    catalogs : see `calm.load`
+    catalogs : component catalogues, as in `calm.load`
 
     Raises
     ------
     InputError, NoEquilibrium, UsageError
-        The file has mistakes, no length fits a piece that is cut to fit, or `to` is not a
-        registered format.
+        The file has mistakes, no length can be found for a piece with fitted length, or `to` is not
+        a registered format.
     """
     chosen = written_format(to)
     assert chosen.write is not None
@@ -63,7 +63,7 @@ def export_file(
 
 
 def written_format(to: str) -> FileFormat:
-    """Return the format with a name; UsageError is raised if CALM cannot write such a format."""
+    """Return the format with a given name; raise UsageError if CALM cannot write this format."""
     try:
         chosen = file_format(to)
     except KeyError:

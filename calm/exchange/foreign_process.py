@@ -27,7 +27,7 @@ def read_apart(
 ) -> _Found:
     """Call a reader in a child process, and return its result.
 
-    The reader must be a function of a module, so that the child process can import it.
+    The reader must be defined at the top level of a module, where the child process can find it.
 
     Raises
     ------

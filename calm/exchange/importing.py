@@ -36,10 +36,10 @@ class Imported:
     Attributes
     ----------
     file : the file that was read
-    format : name of its format
+    format : name of the format of this file
     text : text of the mooring file
     guessed, dropped : remarks about guessed values, and about omitted features
-    matched : components that were replaced by entries of the catalogue
+    matched : components that were replaced by catalogue entries
     record : currents at several times; None if the file has none
     understood : how the file was interpreted; empty if its format leaves no choice
     """
@@ -68,15 +68,16 @@ def import_file(
     Parameters
     ----------
     output : path of the mooring file that will be written; this function does not write it
-    format : name of the format, as in `registry.register_format`; by default it is recognised from
-        the content
-    environment : an environment file that replaces the environment of the file
+    format : name of the format, as in `registry.register_format`; by default, the format is
+        recognised from the content
+    environment : path of an environment file that replaces the environment in the imported file
     match_catalogue : whether components are replaced by catalogue entries that agree with them
 
     Raises
     ------
     InputError
-        The file is damaged, or has a feature that CALM cannot represent; the message names it.
+        The file is damaged, or has a feature that CALM cannot represent. The message names the
+        feature.
     UsageError
         There is no such format.
     """
@@ -163,9 +164,9 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:
-    """Return the `environment` key of a file as lines for the mooring file `output`.
+    """Return the lines of the `environment` key in a file, for the mooring file `output`.
 
-    Paths are converted to paths relative to the folder of `output`.
+    The path of a current file is converted to a path relative to the folder of `output`.
 
     Raises
     ------

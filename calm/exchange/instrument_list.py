@@ -67,7 +67,7 @@ class ListedInstrument:
     nominal : nominal depth [m]; NaN if unknown
     clock : lag of the clock [s]; None if unknown
     checked : time at which this lag was measured; None if unknown
-    remark : other error of the clock, in words
+    remark : any other error of the clock, in words
     """
 
     where: str
@@ -89,7 +89,7 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
 
     Parameters
     ----------
-    seabed : depth of the water, for heights above it [m]
+    seabed : water depth, to convert heights above the seabed [m]
 
     Raises
     ------

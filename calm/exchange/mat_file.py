@@ -40,7 +40,7 @@ RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
-    """Read the wanted variables of a file; missing variables are omitted.
+    """Read the variables of a file whose names are in `wanted`; missing variables are omitted.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def read_octave_text(text: str) -> dict[str, MatValue]:
     Raises
     ------
     ValueError
-        A matrix has fewer numbers than its header says, or a header cannot be read.
+        A matrix has fewer numbers than its header states, or a header cannot be read.
     """
     variables: dict[str, MatValue] = {}
     cell: list[MatValue] | None = None
@@ -290,7 +290,7 @@ class MatVariables(dict[str, MatValue]):
     """Variables of a `.mat` file, by name."""
 
     def reals(self, name: str) -> RealArray:
-        """Return a variable as real numbers; an empty array if the variable is missing.
+        """Return a variable as an array of real numbers; a missing variable gives an empty array.
 
         Raises
         ------
@@ -305,14 +305,14 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array; empty if it is not of real numbers."""
+        """Return a variable as a one-dimensional array, which is empty without real numbers."""
         try:
             return self.reals(name).ravel()
         except ValueError:
             return np.zeros(0)
 
     def first(self, name: str) -> float:
-        """Return the first number of a variable; 0 if there is none."""
+        """Return the first number of a variable; 0 if the variable has none."""
         row = self.row(name)
         return float(row[0]) if row.size else 0.0
 
@@ -325,7 +325,7 @@ def _fits(name: str, shape: tuple[int, ...]) -> bool:
 
 
 def names(value: MatValue | None) -> list[str]:
-    """Convert a character matrix, a cell array or character codes to texts."""
+    """Convert a character matrix, a cell array or character codes to a list of texts."""
     if value is None:
         return []
     if isinstance(value, str):

@@ -27,12 +27,13 @@ class ImportOptions:
 
     Attributes
     ----------
-    defines : for WHOI Cable, macros by name; for oceanarray, catalogue ids by the names in its
-        files
-    columns : headings in a table, by the name of the column in CALM
+    defines : for WHOI Cable, macros by name; for oceanarray, catalogue ids by the component names
+        in its files
+    columns : headings in the table, by the name of the column in CALM
     elements : library of elements with the values that a table lacks
     allow_include : whether a file may include files from outside its folder
-    sheet : name of the sheet of a workbook that has the list; None if there is only one such sheet
+    sheet : name of the sheet that contains the list, in a workbook; None if only one sheet has a
+        list
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -60,12 +61,12 @@ class ImportedComponent:
     Attributes
     ----------
     name : name in the file
-    kind : sphere, cylinder, body, cable, chain or anchor
-    figures : values by the fields of `kind`; those of cables and chains are per metre
-    guesses : reason for the value of each field that is not from the file
+    kind : kind of the component: sphere, cylinder, body, cable, chain or anchor
+    figures : values by the name of the field; the values of cables and chains are per metre
+    guesses : for each field whose value is not from the file, the reason for the value
     comment : comment about the source of the values
-    hull : displacement table of a float: rows of draft [m], displaced volume [m³] and immersed area
-        [m²]; empty for other components
+    hull : displacement table of a float, with rows of draft [m], displaced volume [m³] and immersed
+        area [m²]; empty for other components
     entry : id of the catalogue entry that replaces the component; empty if there is none
     """
 
@@ -81,20 +82,20 @@ class ImportedComponent:
     def of_line(
         cls, name: str, weight: float, figures: dict[str, FigureOrWord]
     ) -> ImportedComponent:
-        """Create a cable, or a chain if its name says so and it sinks.
+        """Create a chain if the line sinks and is called a chain; otherwise create a cable.
 
         Parameters
         ----------
         name : name in the file
         weight : weight in water per metre, negative for a line that floats [N/m]
-        figures : diameter, drag and other values, to which the weight is added
+        figures : diameter, drag and other values by field, to which the weight or buoyancy is added
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"
         return cls(name, kind, figures)
 
     def number(self, field: str) -> float:
-        """Return a value; 0 if it is missing."""
+        """Return the value of a field; 0 if the value is missing."""
         return float(self.figures.get(field, 0.0))
 
     def identity(self) -> tuple[object, ...]:
@@ -130,20 +131,20 @@ class ImportedPiece:
 
     @property
     def extent(self) -> float:
-        """Length of the piece [m]: its own, or that of its component."""
+        """Length of the piece [m]; for a rigid piece, the length of its component."""
         return self.component.number("length") if self.length is None else self.length
 
     def clamp(
         self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
         serial: str = "",
     ) -> None:  # fmt: skip
-        """Clamp a component on this piece; clamps are kept in order from the top.
+        """Clamp a component on this piece; the clamps of a piece remain in order from the top.
 
         Parameters
         ----------
         component : the component
         at : distance from the upper end of the piece [m]
-        guess : reason if the position is guessed; empty if it is from the file
+        guess : reason for a guessed position; empty if the position is from the file
         label, serial : label and serial number of the clamp
         """
         self.clamps.append(ImportedClamp(component, at, guess, label, serial))
@@ -154,8 +155,9 @@ class ImportedPiece:
 class ImportedLeg:
     """A leg of a net.
 
-    `items` are its pieces from the upper end. `top` and `bottom` are the connections of its ends as
-    written in a mooring file, such as ``{join: A}``; empty if the key is not needed.
+    `items` are the pieces of the leg, from the upper end. `top` and `bottom` are the connections of
+    the two ends as written in a mooring file, such as ``{join: A}``; a connection that the file
+    does not need is empty.
     """
 
     name: str
@@ -165,14 +167,23 @@ class ImportedLeg:
 
 
 def held_at(depth: float, east: float, north: float) -> str:
-    """Return the connection of a leg end held at a depth and a position east and north [m]."""
+    """Return the connection of a leg end that is held at a depth and a position [m].
+
+    Parameters
+    ----------
+    depth : depth [m]
+    east, north : position [m]
+    """
     return f"{{held: {{depth: {depth:.9g} m, at: [{east:.9g} m, {north:.9g} m]}}}}"
 
 
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
-    """Return the connection of a lower leg end with an anchor at a position east and north [m].
+    """Return the connection of the lower end of a leg with an anchor.
 
-    `depth` [m] is written only if the depth at the anchor differs from the water depth.
+    Parameters
+    ----------
+    east, north : position of the anchor [m]
+    depth : depth at the anchor [m], if it differs from the water depth
     """
     deeper = "" if depth is None else f", depth: {depth:.9g} m"
     return f"{{anchor: {{at: [{east:.9g} m, {north:.9g} m]{deeper}}}}}"
@@ -189,12 +200,12 @@ class ImportedWater:
 
     Attributes
     ----------
-    depth : depth of the water [m]; None in a tow whose file gives none
-    density : density [kg/m³], or rows of depth and density; None if the file gives none
+    depth : depth of the water [m]; None for a tow whose file gives no depth
+    density : density [kg/m³], or rows of depth and density; None if the file gives no density
     gravity : gravitational acceleration [m/s²]
-    current : rows of depth [m] and speeds east, north and up [m/s]
-    wind : speed [m/s] and the direction toward which it blows [degrees]
-    guesses : reason for the value of each field that is not from the file
+    current : rows of depth [m] and velocity to the east, to the north and up [m/s]
+    wind : wind speed [m/s], and the direction towards which the wind blows [degrees]
+    guesses : for each field whose value is not from the file, the reason for the value
     """
 
     depth: float | None
@@ -207,7 +218,7 @@ class ImportedWater:
 
 @dataclass(eq=False)
 class ImportedTow:
-    """Speed [m/s] and course [degrees] of a tow, and sheave height above the water [m]."""
+    """Speed [m/s] and course [degrees] of a tow, and height of the sheave above the water [m]."""
 
     speed: float
     toward: float
@@ -221,18 +232,18 @@ class ImportedDesign:
     Attributes
     ----------
     program : the program that wrote the file
-    items : pieces from the top down (in a tow from the ship, in a net leg after leg)
+    items : pieces of a mooring from the top down, of a tow from the ship, or of a net leg by leg
     legs : the legs of a net
-    water : the environment; None if the file gives none
+    water : the environment; None if the file has none
     environment : lines of the `environment` key that replaces `water`
     solver : keys of `solver`, each with its value and a comment
-    guessed : guesses about the design, except those about values of a component
-    dropped : contents of the file that CALM cannot use
+    guessed : remarks about guesses, except for guessed values of a component
+    dropped : remarks about contents of the file that CALM cannot use
     notes : further comments at the head of the mooring file
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : definition that replaces the uppermost component if the solution shows it to be
-        submerged; None if the file states whether it is
+    sunken : definition that replaces the uppermost component if the solution shows this component
+        to be submerged; None if the file states whether it is submerged
     understood : how the file was interpreted, as a text; empty if its format leaves no choice
     """
 
@@ -255,12 +266,18 @@ class ImportedDesign:
     understood: str = ""
 
     def lay(self, items: list[ImportedPiece], top: str, bottom: str) -> None:
-        """Add a leg to the net, with its pieces listed from the upper end."""
+        """Add a leg to the net.
+
+        Parameters
+        ----------
+        items : pieces of the leg, from the upper end
+        top, bottom : connections of the two ends, as in `ImportedLeg`
+        """
         self.legs.append(ImportedLeg(f"leg-{len(self.legs) + 1}", items, top, bottom))
         self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
-        """Yield the component of each piece, followed by those of its clamps, with repetitions."""
+        """Yield the component of each piece and those of its clamps, with repetitions."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:

@@ -52,8 +52,8 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     Raises
     ------
     InputError
-        The file lists no line, a height or length is missing or wrong, or a component is neither in
-        the library nor in the catalogue.
+        The file describes no line, a height or length is missing or wrong, or a component is
+        neither in the library nor in the catalogue.
     """
     document, problems = read_document(path), list[Problem]()
     library = {} if options.elements is None else read_library(options.elements)
@@ -92,8 +92,8 @@ def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[s
 
     Returns
     -------
-    For each instrument: line number, label, serial number, height above the seabed [m], and the
-    keys of the item with the `recovery_time` of the file.
+    For each instrument: the line number in the file, the label, the serial number, the height above
+    the seabed [m], and the keys of the instrument together with the `recovery_time` of the file.
 
     Raises
     ------

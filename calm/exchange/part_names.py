@@ -43,20 +43,20 @@ _LONGEST_PIECE = 20.0  # m of a rigid piece
 
 
 def is_called(name: str, *what: str) -> bool:
-    """True if a name matches one of the given kinds of parts.
+    """True if a name is that of a part of one of the given kinds.
 
     The kinds are release, chain, connector (shackles, swivels, links), anchor, line (wires, ropes,
-    chains) and rigid (floats, instruments and fittings, also by their product families).
+    chains) and rigid (floats, instruments and fittings, including names of product families).
     """
     return any(re.search(_NAMES[each], name, re.I) for each in what)
 
 
 def is_long(name: str, length: float, across: float) -> bool:
-    """True if a piece must be a rope because it is long and thin.
+    """True if a piece must be a line because the piece is long and thin.
 
     Parameters
     ----------
-    length, across : length and diameter of the piece [m]; `across` is 0 if it is unknown
+    length, across : length and diameter of the piece [m]; an unknown diameter is 0
     """
     if is_called(name, "release", "connector"):
         return False
@@ -71,8 +71,8 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     ----------
     name : name of the piece in the other program
     buoyancy : net force in water, positive up [N]
-    fastener : whether the other program marks it as a fastener; it may mark instruments and floats,
-        too
+    fastener : whether the other program marks the piece as a fastener; it may also mark instruments
+        and floats as fasteners
     """
     if is_called(name, "release"):
         return "release"
@@ -84,7 +84,7 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
 
 
 def size_in(name: str) -> float:
-    """Find the diameter [m] in a name such as `8 mm wire` or `3/8" chain`; 0 if there is none."""
+    """Find the diameter [m] in a name such as `8 mm wire` or `3/8" chain`; 0 if not found."""
     found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
     if found:
         return float(found[1].replace(",", ".")) / 1000.0

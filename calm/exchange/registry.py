@@ -44,7 +44,7 @@ class Exported:
     ----------
     content : content of the file
     lost : features of the design that the format cannot represent
-    beside : contents of further files in the same folder, by name
+    beside : contents of further files to be written in the same folder, by file name
     """
 
     content: bytes
@@ -66,7 +66,7 @@ Write = Callable[["ExportedDesign"], Exported]
 
 @dataclass(frozen=True)
 class FileFormat:
-    """A registered format of design files; see `register_format`."""
+    """A registered format of design files, with the fields described in `register_format`."""
 
     name: str
     program: str
@@ -96,15 +96,15 @@ def register_format(
 
     Parameters
     ----------
-    name : name for `--format` and `--to`, which is also the name of the entry point
-    detect : function that recognises a file by its first bytes; without it, the user must name the
-        format by `--format`
-    read : function that reads a file as a design; None if CALM only writes the format
-    write : function that converts a design to a file; None if CALM only reads the format
-    program : name of the program to which the format belongs, for messages; by default `name`
+    name : name of the format for `--format` and `--to`, and name of its entry point
+    detect : function that recognises a file by its first bytes; if None, the user must name the
+        format with `--format`
+    read : function that reads a file as a design; None if the format cannot be imported
+    write : function that converts a design to a file; None if the format cannot be exported
+    program : name of the program to which the format belongs, for messages; by default, `name`
     takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
     writes_nets : whether `write` accepts designs with several legs
-    suffixes : file name suffixes that the program expects, such as ".mat"; by default any
+    suffixes : file name suffixes that the program accepts, such as ".mat"; by default, any suffix
     """
     if name in _registered:
         raise ValueError(f"the format `{name}` already exists")
@@ -114,14 +114,14 @@ def register_format(
 
 
 def file_format(name: str) -> FileFormat:
-    """Return a format by name, importing its module if needed.
+    """Return the format with a given name; its module is imported if needed.
 
     Raises
     ------
     KeyError
         There is no such format.
     CalmError
-        The module of the format cannot be imported, or registers no format of that name.
+        The module of the format cannot be imported, or does not register a format of that name.
     """
     if name not in _registered:
         module = _OWN[name] if name in _OWN else _added()[name]
@@ -138,9 +138,9 @@ def file_format(name: str) -> FileFormat:
 
 
 def file_formats() -> tuple[FileFormat, ...]:
-    """Return all formats in the order in which they are tried.
+    """Return all formats, in the order in which they are tried to recognise a file.
 
-    Formats of other packages come first.
+    Formats from other packages come first.
 
     Raises
     ------

@@ -9,9 +9,9 @@ from calm.exchange.design_writer import mooring_text
 
 
 def sink_what_stays_under_water(design: model.ImportedDesign, output: Path) -> None:
-    """Replace the uppermost float by `sunken` if it is submerged in still water.
+    """Replace the uppermost float with `design.sunken` if the float is submerged in still water.
 
-    A float that only a current submerges remains a surface float, although one that is too small. A
+    A float that is submerged only in a current is a surface float that is too small, and is kept. A
     line without an equilibrium is not changed. `output` is the path of the mooring file that will
     be written.
     """

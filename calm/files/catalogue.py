@@ -40,7 +40,7 @@ _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.
 
 
 class Assembly(Definition):
-    """Pieces that are always used together, as items like those in the `line` of a mooring."""
+    """A group of pieces that are always used together, written like the items of a `line`."""
 
     kind: Literal["assembly"] = Field(description="kind of the component")
     parts: tuple[dict[str, Any], ...] = described(
@@ -54,9 +54,9 @@ Defined = Component | Assembly | Outline
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels, of which the first has priority.
+    """Component definitions in levels; earlier levels take precedence over later levels.
 
-    A definition hides those with the same id in later levels.
+    A definition hides all definitions with the same id in later levels.
     """
 
     levels: tuple[Level, ...]
@@ -65,12 +65,13 @@ class Catalogue:
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
         """Load the catalogue.
 
-        Given files take precedence over the user's own files, and these over the shipped files.
+        The given `files` take precedence over the files in the user's catalogue folder, which take
+        precedence over the shipped files.
 
         Raises
         ------
         InputError
-            A catalogue of the user cannot be read.
+            A given file, or a file in the user's catalogue folder, cannot be read or has mistakes.
         """
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
@@ -93,7 +94,7 @@ class Catalogue:
         return cls((UnreadLevel(_shipped_files()),))
 
     def under(self, definitions: SourceMapping) -> Catalogue:
-        """Return this catalogue preceded by the `components:` of a mooring file."""
+        """Return this catalogue with the `components:` of a mooring file as its first level."""
         entries = map(self._completed, entries_of(definitions, None))
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
@@ -113,15 +114,15 @@ class Catalogue:
         return CatalogueEntry(entry.id, below.family, whole)
 
     def ids(self) -> list[str]:
-        """Return all ids in the order of the files."""
+        """Return all ids, last level first, and in file order within a level."""
         return list(dict.fromkeys(id for level in reversed(self.levels) for id in level))
 
     def entry(self, id: str) -> CatalogueEntry | None:
-        """Return the unvalidated definition of an id; None if there is none."""
+        """Return the unvalidated definition with an id, or None if the id is unknown."""
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the definition of an id that the first definition hides; None if there is none."""
+        """Return the second definition of an id, which the first hides; None if there is none."""
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
@@ -131,11 +132,11 @@ class Catalogue:
         return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
-        """Return the id that is most similar to a text."""
+        """Return the known id with the most similar spelling, or None if no id is similar."""
         return nearest(id, self.ids())
 
     def of_a_sort(self, word: str) -> list[str]:
-        """Return the first six ids of a family, role or kind; none for any other word."""
+        """Return up to six ids of components whose family, role or kind is the given word."""
         sort = word.casefold().rstrip("s")
         return [
             id
@@ -151,9 +152,9 @@ class Catalogue:
         Raises
         ------
         UsageError
-            There is no such id.
+            No component has this id.
         InputError
-            Its definition has mistakes.
+            The definition has mistakes.
         """
         entry = self.entry(id)
         if entry is None:
@@ -183,7 +184,7 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """Return the ids of all definitions of the same product, the preferred one first.
+        """Return the ids of all definitions of the same product as `id`, the preferred id first.
 
         Definitions of the same product name the same preferred id under `prefer`.
         """
@@ -199,7 +200,8 @@ def _shipped_files() -> list[Path]:
 def user_folder() -> Path:
     """Return the folder of the user's catalogue.
 
-    This is `CALM_CATALOG_DIR` if set, else `calm/catalog` in the configuration folder.
+    The folder is `CALM_CATALOG_DIR` if that environment variable is set; otherwise it is
+    `calm/catalog` in the user's configuration folder.
     """
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
@@ -214,16 +216,16 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Validate a definition, with or without overrides, and return its model.
+    """Validate a definition, with any overrides, and return the component that it defines.
 
-    Return None if there are mistakes, which are recorded in the section.
+    Return None if the definition has mistakes. The mistakes are recorded in `section`.
 
     Parameters
     ----------
-    entry : entry of the definition
-    section : section of the entry, or of its overrides with the entry as base
-    also_allowed : keys in the section that do not belong to the component
-    context : `IN_AIR` for a component used in air, else None
+    entry : catalogue entry of the definition
+    section : mapping to validate: either that of the entry, or overrides with the entry as base
+    also_allowed : keys that may be in the section although they do not belong to the component
+    context : `IN_AIR` for a component used in air, otherwise None
     """
     kind = section.data.get("kind")
     if kind is None:
@@ -251,7 +253,10 @@ def _kinds() -> str:
 
 @dataclass(frozen=True, eq=False)
 class CatalogueEntry:
-    """Unvalidated definition of a component, with its catalogue family (the name of its file)."""
+    """Unvalidated definition of a component.
+
+    `family` is the name of its catalogue file if that is a known family, otherwise None.
+    """
 
     id: str
     family: str | None
@@ -259,7 +264,7 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Keys of this entry that replace values of the definition on which it is based."""
+        """Keys of this entry that override its base, without keys such as `source` and `note`."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})
@@ -275,11 +280,11 @@ Level = Mapping[str, CatalogueEntry]
 
 
 class UnreadLevel(Level):
-    """Entries of catalogue files, each read on first use.
+    """Entries of catalogue files; each entry is parsed when it is first used.
 
-    At first, only the ids are searched, in the lines without indentation. All files are read
-    completely if such a line is not an id, or if an entry has a mistake. A line of a quoted text
-    that looks like an id would be mistaken for a definition.
+    At first, the files are only searched for ids, which are in unindented lines. All files are
+    parsed completely if an unindented line is not an id, or if an entry has a mistake. An
+    unindented line of a quoted text that looks like an id is mistaken for a definition.
 
     Parameters
     ----------
@@ -328,7 +333,10 @@ class UnreadLevel(Level):
 
 
 def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    """Read the entries of several files; an id that is defined twice is recorded as a mistake."""
+    """Read the entries of several catalogue files, by id; add all mistakes to `problems`.
+
+    An id that is defined twice is a mistake.
+    """
     level: dict[str, CatalogueEntry] = {}
     for path in paths:
         try:
@@ -346,9 +354,9 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 
 
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
-    """Return the entries of a mapping from ids to definitions.
+    """Return the catalogue entries in a mapping from ids to definitions.
 
-    `family` is None for the `components:` of a mooring file.
+    `family` is the catalogue family of the entries; None for `components:` in a mooring file.
     """
     entries = []
     for id, fields in definitions.data.items():
@@ -382,9 +390,9 @@ _LOADED: FileCache[Catalogue] = FileCache()
 
 
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
-    """Build a component from values; return it with the mistakes in the values.
+    """Build a component from its values; return the component and any mistakes in the values.
 
-    The component is None if there are mistakes.
+    The component is None if there are mistakes, or if the values define an assembly or outline.
     """
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)

@@ -50,7 +50,7 @@ _SUGGESTED = 3
 
 @dataclass(frozen=True)
 class Listed:
-    """A component in the list of the catalogue, with the texts by which it is found."""
+    """A component in the catalogue list, with its searchable texts."""
 
     id: str
     name: str
@@ -65,21 +65,21 @@ class Listed:
 
     @cached_property
     def own_words(self) -> str:
-        """Searchable text of the entry, with and without hyphens."""
+        """Searchable text of id, name, maker, kind, role and material, with and without hyphens."""
         every = (self.id, self.name, self.maker, self.kind, self.role, self.material)
         own = " ".join(every).casefold()
         return f"{own} {own.replace('-', '')}"
 
     @cached_property
     def searched(self) -> str:
-        """Complete searchable text of the entry, with synonyms and the source."""
+        """Complete searchable text of the component, including synonyms and the source."""
         plain = self.own_words.replace("-", " ")
         synonyms = (words for pattern, words in _FOUND if pattern.search(plain))
         return " ".join([plain, *synonyms, self.own_words, self.source])
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
-        """Diameter of the component, and sizes that its name contains [m]."""
+        """Sizes in the name and id of the component, and its diameter if known [m]."""
         named = tuple(
             _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
         )
@@ -87,9 +87,9 @@ class Listed:
 
 
 class WordIndex:
-    """Index for searching components by words, with the file's own components first.
+    """Index for searching components by words; the user's own components come first.
 
-    It has no values of components, so a search with a limit finds nothing.
+    The index contains no values of components, so a search with a limit finds nothing.
     """
 
     def __init__(self, catalogue: Catalogue) -> None:
@@ -100,9 +100,9 @@ class WordIndex:
 
     @classmethod
     def of(cls, catalogue: Catalogue, text: str) -> Self:
-        """Build the index of a catalogue and of the `components:` of a mooring file.
+        """Build the index of a catalogue and of the `components:` in the text of a mooring file.
 
-        Components that cannot be read are omitted.
+        If the text cannot be parsed, only the components of the catalogue are indexed.
         """
         try:
             document = compose("", text)
@@ -117,16 +117,16 @@ class WordIndex:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Return the values of a component by column key; none if they are unknown."""
+        """Return the known values of a component by column key; always empty in this index."""
         return {}
 
     def suggested(self, text: str, near: str | None) -> list[str]:
-        """Return up to three ids that may be meant by a text that is not an id.
+        """Return up to three suggested ids for a text that is not an id.
 
-        `near` is the id with the most similar letters. It is the only suggestion if the text
-        contains a number, such as a size, or if no component contains every word of the text.
-        Otherwise the components that contain every word are suggested, those used most in the
-        shipped lines first.
+        `near` is the id with the most similar spelling. It is the only suggestion if the text
+        contains a digit, such as in a size, or if no component contains every word of the text.
+        Otherwise, the suggestions are the components that contain every word, and those used most
+        often in the shipped lines come first.
         """
         if near and any(map(str.isdigit, text)):
             return [near]
@@ -145,17 +145,18 @@ class WordIndex:
         """Find the components that contain all words of a text and meet all its limits.
 
         A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
-        spellings vary. A size such as ``8mm`` or ``17 in`` matches in either unit. Complete
-        components precede outlines. Components that contain the words themselves precede those that
-        match by a synonym or by their source. Equally good matches are sorted by their use in the
-        shipped lines.
+        spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another
+        unit. Complete components precede outlines. Components that contain the words themselves
+        precede components that match through a synonym or their source. Among equally good matches,
+        the components used most often in the shipped lines come first.
 
         Parameters
         ----------
         text : words and limits
         kinds : kinds of components to search; by default all
-        first : ids that precede all others, in this order, except for an exact match
-        by : key of a column by which to sort: largest first, unknown values last
+        first : ids to list first, in this order; only exact matches precede them
+        by : key of the column whose values sort the result, in descending order of magnitude, with
+            unknown values last; by default the best matches come first
         """
         plain, limits = _parsed(text)
         terms = _terms(plain)
@@ -169,12 +170,12 @@ class WordIndex:
     def nearly(
         self, text: str, kinds: Iterable[str] | None = None, *, first: Sequence[str] = ()
     ) -> tuple[list[Listed], list[str]]:
-        """Find the components that contain most of the words of a text and meet all its limits.
+        """Find the components that meet all limits in a text and contain as many words as possible.
 
         Returns
         -------
         found : components with the largest number of matching words, in the order of `search`;
-            empty if no component has any of the words
+            empty if no component contains any of the words
         unknown : words that no component contains
         """
         plain, limits = _parsed(text)
@@ -212,7 +213,7 @@ class WordIndex:
         return sorted(hits, key=order)
 
     def spelt(self, text: str) -> str:
-        """Correct the spelling of a text by the words that components contain."""
+        """Correct misspelt words in a text to similar words that occur in components."""
         every = " ".join(each.searched for each in self._listed.values())
         own = _SEPARATORS.split(" ".join(each.own_words for each in self._listed.values()))
         known = {word for word in own if word.isalpha() and len(word) >= _SHORT_WORD}
@@ -232,7 +233,7 @@ class WordIndex:
 
 @dataclass(frozen=True)
 class Term:
-    """A word of a search, or a size [m] written in one or more words."""
+    """A search term: a word, or a size [m] that is written in one or more words."""
 
     text: str
     words: tuple[str, ...]
@@ -358,7 +359,7 @@ _FOUND = tuple(
 
 @dataclass(frozen=True)
 class CatalogueColumn:
-    """A column of component values: key, heading, dimension, unit of display, and format."""
+    """A column of the component list: its key, heading, dimension, display unit and format."""
 
     key: str
     heading: str
@@ -368,7 +369,7 @@ class CatalogueColumn:
     decimals: int = 0
 
     def shown(self, value: float | None) -> str:
-        """Return the formatted value; empty if unknown."""
+        """Format a value in the display unit; an unknown value gives an empty text."""
         return "" if value is None else f"{value * self.scale:.{self.decimals}f}"
 
 
@@ -403,22 +404,22 @@ Figures = dict[str, float | None]
 
 @dataclass(frozen=True)
 class Wanted:
-    """A limit on a value in a search, such as ``breaking>50kN``."""
+    """A limit on a component value in a search text, such as ``breaking>50kN``."""
 
     key: str
     relation: str
     limit: float
 
     def holds(self, figures: Figures) -> bool:
-        """True if the value is known and meets the limit."""
+        """True if the value that the limit concerns is known and meets the limit."""
         value = figures.get(self.key)
         return value is not None and bool(_RELATIONS[self.relation](value, self.limit))
 
 
 def wanted(word: str) -> Wanted | None:
-    """Parse a word of a search as a limit; return None for a plain word.
+    """Parse a word of a search text as a limit; return None if it is a plain word.
 
-    A number without a unit has the unit of its column.
+    A number without a unit is taken in the unit of its column.
     """
     found = _LIMIT.fullmatch(word)
     if found is None:

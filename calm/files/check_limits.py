@@ -32,13 +32,12 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation of a key of `checks:` with the source of its default.
+    """Annotation that gives a key of `checks:` the source of its default value.
 
     Attributes
     ----------
     source : source of the default; `THE_DESIGN` for a limit without a default
-    default : default [SI, degrees] that is used if the key is absent and its value in the model is
-        None
+    default : default [SI, degrees] to use if the value in the model is None
     """
 
     source: str = THIS_PROGRAM
@@ -56,7 +55,7 @@ _URI = "URI GSO mooring program"
 
 
 class SafetyFactors(definition.Model):
-    """Minimum ratios of breaking load to tension, by material."""
+    """Required ratios of breaking load to tension, by material."""
 
     steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
         "factor for steel, and for all materials except synthetic rope", 3, default=3.0
@@ -81,9 +80,9 @@ class MinimumTensions(definition.Model):
 
 
 class Checks(definition.Model):
-    """Limits of the design check, and the findings that are accepted.
+    """Limits for the design check, and the findings that the designer accepts.
 
-    A limit without a default is checked only if it is given.
+    A limit that has no default is checked only if the file sets it.
     """
 
     safety_factor: SafetyFactors = definition.described(
@@ -185,17 +184,17 @@ anchors.
 
 @dataclass(frozen=True)
 class LimitKey:
-    """A key of `checks:`, such as ``safety_factor.steel``.
+    """A limit in `checks:`, such as ``safety_factor.steel``, with its value and default.
 
     Attributes
     ----------
-    name : name of the key, with dots
+    name : dotted name of the key
     dimension : dimension, as in `calm.units`
     value : limit in use [SI, degrees]; None if there is no limit
-    default : default [SI, degrees]; None if there is none
+    default : default [SI, degrees]; None without a default
     source : source of the default
-    backed : whether the design gives a source for its own value
-    share : whether the value is a share, which is shown in percent
+    backed : whether the design gives a source for the value that it sets
+    share : whether the value is a fraction, which is displayed in percent
     """
 
     name: str
@@ -213,9 +212,9 @@ class LimitKey:
 
 
 def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
-    """Yield all limits of `checks:`; limits that are absent have their defaults.
+    """Yield all limits of `checks:`; a limit that the file does not set has its default.
 
-    `prefix` is put before the names; it is used for a model that is the value of another key.
+    `prefix` is prepended to the name of each key, such as ``safety_factor.`` for nested keys.
     """
     for name, field in type(checks).model_fields.items():
         value, quantity = getattr(checks, name), definition.quantity_of(field)
@@ -285,10 +284,10 @@ class AcceptKeys(definition.Model):
 
 
 class Accept(AcceptKeys):
-    """An accepted finding of a mooring.
+    """An item of `checks: accept:`, by which the designer accepts findings of a rule.
 
-    `labels` are the pieces and clamps to which it applies; None means all findings of the rule.
-    `line` is the line number in the mooring file.
+    `labels` are the labels of the pieces and clamps to which the item applies; None means all
+    findings of the rule. `line` is the line number of the item in the mooring file.
     """
 
     labels: tuple[str, ...] | None
@@ -307,12 +306,12 @@ class Accept(AcceptKeys):
 def read_accepts(
     keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: SourceMapping
 ) -> tuple[Accept, ...]:
-    """Read the accepted findings of a mooring file, and sort them with the most specific first.
+    """Read the accepted findings in a mooring file, sorted from most to least specific.
 
     Parameters
     ----------
     keys : items of `checks: accept:`
-    labels : labels of the line; None if the line has mistakes
+    labels : labels of the pieces and clamps in the line; None if the line has mistakes
     top : top level of the mooring file
     """
     found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
@@ -341,10 +340,11 @@ def _accept(
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
-    """Return the labels that match a given label or pattern.
+    """Return the labels that match `component`, which is a label or a pattern.
 
-    A text that equals a label matches only that label. In other texts, ``*`` matches any
-    characters, ``?`` one character, and ``[ab]`` a or b. Case matters.
+    A text that equals a label matches only that label. In a pattern, ``*`` matches any
+    characters, ``?`` matches one character, and ``[ab]`` matches a or b. Matching is
+    case-sensitive.
     """
     labels = list(labels)
     if component in labels:

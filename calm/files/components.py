@@ -68,7 +68,7 @@ MassPerMetre = Annotated[
 
 
 class Flexible(definition.Definition):
-    """A cable or chain; all its values are per metre."""
+    """Base class of cables and chains, whose weight, mass and buoyancy are per metre."""
 
     role: definition.Role = "line"
     diameter: definition.Diameter
@@ -82,7 +82,10 @@ class Flexible(definition.Definition):
     )
 
     def strain_under(self, load: float) -> float:
-        """Return the strain under a load ≥ 0 [N], as in the solver; 0 for unknown stiffness."""
+        """Return the strain under a load ≥ 0 [N], as the solver computes it.
+
+        The strain is 0 if the stiffness is unknown.
+        """
         return load / self.stiffness if self.stiffness is not None else 0.0
 
 
@@ -126,7 +129,7 @@ class Cable(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Displaced volume per metre [m³/m]; None if only the weight or only the mass is known."""
+        """Displaced volume per metre [m³/m]; None if it does not follow from the given values."""
         if self._gives_no_force and self.density is None:
             return None
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
@@ -202,7 +205,7 @@ class Chain(Flexible):
 
 
 class Anchor(definition.Definition):
-    """The anchor at the lower end, which has no drag in equilibrium."""
+    """An anchor at the lower end of a line; its drag counts only while it falls."""
 
     role: definition.Role = "anchor"
     kind: Literal["anchor"] = Field(description="kind of the component")
@@ -219,7 +222,7 @@ class Anchor(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net buoyancy in water [N], the negative submerged weight."""
+        """Net buoyancy in water [N], which is minus the submerged weight."""
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
@@ -228,12 +231,12 @@ class Anchor(definition.Definition):
 
     @property
     def material_known(self) -> bool:
-        """Whether the weight in water is given, or follows from a known material."""
+        """Whether the weight in water is given or follows from a known material density."""
         return self.weight is not None or self.material_density is not None
 
     @property
     def material_density(self) -> float | None:
-        """Density of the anchor [kg/m³]: as specified, else of its material; None if unknown."""
+        """Specified density of the anchor, or that of its material [kg/m³]; None if unknown."""
         return self.density or density_of(self.material)
 
     @property
@@ -313,7 +316,7 @@ class Outline(definition.Definition):
         return lacking(self.model_dump(exclude_none=True))
 
     def asks(self, id: str) -> str:
-        """Return a message with the values that the mooring file must supply."""
+        """Return a message that lists the values that the mooring file must supply."""
         given = self.model_dump(exclude_none=True)
         also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
         keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
@@ -326,7 +329,7 @@ class Outline(definition.Definition):
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
-    """Return required keys that are missing and listed under `searched`."""
+    """Return the missing required keys that `searched` lists as unpublished."""
     searched = fields.get("searched")
     known = searched if isinstance(searched, list | tuple) else ()
     return [
@@ -337,12 +340,12 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the keys of a definition that an override makes invalid.
+    """Return the keys of a definition that an override invalidates, so that they are dropped.
 
     Parameters
     ----------
-    kind : kind of the definition
-    base, override : keys of the definition and of the override
+    kind : kind of the component
+    base, override : keys of the definition, and keys that override it
 
     Notes
     -----
@@ -394,8 +397,8 @@ def odd_overrides(
     Parameters
     ----------
     use : id of the definition
-    defined, component : the definition, and the component after the overrides
-    given : keys of the overrides
+    defined, component : the component before and after the overrides
+    given : keys that are overridden
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (

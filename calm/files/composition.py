@@ -76,7 +76,7 @@ class _TooDeep(Exception):
 
 
 def compose(text: str) -> Composition:
-    """Parse a YAML text, with or without a byte-order mark."""
+    """Parse a YAML text, which may start with a byte-order mark."""
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:
@@ -242,17 +242,17 @@ Kind = Literal["mapping", "sequence", "scalar"]
 
 
 class Node(NamedTuple):
-    """A value in a text, with its position.
+    """A value in a YAML text, with its position.
 
     Attributes
     ----------
     kind : "mapping", "sequence" or "scalar"
-    start, end : the text of the node is ``text[start:end]``; an empty value follows its colon or
-        dash
+    start, end : the text of the node is ``text[start:end]``; an empty value starts and ends after
+        its colon or dash
     line, column : line and column where the node starts, counted from 1
-    style : `block` or `flow` for a collection; first character of a quoted or block scalar, else
-        empty
-    data : content, with scalars as text; it is shared and must not be changed
+    style : `block` or `flow` for a collection; first character of a quoted or block scalar; empty
+        for a plain scalar
+    data : content, with scalars as text; it is shared between nodes and must not be changed
     keys : keys of a mapping, in the order of the file
     children : the values of a mapping, or the items of a sequence
     """
@@ -268,12 +268,12 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
     def entry(self, step: str | int) -> tuple[Node | None, Node | None]:
-        """Return the node at a key of a mapping, or at an index of a list.
+        """Return the nodes at a key of a mapping, or at an index of a list.
 
         Returns
         -------
-        (key node, value node) for a mapping, (None, item) for a list, and (None, None) if there is
-        none.
+        (key node, value node) in a mapping, (None, item) in a list, and (None, None) if there is no
+        such key or index.
         """
         if self.kind == "mapping":
             named = zip(self.keys, self.children, strict=True)
@@ -284,7 +284,7 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """Nodes of a parsed text, and its rejected parts.
+    """Node tree of a parsed YAML text, and messages about its rejected parts.
 
     `root` is None for an empty or invalid text.
     """

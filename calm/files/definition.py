@@ -38,7 +38,7 @@ from calm.units import (
 
 
 class Model(BaseModel):
-    """Base class of all models of files: immutable, unknown keys are rejected."""
+    """Base class of the data models of input files, which are immutable and reject unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
@@ -48,7 +48,7 @@ class Model(BaseModel):
 
 @dataclass(frozen=True)
 class QuantityField(QuantityRange):
-    """Annotation of a field that holds a quantity within limits."""
+    """Annotation of a model field whose value is a quantity within limits."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)
@@ -59,7 +59,7 @@ class QuantityField(QuantityRange):
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of the quantity as text; the schema has no limits."""
+        """Return the JSON Schema of the quantity as written in a file; the schema omits limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -79,7 +79,7 @@ class QuantityField(QuantityRange):
 
 
 class ColumnHeading(str):
-    """Annotation of a value in a table row with the heading of its column, for display."""
+    """Annotation that gives a value in a table row its column heading for display."""
 
     __slots__ = ()
 
@@ -90,7 +90,7 @@ def described(description: str, example: object, **default: Any) -> Any:
 
 
 def optional(description: str, example: object) -> Any:
-    """Declare an optional key, with None as default."""
+    """Declare an optional key whose default is None."""
     return described(description, example, default=None)
 
 
@@ -121,14 +121,14 @@ Role = Annotated[
 
 
 def quantity_of(field: FieldInfo) -> QuantityField | None:
-    """Return the `QuantityField` of a field of a model; None for other fields."""
+    """Return the `QuantityField` that annotates a model field, or None if there is none."""
     return next((one for one in field.metadata if isinstance(one, QuantityField)), None)
 
 
 def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Convert an argument to SI units (degrees, degC).
+    """Convert an argument to SI units; angles are in degrees, temperatures in °C.
 
-    Text must have a unit; a number is returned unchanged.
+    A text must include a unit; a number is returned unchanged.
 
     Raises
     ------
@@ -202,10 +202,10 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 
 
 class EstimatedFigure(Model):
-    """Estimate of a value that no source publishes, with a lower bound `low`.
+    """Estimate of a component value that no source publishes, with its lower bound `low`.
 
-    `low_in_waves` is a smaller lower bound for lines in waves, if published values apply only to
-    steady loads.
+    `low_in_waves` is a smaller lower bound for lines in waves, given if published values apply
+    only to steady loads.
     """
 
     quantity: Literal[
@@ -233,7 +233,7 @@ class EstimatedFigure(Model):
         return _estimated(info.data.get("quantity", "")).read(text)
 
     def bound(self, *, in_waves: bool) -> float:
-        """Return the lower bound, for a line in waves or for steady loads."""
+        """Return the lower bound: `low_in_waves` for a line in waves, if given; otherwise `low`."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
     @property
@@ -266,7 +266,7 @@ class EstimatedFigure(Model):
 
 
 class FatigueKeys(Model):
-    """The key `fatigue:` of a component: the published curve for its fatigue in waves."""
+    """Keys of `fatigue:` in a component: its published fatigue curve, and its corrosion."""
 
     curve: Literal[
         "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
@@ -287,9 +287,9 @@ class FatigueKeys(Model):
 class Definition(Model):
     """Keys common to all kinds of components.
 
-    `source` applies to every value, unless `sources` names another source for the field. `searched`
-    lists fields for which a search found no published value. `prefer` is the id of another
-    definition of the same product, which should be used instead.
+    `source` applies to every value for which `sources` names no other source. `searched` lists
+    the keys for which a search found no published value. `prefer` is the id of another definition
+    of the same product, which should be used instead of this definition.
     """
 
     role: Role = "instrument"
@@ -356,7 +356,7 @@ class Definition(Model):
 
     @property
     def estimates(self) -> dict[str, EstimatedFigure]:
-        """Estimates of the missing values, by key."""
+        """Estimates of the values that the definition does not give, by key."""
         if self.estimate is None:
             return {}
         every = {one.quantity: one for one in self.estimate}
@@ -378,9 +378,9 @@ def is_in_air(info: ValidationInfo) -> bool:
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Compute the displaced volume [m³ or m³/m] from mass and net buoyancy.
+    """Compute the displaced volume [m³] from mass [kg] and net buoyancy [N].
 
-    Return None if the mass is unknown.
+    With values per metre, the volume is per metre as well. Return None if the mass is unknown.
     """
     if mass is None:
         return None
@@ -388,7 +388,7 @@ def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None
 
 
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
-    """Raise ValueError if the weight in water exceeds the weight in air."""
+    """Raise ValueError if a component weighs more in water than its mass weighs in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):
         raise ValueError(
             f"weighs more in water ({-net_buoyancy:.5g} N) than its mass of {mass:g} kg does in air"

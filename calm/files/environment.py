@@ -30,7 +30,7 @@ _MAXIMUM_SPEED = 5.0
 
 
 class Position(Model):
-    """The position of the mooring [degrees]."""
+    """The geographic position of the mooring [degrees]."""
 
     latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = described(
         "latitude, north positive, or in degrees and minutes: 48 18.0 N", "48.3 deg"
@@ -41,7 +41,7 @@ class Position(Model):
 
 
 class SeabedKeys(Model):
-    """A plane, sloping seabed: its slope, and the direction towards deeper water [degrees]."""
+    """A plane, sloping seabed, given by its slope and the direction of deeper water [degrees]."""
 
     slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
         "from the horizontal", "3 deg"
@@ -51,20 +51,23 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return this seabed relative to another point.
+        """Return the seabed relative to a new reference point; a plane remains the same.
 
-        The point is given in m east and north of the present reference point.
+        The new reference point is given in m east and north of the current reference point.
         """
         return self
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Increase in depth per metre to the east and to the north [-]."""
+        """Increase in water depth per metre to the east, and per metre to the north [-]."""
         azimuth, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
         return steep * math.sin(azimuth), steep * math.cos(azimuth)
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the increase in depth (n,) at positions (n, 2) from the reference point [m]."""
+        """Return the increase in water depth from the reference point to other positions (n,) [m].
+
+        `places` (n, 2) are these positions east and north of the reference point [m].
+        """
         deeper: Floats = places @ np.array(self.plane)
         return deeper
 
@@ -95,21 +98,21 @@ class Environment:
     Attributes
     ----------
     name : name of the variant or environment file in use; None for the default environment
-    fluid : "water" or, in a tow only, "air"
+    fluid : "water"; "air" is possible in a tow only
     depth : water depth [m]; None in a tow without a water depth
-    density : density of the fluid [kg/m³], or temperature and salinity for it
+    density : density of the fluid [kg/m³], or temperature and salinity from which it is computed
     gravity : gravitational acceleration [m/s²]; None if not given
     current : current speeds and directions by depth
     wind : wind over the water
     position : position of the mooring; None if not given
     depth_range : water depth at low and at high water [m]
     fouling : marine growth on the line
-    maximum_speed : speed above which a current is reported as a mistake [m/s]; infinite in a tow
-        and in air
-    seabed : slope of the seabed; level if not given
-    waves : sea states as written
-    seas : sea states as read from `waves`
-    doubts : sentences about values that are possible but probably wrong
+    maximum_speed : current speed above which a mistake is reported [m/s]; infinite in a tow and in
+        air
+    seabed : slope of the seabed; None for a level seabed
+    waves : keys of `waves:` as given in the file; None if not given
+    seas : sea states that `waves` describes
+    doubts : warnings about values that are possible but probably wrong
     """
 
     name: str | None
@@ -130,9 +133,9 @@ class Environment:
 
 
 class Fouling(Model):
-    """Biofouling of all parts from the surface to a depth [m], with its thickness [m].
+    """Biofouling of all parts above a given depth [m], with its thickness [m] and density [kg/m³].
 
-    Without a density [kg/m³] it is neutrally buoyant.
+    Biofouling without a given density is neutrally buoyant.
     """
 
     depth: Annotated[float, definition.POSITIVE_LENGTH] = described(
@@ -147,7 +150,7 @@ class Fouling(Model):
 
 
 class UniformCurrent(Model):
-    """A current that is constant with depth [m/s, degrees]."""
+    """A current with the same speed [m/s] and direction [degrees] at all depths."""
 
     speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
@@ -161,8 +164,8 @@ class UniformCurrent(Model):
 class CurrentFile(Model):
     """A measured or modelled current at one time, in a CSV or NetCDF file.
 
-    `declination` [degrees], positive east, converts directions of the file that are relative to
-    magnetic north.
+    `declination` [degrees, positive east] is the magnetic declination. It is given if directions
+    in the file are relative to magnetic north.
     """
 
     file: Text = described("CSV or CF NetCDF, in the folder of the mooring file", "adcp.nc")
@@ -262,16 +265,16 @@ def read_environment(
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """Read an environment from a mapping; return None if it has mistakes.
+    """Read an environment from a section of a file; return None if the section has mistakes.
 
     Parameters
     ----------
     section : the environment
     name : name of the variant or environment file; None for the default environment
     notices : list to which remarks are added
-    towed : whether it is for a tow, which may be in air or have no water depth
-    position : position that selects a column of a current file
-    open_files : whether current files are read; if one is needed and not read, None is returned
+    towed : whether the environment is for a tow, which may be in air or have no water depth
+    position : position that selects the profile in a current file with several profiles
+    open_files : whether current files are read; if False, the result is None if a file is needed
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:

@@ -32,10 +32,10 @@ Value = float | str | None
 
 @dataclass(frozen=True)
 class ComparedValue:
-    """A number [SI, degrees] or text in a file, with the text by which it is displayed.
+    """A number [SI, degrees] or text in a file, with its display text.
 
-    `table` is the table that a text summarises; it is compared as well, because two different
-    tables may have the same text.
+    `table` is the table that the display text summarises. Tables are compared as well, because
+    different tables may have the same text.
     """
 
     value: Value
@@ -52,7 +52,7 @@ def _text(text: str) -> ComparedValue:
 
 @dataclass(frozen=True)
 class Change:
-    """Changed value, with a name such as ``label.field`` or ``environment.depth``."""
+    """A changed value, named by `where`, such as ``label.field`` or ``environment.depth``."""
 
     where: str
     before: ComparedValue
@@ -65,8 +65,8 @@ class Differences:
 
     Attributes
     ----------
-    changed : changed values: first those outside the line, then those of the line from the top
-    moved : parts at another place in the line, each with the part above it
+    changed : changed values: first those outside the line, then those in the line from the top down
+    moved : parts that have moved within the line, each with the parts above it before and after
     removed, added : labels of removed and added pieces and clamps
     pairs : matched pieces and clamps, in the order of the first line
     """
@@ -286,9 +286,10 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """Content of a part for the comparison, with its label before `numbered` added a number.
+    """A part to be matched: its label without an added number, and keys of its content.
 
-    `contents` are keys of decreasing strictness; parts with an equal key are considered equal.
+    `contents` are comparison keys, from the strictest to the least strict. Parts whose keys are
+    equal are considered equal.
     """
 
     label: str
@@ -297,13 +298,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Alignment:
-    """The matched parts of two lines, by index.
+    """Result of matching the parts of two lines; parts are given by index.
 
     Attributes
     ----------
     pairs : indices of matched parts, in the order of the first line
-    moved : the pairs whose order has changed
-    removed, added : indices of parts that are in one line only
+    moved : matched pairs whose order has changed
+    removed, added : indices of parts that are only in the first line, or only in the second line
     """
 
     pairs: tuple[tuple[int, int], ...]
@@ -313,7 +314,7 @@ class Alignment:
 
 
 def own_labels(labels: Sequence[str]) -> list[str]:
-    """Remove the numbers from labels that are numbered from 1 to n."""
+    """Remove the final numbers from repeated labels that are numbered from 1 to n."""
     numbers: dict[str, list[int]] = defaultdict(list)
     matches = [_NUMBERED.fullmatch(label) for label in labels]
     for match in filter(None, matches):
@@ -326,7 +327,7 @@ def own_labels(labels: Sequence[str]) -> list[str]:
 
 
 def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
-    """Match the parts of two lines; each part is matched at most once."""
+    """Match the parts of two lines; each part has at most one match."""
     there = _places(after)
     pairs = {i: there[label] for label, i in _places(before).items() if label in there}
     in_order = _longest_rise([pairs[i] for i in sorted(pairs)])

@@ -15,16 +15,16 @@ from calm.files.yaml_document import SourceMapping, validate
 
 
 def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
-    """Return the serial numbers in the value of a key `serial`, which may be a text or a list."""
+    """Convert the value of the key `serial`, a text or a list, to a tuple of serial numbers."""
     return (given,) if isinstance(given, str) else given or ()
 
 
 class Equipment(definition.Model):
-    """Individual equipment at a position in the line: keys of an item or clamp.
+    """Keys that describe the individual equipment at one position in the line.
 
-    `serial` is a text, or a list with one text for each repetition by `count` and for each of the
-    `items` of a component; each piece gets its own. After reading, `planned_depth` also holds a
-    depth that is given in the label.
+    In an item or clamp, `serial` is a text, or a list of texts for all pieces that `count` produces
+    and all `items` of each piece; each piece gets its own serial numbers. After reading,
+    `planned_depth` may also come from a depth in the label.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
@@ -45,21 +45,21 @@ class Equipment(definition.Model):
     )
 
     def planned_for(self, depth: float | None) -> Equipment:
-        """Return the equipment with another planned depth [m]."""
+        """Return a copy of the equipment with another planned depth [m]."""
         return self.model_copy(update={"planned_depth": depth})
 
     @property
     def serials(self) -> tuple[str, ...]:
-        """Return the serial numbers of a piece."""
+        """Serial numbers, as a tuple; empty if there are none."""
         return listed_serials(self.serial)
 
     def of(self, repeat: int, items: int) -> Equipment:
-        """Return the equipment of one piece of an item.
+        """Return the equipment of one piece that an item of the line produces.
 
         Parameters
         ----------
-        repeat : number of the piece within `count`, from 0
-        items : number of items of each piece
+        repeat : number of the piece within the `count` of the item, from 0
+        items : number of serial numbers per piece, such as 2 for a pair of releases
         """
         if not isinstance(self.serial, tuple):
             return self
@@ -72,7 +72,7 @@ LOAD = definition.QuantityField("force", usual_unit="kN", at_least=0)
 
 
 class LengthAt(definition.Model):
-    """A length of a cable [m], measured under a load [N]."""
+    """Length of a cable [m], and the load under which the length was measured [N]."""
 
     load: Annotated[float, LOAD] = described("load on the cable", "2 kN")
     length: Annotated[float, definition.POSITIVE_LENGTH] = described(
@@ -92,7 +92,7 @@ Label = Annotated[Text, described("name of the piece in results; by default its 
 
 
 class ClampKeys(Equipment):
-    """An instrument clamped on a piece."""
+    """Keys of a clamp, which is an instrument clamped on a piece."""
 
     use: str = described("id of a component in the catalogue or in `components`", "sbe37")
     label: Label = ""
@@ -102,7 +102,7 @@ class ClampKeys(Equipment):
 
 
 class ItemKeys(Equipment):
-    """A piece of the line; its other fields override values of the component."""
+    """Keys of a line item, which may also contain keys that override values of its component."""
 
     use: str = described("id of a component in the catalogue or in `components`", "wire-jacketed-8")
     label: Label = ""
@@ -130,7 +130,7 @@ NO_EQUIPMENT = Equipment()
 
 
 def read_equipment(item: SourceMapping) -> Equipment:
-    """Read the individual-equipment keys of an item or a clamp."""
+    """Read the `Equipment` keys of an item or a clamp."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
@@ -138,13 +138,16 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
-    """Check the serial numbers of an item, and that a planned depth belongs to a single piece.
+    """Check the serial numbers and planned depth of an item against its number of pieces.
+
+    A list of serial numbers must match the number of pieces. A planned depth requires a single
+    piece.
 
     Parameters
     ----------
-    item : the item
-    count : number of pieces
-    items : number of items of each piece, with one serial number each; None if unknown
+    item : an item of the line, with its clamps
+    count : number of pieces that the item produces
+    items : number of serial numbers per piece, such as 2 for a pair of releases; None if unknown
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]

@@ -83,7 +83,7 @@ class AnchoredKeys(Model):
 
 
 class EndKeys(Model):
-    """Connection of a leg end, given by exactly one of these keys."""
+    """Connection of a leg end, given by at most one of these keys; a free end has none."""
 
     join: Text | None = optional("a node where legs meet", "A")
     anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})
@@ -113,7 +113,7 @@ _End = Annotated[
 
 
 class LegKeys(Model):
-    """Pieces of a leg from its upper to its lower end, and its end connections."""
+    """Keys of a leg: its pieces from the upper to the lower end, and its two end connections."""
 
     line: Annotated[tuple[Any, ...], Field(min_length=1)] = described(
         "the pieces from the upper to the lower end",
@@ -131,9 +131,9 @@ class LegKeys(Model):
 
 @dataclass(frozen=True)
 class FileLeg:
-    """A leg and its two ends; its pieces have indices from `first` up to, but not including, `end`.
+    """A leg, with its range of pieces and its two end connections.
 
-    An end without a key is free.
+    The indices of its pieces run from `first` up to, but not including, `end`.
     """
 
     name: str
@@ -143,7 +143,10 @@ class FileLeg:
     bottom: EndKeys
 
     def grown(self, index: int, more: int) -> FileLeg:
-        """Return the leg after `more` pieces have been inserted below the piece at an index."""
+        """Return the leg with its range adjusted after `more` pieces were inserted below a piece.
+
+        `index` is the index of that piece, which may be in another leg.
+        """
         return replace(
             self,
             first=self.first + more * (self.first > index),
@@ -157,9 +160,10 @@ class FileLeg:
 
 
 def stand_in_anchor(index: int, item: int) -> Piece:
-    """Create a substitute anchor with a reserved id.
+    """Create a substitute anchor that has no height and practically unlimited weight.
 
-    It has no height, and practically unlimited weight.
+    `index` is the index of the anchor in the line, and `item` is the index of its line item in the
+    file. The id of the anchor is reserved.
     """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
@@ -168,11 +172,11 @@ def stand_in_anchor(index: int, item: int) -> Piece:
 def read_legs(
     top: SourceMapping, reader: LineReader, position: Position | None
 ) -> tuple[tuple[FileLeg, ...], tuple[Piece, ...]]:
-    """Read the legs of a file, and the pieces of all legs in order.
+    """Read the legs of a file; return the legs, and the pieces of all legs in file order.
 
     Parameters
     ----------
-    position : geographic position of the origin, for ends given by latitude and longitude
+    position : geographic position of the origin, needed for ends given by latitude and longitude
     """
     if "line" in top.data:
         message = "`line` and `legs` exclude each other; give the line as a leg"
@@ -338,6 +342,6 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
 
 
 def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:
-    """Number the nodes in the order of the legs; return the numbers by name."""
+    """Number the nodes in the order in which the legs name them; return the numbers by name."""
     names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
     return {name: number for number, name in enumerate(names)}

@@ -34,10 +34,10 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Reader that expands line items to pieces.
+    """Reader that expands the items of a line into pieces.
 
-    Mistakes are added to the mistakes of the file, and remarks to `notices`. `towed` and `in_air`
-    determine which keys and values are allowed.
+    Mistakes are added to the problems of the top-level mapping `top`, and remarks to `notices`.
+    `towed` and `in_air` determine which keys and values are allowed.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class LineReader:
         self._index: WordIndex | None = None
 
     def check(self, ids: Iterable[str]) -> None:
-        """Validate the definitions with the given ids, used by the line or not."""
+        """Validate the definitions with the given ids, even if the line does not use them."""
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:
@@ -71,7 +71,10 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the list of items under a key; items with mistakes are recorded and skipped."""
+        """Read the list of items under a key; return the pieces that the items produce.
+
+        Items with mistakes are skipped, and their mistakes are recorded.
+        """
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):

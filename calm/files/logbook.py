@@ -38,7 +38,7 @@ Moment = Annotated[
 
 
 class OutputUnits(definition.Model):
-    """Display units for tables, documents and the builder; data files are in SI units."""
+    """Display units for tables, documents and the builder; data files always use SI units."""
 
     force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
         "unit of tensions, weights and loads", "kgf"
@@ -59,14 +59,14 @@ class OutputUnits(definition.Model):
 
     @property
     def chosen(self) -> dict[str, str]:
-        """Chosen units by dimension."""
+        """Display units that the file sets, by dimension."""
         return self.model_dump(exclude_none=True)
 
 
 def nearest_unit(text: str) -> tuple[str, str] | None:
-    """Find the dimension and display unit that a text such as `knots` means.
+    """Find the dimension and the display unit for a unit written as text, such as `knots`.
 
-    Return None if there is none.
+    Return None if no display unit equals this unit.
     """
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):
@@ -77,7 +77,7 @@ def nearest_unit(text: str) -> tuple[str, str] | None:
 
 
 class Revision(definition.Model):
-    """Revision entry of the document."""
+    """An entry in the revision list of a drawing."""
 
     revision: Text = described("letter or number", "B")
     date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
@@ -118,13 +118,14 @@ class DocumentKeys(definition.Model):
     )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the keys that are set, as JSON data."""
+        """Return the keys that the file sets, as a JSON object."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
 class ReleaseKeys(definition.Model):
-    """An acoustic release, identified by its serial number, with its codes: a text, a list, or a
-    mapping by name.
+    """An acoustic release with its codes, identified by its serial number.
+
+    `codes` is one code, a list of codes, or a mapping from names to codes.
     """
 
     serial: Text | None = optional("serial number of the release", 1729)
@@ -142,7 +143,7 @@ class ReleaseKeys(definition.Model):
 
 
 class ClockCheck(definition.Model):
-    """Comparison of an instrument clock with true time after recovery."""
+    """Comparison of an instrument's clock with true time after recovery."""
 
     checked: Moment = described("time of the clock check", "2028-03-02T10:40")
     late: Annotated[float, definition.QuantityField("time")] = described(
@@ -184,7 +185,7 @@ class Deployed(definition.Model):
 
     @property
     def serials(self) -> dict[str, tuple[str, ...]]:
-        """Serial numbers of deployed items, by label; items without numbers are omitted."""
+        """Serial numbers of the deployed items, by label; items without any are omitted."""
         return {one.label: listed_serials(one.serial) for one in self.items if one.serial}
 
 
@@ -193,13 +194,14 @@ def check_deployed(
 ) -> None:
     """Check the deployed items of a mooring file.
 
-    They must be parts of the line and occur once; only cables may have a length.
+    Each item must be a part of the line and may be listed only once. Only cables and chains may
+    have a length.
 
     Parameters
     ----------
     deployed : the deployment
-    labels : labels of pieces and clamps
-    cables : labels of cables and chains, which are cut to length
+    labels : labels of all pieces and clamps in the line
+    cables : labels of the cables and chains in the line
     top : top level of the mooring file
     """
     seen: set[str] = set()

@@ -32,7 +32,7 @@ from calm.files.yaml_document import SourceMapping
 
 
 class TowKeys(Model):
-    """A tow: speed over ground [m/s], course [degrees], height of the tow point [m]."""
+    """A tow: speed over ground [m/s], course [degrees], and height of the tow point [m]."""
 
     speed: Annotated[float, QuantityField("speed", above=0)] = described(
         "speed of the ship over ground", "0.5 m/s"
@@ -46,7 +46,7 @@ class TowKeys(Model):
 
 
 class Solver(Model):
-    """Solver settings: `angle_step` in radians, `tolerance` relative to the water depth."""
+    """Solver settings; `angle_step` is in radians, `tolerance` is relative to the water depth."""
 
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
@@ -79,15 +79,16 @@ class Solver(Model):
 class MooringFile:
     """A mooring file in which all references are resolved.
 
-    `pieces` are listed from the top of a mooring to its anchor, and in a tow (`tow` is not None)
-    from the ship to the towed body. If there are `legs`, their pieces are listed leg by leg.
+    `pieces` are listed from the top of a mooring to its anchor, or in a tow (if `tow` is not None)
+    from the ship to the towed body. If there are `legs`, the pieces are listed leg by leg.
 
-    `notices` are remarks for the user, for instance that a component of the user hides one of the
-    catalogue, or that levels of a measured current were discarded. `variants` are the named
-    environments, not validated. `accepts` are the accepted findings of the design check,
-    `uncertainty` is the uncertainty of the inputs, and `looser` are limits that the line sets less
-    strictly than the definitions of its components. `document` is the title block, `releases` are
-    the codes of the releases, `deployed` is the deployment, and `units` are the display units.
+    `notices` are remarks for the user, for instance that a component of the user hides one in the
+    shipped catalogue, or that levels of a measured current were discarded. `variants` are the named
+    environments before validation. `accepts` are the accepted findings of the design check, and
+    `uncertainty` is the uncertainty of the inputs. `looser` are limits that items of the line set
+    less strictly than the definitions of their components. `document` is the title block,
+    `releases` are the releases with their codes, `deployed` is the deployment, and `units` are the
+    display units.
     """
 
     path: str
@@ -115,28 +116,28 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Index of the lowest release in the line; None if there is none.
+        """Index of the lowest release in the line, above which all parts are recovered.
 
-        Parts above it are recovered.
+        The index is None if the line has no release.
         """
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None
 
     @property
     def anchor(self) -> Anchor:
-        """Anchor of the mooring, the last piece of its line."""
+        """Component that defines the anchor, which is the last piece of a mooring."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
 
     @property
     def anchor_friction(self) -> float:
-        """Friction coefficient with which the anchor would hold as well on a level seabed.
+        """Friction coefficient that would hold the anchor equally well on a level seabed.
 
-        It follows from the friction of the anchor, or else from that of `checks:`, and from the
-        slope b of the seabed. An anchor of weight w under a load H down the slope, the least
-        favourable direction, holds if H cos b + w sin b <= friction (w cos b - H sin b). On a level
-        seabed this corresponds to the friction coefficient tan(arctan(friction) - b).
+        The coefficient on the slope is that of the anchor or, if not given, that in `checks:`. With
+        slope b of the seabed, weight w, and a load H in the worst direction, down the slope, the
+        anchor holds if H cos b + w sin b <= friction (w cos b - H sin b). On a level seabed, the
+        equivalent coefficient is tan(arctan(friction) - b).
         """
         own, seabed = self.anchor.friction, self.environment.seabed
         friction = self.checks.anchor_friction if own is None else own
@@ -145,7 +146,7 @@ class MooringFile:
         return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
     def leg_alone(self, leg: FileLeg) -> MooringFile:
-        """Return a file with a single leg, whose pieces are counted from its upper end.
+        """Return a copy of the file with a single leg; piece indices start at the leg's upper end.
 
         A leg without an anchor gets a substitute anchor with the id `STAND_IN`.
         """
@@ -176,7 +177,7 @@ class MooringFile:
 def unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Return a note for each entry under `releases` whose serial number belongs to no piece."""
+    """Return a note for each entry in `releases` whose serial number no release of the line has."""
     parts = [part for part in parts_of(pieces) if part.component.role == "release"]
     given = {} if deployed is None else deployed.serials
     serials = {one for part in parts for one in (*part.serials, *given.get(part.label, ()))}
@@ -190,7 +191,7 @@ def unknown_releases(
 def check_fit(
     pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
 ) -> None:
-    """Check the depth to which a piece is cut to fit: above the seabed, and below a towing ship."""
+    """Check that the target depth of a fitted piece is above the seabed and below the tow point."""
     for piece in pieces:
         here = piece.line, piece.column
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
@@ -207,10 +208,10 @@ def check_fit(
 
 
 def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
-    """Return the legs of a file; without the key `legs`, the whole line is one leg.
+    """Return the legs of a file; in a file without the key `legs`, the whole line is one leg.
 
-    The leg of a mooring has a free upper end and an anchored lower end; the leg of a tow is held at
-    the ship.
+    This leg is anchored at its lower end in a mooring, and held by the ship at its upper end in a
+    tow. The other end is free.
     """
     if file.legs:
         return file.legs
@@ -222,23 +223,23 @@ def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
 
 
 def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg of each piece."""
+    """Return for each piece the number of its leg, counted from 0."""
     return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
 def refuse_several(file: MooringFile) -> None:
-    """Raise UsageError if a file has several legs, for functions that need a single line."""
+    """Raise UsageError if a file has `legs`; used by functions that need a single line."""
     if file.legs:
         raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
 
 
 def refuse_tow(file: MooringFile) -> None:
-    """Raise UsageError for a tow, for functions that need a mooring."""
+    """Raise UsageError if a file is a tow; used by functions that need a mooring."""
     if file.tow is not None:
         raise UsageError(f"{file.path} is a tow; only a mooring can be used here")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError for a tow or several legs, for functions that need a single mooring line."""
+    """Raise UsageError if a file is a tow or has `legs`; used by functions for a single line."""
     refuse_several(file)
     refuse_tow(file)

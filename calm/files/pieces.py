@@ -21,7 +21,7 @@ STAND_IN = ""
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Position of a piece or clamp in the file, which identifies it after reading.
+    """Position of a piece or clamp in the file, used to identify the part after reading.
 
     `Place(3)` is the fourth item of the line, whatever the `count` of items above it, and `Place(3,
     clamp=0)` is the first clamp of the fourth item.
@@ -41,21 +41,21 @@ class Place:
 
     @property
     def is_clamp(self) -> bool:
-        """Whether this place is that of a clamp."""
+        """Whether this is the place of a clamp."""
         return self.clamp >= 0
 
     @property
     def row(self) -> Place:
-        """Place of the row in the file; for a part of an assembly, the item that uses it."""
+        """Place of the item or clamp in the file; for a part of an assembly, that of its item."""
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
 class LinePart(Protocol):
-    """Interface of pieces, clamps and their results: a position and a label."""
+    """Interface of pieces, clamps and their results, which all have a place and a label."""
 
     @property
     def place(self) -> Place:
-        """Position of the part."""
+        """Place of the part in the file."""
 
     @property
     def label(self) -> str:
@@ -66,10 +66,10 @@ class LinePart(Protocol):
 class Clamp:
     """An instrument clamped on a piece.
 
-    `at` is its distance below the upper end of the piece, in metres of unstretched length. A
-    profiler moves over `travel`, the distances of its upper and lower stop from the upper end of
-    the piece; inf is the lower end. Its `at` is the upper stop. `named` is the label in the file,
-    empty if there is none.
+    `at` is the distance of the clamp from the upper end of the piece, in metres of unstretched
+    length. For a profiler, `travel` gives the distances of its upper and lower stop from the upper
+    end of the piece, where inf means the lower end; its `at` is the upper stop. `named` is the
+    label in the file, empty if the file gives none.
     """
 
     use: str
@@ -83,17 +83,17 @@ class Clamp:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this instrument; None if unknown."""
+        """Serial number of the clamped instrument; None if unknown."""
         return _serial(self.equipment)
 
     @property
     def serials(self) -> tuple[str, ...]:
-        """Serial number of this instrument, as a tuple; empty if unknown."""
+        """Serial number of the clamped instrument, as a tuple; empty if unknown."""
         return self.equipment.serials
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth in still water [m], if any."""
+        """Planned depth in still water [m]; None if none is planned."""
         return self.equipment.planned_depth
 
 
@@ -103,21 +103,21 @@ class Piece:
 
     Attributes
     ----------
-    index : position in the line, 0 at the top (in a tow, at the ship)
+    index : index in the line, 0 at the top (in a tow, at the ship)
     use, label : id of the component, and label of the piece, which is unique in the line
-    component : definition of the component with the overrides of the line
+    component : definition of the component, including the overrides in the line
     length : unstretched length [m]; None for a piece that is cut to fit
     fit_top_depth : intended depth of the top of the line in still water [m], for a piece that is
         cut to fit
-    clamps : the clamps on it
+    clamps : clamps on the piece
     line, column : position of the item in the text of the mooring file, counted from 1
     place : place of the piece in the file
     fit_body_depth : intended depth of the lower end of the piece under tow [m], for a piece that is
         cut to fit
     equipment : serial number and other keys of the individual piece
-    measured_load : load under which the length was measured [N]; `length` is nevertheless the
-        length without load
-    named : label in the file, empty if there is none
+    measured_load : load under which the length in the file was measured [N]; `length` has been
+        converted to the length without load
+    named : label in the file, empty if the file gives none
     """
 
     index: int
@@ -137,7 +137,7 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this piece, or those of its items in one text; None if unknown."""
+        """Serial numbers of the items of this piece, separated by commas; None if unknown."""
         return _serial(self.equipment)
 
     @property
@@ -147,20 +147,23 @@ class Piece:
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth of the upper end in still water [m], if any."""
+        """Planned depth of the upper end in still water [m]; None if none is planned."""
         return self.equipment.planned_depth
 
     def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
-        """Return the piece with a function applied to each clamp, and with other fields changed."""
+        """Return a copy of the piece in which each clamp is replaced by `changed(clamp)`.
+
+        Keyword arguments replace other fields of the piece.
+        """
         return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
 
 
 def holds_instrument(part: Piece | Clamp) -> bool:
     """True if a part is an instrument or a release, or holds one, such as a float with an ADCP.
 
-    A part with another role holds an instrument if it has a tilt limit, a calibration, a sampling
-    scheme or a battery. A float with a serial number holds an instrument, too; serial numbers of
-    cables, chains, connecting hardware and anchors identify the part itself.
+    A part with another role holds an instrument if it has a tilt limit, a calibration date, a
+    sampling scheme or a battery date. A float with a serial number holds an instrument, too. In
+    cables, chains, connecting hardware and anchors, a serial number identifies the part itself.
     """
     component, own = part.component, part.equipment
     data = (component.max_tilt, component.warn_tilt, own.calibrated, own.sampling,
@@ -177,7 +180,7 @@ def _serial(equipment: Equipment) -> str | None:
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """Move a piece with its clamps to a place in the file, and select its serial numbers."""
+    """Return a copy of a piece and its clamps with a new place and the serial numbers for it."""
 
     def moved(clamp: Clamp) -> Clamp:
         own = replace(place, clamp=clamp.place.clamp)
@@ -188,7 +191,7 @@ def placed(piece: Piece, place: Place) -> Piece:
 
 
 def unplanned(piece: Piece) -> Piece:
-    """Remove the planned depths of a piece and its clamps."""
+    """Return a copy of a piece and its clamps without planned depths."""
 
     def without(clamp: Clamp) -> Clamp:
         return replace(clamp, equipment=clamp.equipment.planned_for(None))
@@ -197,7 +200,7 @@ def unplanned(piece: Piece) -> Piece:
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-    """Set the index of each piece, and number repeated labels from the top down."""
+    """Return the pieces with their indices set and repeated labels numbered from the top down."""
     pieces = tuple(pieces)
     labels = iter(numbered_labels(labels_of(pieces)))
 
@@ -211,7 +214,7 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
 
 
 def numbered_labels(texts: Sequence[str]) -> list[str]:
-    """Number repeated labels from the top down; clamps follow their piece."""
+    """Append numbers to labels that occur several times, counting from 1 in the given order."""
     total, seen = Counter(texts), Counter[str]()
 
     def numbered_label(text: str) -> str:
@@ -234,7 +237,7 @@ def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
 
 
 def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
-    """Return the clamps of a line in the order of the file and of the solver."""
+    """Return the clamps of a line in file order, which is also the order in the solver."""
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 
@@ -244,12 +247,12 @@ def clamps_down(pieces: Iterable[Piece]) -> list[Clamp]:
 
 
 def labels_of(pieces: Iterable[Piece]) -> list[str]:
-    """Return the labels of pieces and clamps from the top down."""
+    """Return the labels of pieces and clamps; each piece precedes its clamps."""
     return [part.label for part in parts_of(pieces)]
 
 
 def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
-    """Set the travel range of each profiler from the labels of its stops."""
+    """Return the pieces with the travel range of each profiler, derived from its two stops."""
     return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
 
 

@@ -58,12 +58,12 @@ _LEAST_OF_A_FLOAT = 10.0
 
 
 def depth_in_label(label: str, serial: str | None = None, rating: float | None = None) -> float:
-    """Return the depth in a label [m] by the rules above; NaN if there is none.
+    """Return the depth that a label contains [m]; NaN if it contains none.
 
     Parameters
     ----------
-    serial : serial number of the part
-    rating : depth rating of its component [m]
+    serial : serial number of the part, which is not taken for a depth
+    rating : depth rating of the component [m], which is not taken for a planned depth
     """
     text = _NUMBERED.sub("|", label)
     if any(pattern.search(text) for pattern in (_LENGTHS, _RANGE, _DOUBTFUL)):
@@ -87,7 +87,7 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Return the planned depth in the label of a piece or a clamp [m]; None if there is none."""
+    """Return the planned depth in the label of a piece or clamp [m], or None if it has none."""
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

@@ -102,7 +102,7 @@ def read_mooring(
     text: str | None = None,
     stand_in: bool = False,
 ) -> MooringFile:
-    """Read a mooring file and all files to which it refers, in one environment.
+    """Read a mooring file and all files to which it refers, for one environment.
 
     Raises
     ------
@@ -125,16 +125,16 @@ class _ReadLine(NamedTuple):
 
 
 class MooringReader:
-    """Reader of a mooring file, which reads the line once for all environments.
+    """Reader of a mooring file; it reads the line once and can then use several environments.
 
     Parameters
     ----------
-    catalogs : catalogue files, which take precedence over the user's and the shipped ones; later
-        files take precedence over earlier ones
-    text : text to read instead of the file, which then need not exist; files to which it refers are
-        looked up in the folder of `path`
-    stand_in : whether a line without an anchor gets a substitute of unlimited weight, with the id
-        `STAND_IN`
+    catalogs : catalogue files, which take precedence over the user's and the shipped catalogue;
+        later files take precedence over earlier files
+    text : text to read instead of the file, which then need not exist; files to which the text
+        refers are looked up in the folder of `path`
+    stand_in : whether a line without an anchor gets a substitute anchor of practically unlimited
+        weight, with the id `STAND_IN`
 
     Raises
     ------
@@ -168,7 +168,7 @@ class MooringReader:
         self._catalogue = catalogue
 
     def in_environment(self, environment: str | Path | None = None) -> MooringFile:
-        """Read the file in a named variant or environment file, or in its default environment.
+        """Read the file in a named variant, an environment file, or the default environment.
 
         Raises
         ------
@@ -350,18 +350,17 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Select an environment; return its section, not validated, and its name.
+    """Select an environment; return its section before validation, and its name.
 
-    A variant or environment file is based on the default environment of the file. Environments that
-    are not selected are checked here, so that all mistakes are reported. Return None if there is no
-    environment.
+    A variant or environment file is based on the default environment of the mooring file. The other
+    environments in the mooring file are checked here, so that all mistakes are reported. Return
+    None if the environment is missing or cannot be read.
 
     Parameters
     ----------
     top : top level of the mooring file
     chosen : name of a variant in the file, or path of an environment file; None for the default
-    towed : whether the file is a tow, which needs no environment and is then in deep, still sea
-        water
+    towed : whether the file is a tow; a tow without an environment is in deep, still sea water
     """
     own = _child(top, "environment")
     if own is None:

@@ -41,7 +41,7 @@ SphereCoefficient = Annotated[
 
 
 class Displacement(Model):
-    """A floating hull: rows of draft [m], displaced volume [m³], immersed area [m²]."""
+    """Table of a floating hull: draft [m], displaced volume [m³] and immersed area [m²]."""
 
     displacement: tuple[
         tuple[
@@ -166,7 +166,7 @@ class Rigid(definition.Definition):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Displaced volume [m³]; None if it is neither specified nor follows from the weights."""
+        """Displaced volume [m³], specified or computed from the weights; None if unknown."""
         if self.volume is not None or self.buoyancy is None:
             return self.volume
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
@@ -198,7 +198,7 @@ class Rigid(definition.Definition):
 
 
 class SphereShape(Model):
-    """Sphere that represents part of a body in its drag."""
+    """A sphere that represents a part of a body when its drag is computed."""
 
     kind: Literal["sphere"] = Field(description="kind of the component")
     diameter: definition.Diameter
@@ -206,7 +206,7 @@ class SphereShape(Model):
 
 
 class CylinderShape(Model):
-    """Cylinder that represents part of a body in its drag."""
+    """A cylinder that represents a part of a body when its drag is computed."""
 
     kind: Literal["cylinder"] = Field(description="kind of the component")
     diameter: definition.Diameter
@@ -256,7 +256,7 @@ DRAG_FORMS: tuple[tuple[str, ...], ...] = (
 
 
 class Shaped(Rigid):
-    """A component of any shape, with its drag in one of the `DRAG_FORMS`."""
+    """A component of any shape, whose drag is given in one of the `DRAG_FORMS`."""
 
     length: definition.Length
     kn: definition.Drag = optional(

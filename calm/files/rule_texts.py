@@ -15,12 +15,13 @@ class RuleText:
     ----------
     title : title for users
     quantity : name in `calm.quantities` of the values and limits; "" for a rule without values
-    judges : the value that is checked
-    limit : the limit of this value
+    judges : description of the value that is checked
+    limit : description of the limit
     source : source of the rule and of its default limit
-    unseen : reason why the profiles of a batch cannot be checked; "" if they can
-    figures : keys of a component that the rule needs
-    has_ratio : whether value and limit are a demand and a capacity, whose ratio is meaningful
+    unseen : reason why the rule cannot check the profiles of a batch; "" if it can
+    figures : component keys whose values the rule needs
+    has_ratio : whether value and limit are a demand and a capacity, so that their ratio is
+        meaningful
     """
 
     title: str

@@ -40,18 +40,17 @@ class StrummingFactor(Model):
 
 
 class ConstantCn(Model):
-    """A fixed Cn for every cable, in place of its own value; 1.8 to 1.9 is usual for towed
-    cables.
-    """
+    """A fixed Cn that replaces the value of every cable; 1.8 to 1.9 is usual for towed cables."""
 
     cn: Annotated[float, COEFFICIENT] = described("drag coefficient across the axis", 1.2)
 
 
 class BourgetMarichalKeys(Model):
-    """Towed-cable model of Bourget & Marichal: a/D = a1 + b1 φ + c1 φ² (φ in degrees); Cn at rest
-    is c0.
+    """Strumming model for towed cables by Bourget & Marichal.
 
-    Coefficients that are not given have the defaults of `calm.physics.strumming.BourgetMarichal`.
+    The amplitude a of a cable of diameter D is a/D = a1 + b1 φ + c1 φ², with φ in degrees. c0 is
+    Cn at rest. The defaults of the coefficients are those of
+    `calm.physics.strumming.BourgetMarichal`.
     """
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})

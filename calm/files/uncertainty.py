@@ -19,12 +19,12 @@ _TOO_WIDE = "above 25 %, the largest standard deviation; give a pair, the 5 and 
 
 @dataclass(frozen=True)
 class Spread:
-    """Uncertainty of a value: relative, or in degrees for an angle.
+    """Uncertainty of a value, relative to the value; for an angle, it is in degrees.
 
     Attributes
     ----------
     deviation : standard deviation of a normal distribution; None if `between` is set
-    between : 5th and 95th percentile
+    between : 5th and 95th percentile; None if `deviation` is set
     """
 
     deviation: float | None = None
@@ -33,19 +33,19 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:` with its range of values.
+    """Annotation of a key of `uncertainty:` with the values that are allowed.
 
     Attributes
     ----------
-    one : allowed values of a standard deviation
-    end : allowed values of the 5th and 95th percentile
+    one : allowed values of the standard deviation
+    end : allowed values of the 5th and the 95th percentiles
     """
 
     one: QuantityField
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Parse a standard deviation, as text with a unit, or a list of two percentiles."""
+        """Parse a standard deviation, or a list of the 5th and the 95th percentiles."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:

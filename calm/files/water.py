@@ -34,7 +34,7 @@ def _table_or_constant(value: object) -> str:
 
 
 class TableKeys(Model):
-    """A table: columns with a name and a unit, and rows of values."""
+    """Keys of a table: columns with names and units, and rows of values."""
 
     columns: tuple[Text, ...] = described(
         "column names with units: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
@@ -46,7 +46,7 @@ class TableKeys(Model):
 
 
 class SeaWaterKeys(Model):
-    """Temperature [°C] and practical salinity, each constant or in a table by depth."""
+    """Temperature [°C] and practical salinity of sea water, each constant or a table over depth."""
 
     temperature: Annotated[
         Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
@@ -87,7 +87,7 @@ warmer below its surface.
 def read_density(
     given: float | TableKeys | SeaWaterKeys, fluid: str, section: SourceMapping
 ) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
-    """Read the density of an environment; return None if it has mistakes.
+    """Read the density of the fluid in an environment; return None if the value has mistakes.
 
     Parameters
     ----------
@@ -119,12 +119,12 @@ def table_of(value: object) -> TableKeys | None:
 
 
 def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
-    """Build a table of quantities from the value of a key, with positions for messages.
+    """Build a table of quantities that reports mistakes at their positions in the file.
 
     Parameters
     ----------
-    table : value of the key in the model
-    section, place : the mapping, and the keys that lead to the table
+    table : the validated table
+    section, place : mapping in the file, and keys that lead from the mapping to the table
     """
 
     def problem(at: Sequence[str | int], message: str) -> Problem:
@@ -145,9 +145,9 @@ heavier.
 def density_doubts(
     density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
 ) -> Iterator[str]:
-    """Yield a sentence for each implausible density of the water.
+    """Yield a warning for each implausible density of the water.
 
-    `depth` is the depth of the water [m]; None if unknown.
+    `depth` is the water depth [m]; None if unknown.
     """
     given: tuple[tuple[float, float], ...] = ()
     if isinstance(density, profile_tables.DepthTable):
@@ -213,7 +213,7 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
 
 
 def check_density(section: SourceMapping) -> None:
-    """Report mistakes in the tables of `density:`, even if another of its keys is wrong."""
+    """Record the mistakes in the tables of `density:`, even if other keys in it are wrong."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
@@ -240,8 +240,8 @@ Toward = Annotated[float, QuantityField(**vars(profile_tables.DIRECTION))]
 class Wind(Model):
     """Wind over the water: speed [m/s], and the direction toward which it blows [degrees].
 
-    The wind drives the surface water at a share `surface_drift` of its speed. This drift decreases
-    linearly to zero at `drift_depth` [m], by default the seabed.
+    The wind drives the surface water at the fraction `surface_drift` of the wind speed. This drift
+    decreases linearly to zero at `drift_depth` [m], which by default is the depth of the seabed.
     """
 
     speed: Annotated[float, _SPEED] = described("wind speed at the height of the float", "12 m/s")

@@ -25,7 +25,7 @@ from calm.records.sea_states import (
 
 
 class SwellKeys(Model):
-    """Keys of `swell:`, long waves from distant winds, added to the wind sea."""
+    """Keys of `swell:`, which describe long waves from distant winds that add to the wind sea."""
 
     significant_height: Annotated[float, QuantityField("length", above=0)] = described(
         "Hs of the swell", "2 m"
@@ -36,9 +36,7 @@ class SwellKeys(Model):
 
 
 class WaveKeys(Model):
-    """The keys of `waves:`: a design sea state, a table of sea states with their frequencies, or
-    both.
-    """
+    """Keys of `waves:`, which give a design sea state, a scatter table of sea states, or both."""
 
     significant_height: Annotated[float | None, QuantityField("length", at_least=0.05)] = optional(
         "Hs of the design sea state", "5 m"
@@ -88,14 +86,13 @@ class WaveKeys(Model):
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
     """Read the sea states of `waves:`; return an empty tuple if there are mistakes.
 
-    Sea states of a scatter table have their shares of time; an additional design sea state has a
-    share of 0.
+    Each sea state in a scatter table has the share of time for which it occurs. An additional
+    design sea state has a share of 0.
 
     Parameters
     ----------
     section : the environment
-    open_files : whether files, in the folder of the mooring file, are read; if one is needed and
-        not read, the result is empty
+    open_files : whether scatter and spectrum files are read; otherwise the result is empty
     """
     before = len(section.problems)
     measured = keys.spectrum not in SPECTRA

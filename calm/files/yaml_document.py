@@ -26,13 +26,13 @@ Location = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """Plain data of a YAML file, with the nodes of its text.
+    """Plain data of a YAML file, and the nodes of its text.
 
     Attributes
     ----------
     path : path as shown in messages
     data : mappings, lists, text and None
-    root : top-level node, which has the positions; None if the data were not read from text
+    root : top-level node, which gives the positions of values; None if the data have no text
     """
 
     path: str
@@ -44,15 +44,15 @@ class Document:
     ) -> Problem:
         """Build a problem at the position of a value, or of its key.
 
-        A missing value gets the position of the nearest enclosing value, an empty value that of its
-        key.
+        A problem with a missing value is placed at the nearest enclosing value. A problem with an
+        empty value is placed at its key.
 
         Parameters
         ----------
         location : location of the value
         message : the message
-        key : whether the problem is placed at the key
-        lacks : the missing part, if the file is incomplete but not wrong
+        key : whether to place the problem at the key instead of the value
+        lacks : name of the missing part, if the file is incomplete but not wrong
         """
         node = place = self.root
         for step in location:
@@ -76,7 +76,7 @@ def read_document(path: Path) -> Document:
 
 
 def compose(name: str, text: str) -> Document:
-    """Parse a text to a document; `name` is its path in messages.
+    """Parse a YAML text into a document; `name` is the path that messages show.
 
     Raises
     ------
@@ -100,10 +100,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location : position of the mapping itself, not of its base, at which problems without
-        a key are reported
-    data : keys and values of the mapping, completed by those of its base
-    base : the base, or None
+    document, location : document and location of the mapping itself, not of its base; problems
+        without a key are reported there
+    data : keys and values of the mapping and, for missing keys, of its base
+    base : base mapping, or None
     own : keys of the mapping itself
     problems : list to which mistakes are added; all mappings of a file share it
     """
@@ -121,21 +121,21 @@ class SourceMapping:
         return cls(document, (), document.data, None, frozenset(document.data), problems)
 
     def holding(self, data: dict[str, Any]) -> SourceMapping:
-        """Return a mapping with other data at the same position of the document."""
+        """Return a mapping with other data at the same location in the document."""
         own = frozenset(data)
         return SourceMapping(self.document, self.location, data, None, own, self.problems)
 
     def into(self, problems: list[Problem]) -> SourceMapping:
-        """Return this mapping with another list for its mistakes."""
+        """Return a copy of this mapping that adds mistakes to another list."""
         return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """Return this mapping with another mapping as its base, except for keys in `dropping`."""
+        """Return a copy of this mapping with a base, whose keys in `dropping` are ignored."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return replace(self, data={**kept, **self.data}, base=base)
 
     def child(self, key: str, *more: str | int) -> SourceMapping:
-        """Return the mapping under a key, or under a path of keys."""
+        """Return the mapping that is the value at a key, or at a path of keys."""
         home, data = self.home(key), self.data[key]
         for step in more:
             data = data[step]
@@ -143,7 +143,7 @@ class SourceMapping:
         return SourceMapping(home.document, place, data, None, own, self.problems)
 
     def home(self, key: str | int) -> SourceMapping:
-        """Return the mapping that contains a key: this mapping or one of its bases."""
+        """Return the mapping that supplies a key: this mapping, or one of its bases."""
         if self.base is None or key in self.own or key not in self.data:
             return self
         return self.base.home(key)
@@ -151,7 +151,10 @@ class SourceMapping:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Return a problem at a value below this mapping, as in `Document.problem`."""
+        """Return a problem with a value inside this mapping.
+
+        `location` is relative to this mapping. Other parameters are those of `Document.problem`.
+        """
         home = self.home(location[0]) if location else self
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)
@@ -159,7 +162,7 @@ class SourceMapping:
     def refuse(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> None:
-        """Record a problem; parameters are as in `problem`."""
+        """Record a problem with a value inside this mapping; parameters are as in `problem`."""
         self.problems.append(self.problem(location, message, key=key, lacks=lacks))
 
     def refuse_at(self, line: int, column: int, message: str, *, lacks: str = "") -> None:
@@ -177,13 +180,13 @@ def validate(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """Validate a mapping by a model; return None and record the mistakes if it is invalid.
+    """Validate a mapping with a data model; if it is invalid, record the mistakes and return None.
 
     Parameters
     ----------
-    model : model of the mapping
+    model : data model of the mapping
     section : the mapping
-    also_allowed : keys of the mapping that do not belong to the model
+    also_allowed : keys that may be in the mapping although they do not belong to the model
     context : context for the validators of the model
     """
     try:
@@ -194,7 +197,7 @@ def validate(
 
 
 def complaint(model: type[BaseModel], name: str, value: object) -> str:
-    """Return the reason why a value of a single key of a model is invalid; "" if it is valid."""
+    """Return the reason why a model rejects a value of one of its keys; "" if it is valid."""
     data = {name: value}
     try:
         model.model_validate(data)
@@ -292,7 +295,7 @@ _OTHER_NAMES = {
 
 
 def unknown_key(name: str, keys: list[str], owner: str = "") -> str:
-    """Return the message about an unknown key, with the most similar valid key."""
+    """Return the message about an unknown key, which suggests the most similar valid key."""
     return unknown(f"unknown key `{shown(name)}`{owner}", _nearest_key(name, keys) or name, keys)
 
 

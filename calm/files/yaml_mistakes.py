@@ -16,7 +16,7 @@ _OPENING = {"mapping": "{", "sequence": "["}
 
 
 def without_colon(text: str) -> str:
-    """Return the message about a key without a colon, or without a space after it."""
+    """Return the message about a key without a colon, or without a space after the colon."""
     key, colon, value = text.partition(":") if ":" in text else text.partition(" ")
     lacking = "space after its colon" if colon == ":" else "colon"
     meant = f"{shown(key)}: {shown(value)}".strip()
@@ -24,9 +24,10 @@ def without_colon(text: str) -> str:
 
 
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
-    """Explain an error of the parser; every tab in the indentation is reported.
+    """Explain an error of the YAML parser; return one or more mistakes with their positions.
 
-    The message of the parser is used for an error of an unknown kind.
+    Every line that is indented with a tab is reported. For an error of an unknown kind, the result
+    is the message of the parser.
     """
     lines = text.splitlines()
     if "\\t" in str(error.problem):

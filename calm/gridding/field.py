@@ -45,9 +45,9 @@ INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
 
 
 class Scales(NamedTuple):
-    """Correlation scales of the anomaly in depth [m] and time [s], and uncorrelated variance.
+    """Correlation scales in depth [m] and time [s], and share of uncorrelated variance.
 
-    The uncorrelated variance is given as a share of the whole.
+    The attribute `share` is the uncorrelated part of the variance divided by the whole variance.
     """
 
     depth: float
@@ -57,32 +57,35 @@ class Scales(NamedTuple):
 
 @dataclass(frozen=True)
 class RecordProfile:
-    """Mean and standard deviation of a record against depth, linear between nodes [m]."""
+    """Mean and standard deviation of a record as functions of depth.
+
+    The functions are given by values at `node` depths [m], and are linear between these depths.
+    """
 
     node: Floats
     mean: Floats
     deviation: Floats
 
     def mean_at(self, depth: Floats) -> Floats:
-        """Interpolate the mean profile, constant beyond the ends of the record."""
+        """Interpolate the mean to given depths [m], constant beyond the ends of the record."""
         return np.interp(depth, self.node, self.mean)
 
     def deviation_at(self, depth: Floats) -> Floats:
-        """Interpolate the standard deviation to depths."""
+        """Interpolate the standard deviation to given depths [m]."""
         return np.interp(depth, self.node, self.deviation)
 
 
 @dataclass(frozen=True)
 class GriddedQuantity:
-    """Samples of a quantity, and its field with fitted correlation scales.
+    """Samples of a quantity, and the parameters of the field fitted to the samples.
 
     Attributes
     ----------
     samples, profile, scales : samples, mean profile and correlation scales
     noise : standard deviation of sensor noise, in the unit of the quantity
-    in_time : whether neighbouring times are used
-    beyond : factor on the standard deviations beyond the sensors, found by withholding each sensor
-        in turn
+    in_time : whether the estimate at a time also uses the samples at the neighbouring times
+    beyond : factor by which standard deviations are multiplied above the uppermost and below the
+        lowest sensor; it is found by withholding each sensor in turn
     """
 
     samples: Samples
@@ -94,7 +97,10 @@ class GriddedQuantity:
 
 
 class LevelPosterior(NamedTuple):
-    """Posterior mean and standard deviation at some depths, and remaining share of the variance."""
+    """Posterior mean and standard deviation at given depths.
+
+    `left` is the share of the prior variance that remains.
+    """
 
     mean: Floats
     deviation: Floats
@@ -102,7 +108,7 @@ class LevelPosterior(NamedTuple):
 
 
 class LevelValues(NamedTuple):
-    """Value, standard deviation and flag (n, k) at each time and level."""
+    """Values, standard deviations and quality flags, each (n, k) for n times and k levels."""
 
     value: Floats
     deviation: Floats
@@ -110,18 +116,18 @@ class LevelValues(NamedTuple):
 
 
 def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> GriddedQuantity:
-    """Fit the field of a record, with the most likely correlation scales.
+    """Fit a field to the samples of a quantity, with the most likely correlation scales.
 
     Parameters
     ----------
     samples : samples from at least two instruments
     noise : standard deviation of sensor noise, in the unit of the quantity
-    in_time : whether neighbouring times are used
+    in_time : whether the estimate at a time also uses the samples at the neighbouring times
 
     Raises
     ------
     UsageError
-        Fewer than two instruments have a value.
+        Fewer than two instruments have good values.
     """
     known = np.isfinite(samples.value)
     if int(known.any(axis=0).sum()) < 2:
@@ -139,9 +145,11 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 
 
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
-    """Return mean and standard deviation of a record against depth.
+    """Return the mean and standard deviation of a record as functions of depth.
 
-    They are local linear fits with Gaussian weights as wide as the sensor spacing.
+    The mean is a local linear fit, and the standard deviation is the root of a local mean of
+    squared deviations. Both use Gaussian weights as wide as the sensor spacing. `noise` is the
+    smallest standard deviation.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
@@ -159,7 +167,10 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
 
 
 def spacing(samples: Samples) -> float:
-    """Return the median vertical spacing of the instruments [m], counting close pairs once."""
+    """Return the median vertical spacing of the instruments [m].
+
+    Spacings between instruments that are almost at the same depth are ignored.
+    """
     place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
     apart = np.diff(place)
     wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
@@ -254,11 +265,11 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior mean and standard deviation (n, k) at levels.
+    """Compute the posterior mean and standard deviation (n, k) at n times and k levels.
 
     Parameters
     ----------
-    times : (n,) indices of the samples' times
+    times : (n,) indices of the times among those of the samples
     levels : (k,) depths of the levels [m], or (n, k) if they vary with time
     """
     block = _block(field, times)
@@ -278,16 +289,16 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
 
 
 def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
-    """Estimate values at fixed levels for some times.
+    """Estimate the values of a quantity at fixed levels for given times.
 
     Values between the sensors are flagged as interpolated. Values beyond the sensors, and values
-    that the record constrains poorly, are flagged as doubtful. Values to which both apply are
-    missing.
+    that the record constrains poorly, are flagged as doubtful. Values that are both beyond the
+    sensors and poorly constrained are missing.
 
     Parameters
     ----------
     levels : (k,) depths of the levels [m]
-    times : (n,) indices of the samples' times
+    times : (n,) indices of the times among those of the samples
     """
     known = np.isfinite(field.samples.value[times])
     depth = np.where(known, field.samples.depth[times], np.nan)
@@ -339,16 +350,16 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Predict each sensor from the others at n times.
+    """Predict the value of each sensor from the other sensors, at n times.
 
-    The readings of the sensor at the neighbouring times are withheld as well. The prediction
-    follows from the sensor's block of the inverse covariance matrix (Rasmussen and Williams, eq.
-    5.12, extended to blocks).
+    The values of the sensor at the neighbouring times are also withheld. The prediction follows
+    from the sensor's block in the inverse covariance matrix (Rasmussen and Williams, eq. 5.12,
+    extended to blocks).
 
     Returns
     -------
-    Measured minus predicted values (n, s), and their standard deviations (n, s); NaN if the sensor
-    or all others have no value.
+    Measured minus predicted values (n, s), and their standard deviations (n, s). Both are NaN if
+    the sensor has no value, or no other sensor has a value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]

@@ -46,15 +46,15 @@ COLOURS = {"temperature": "RdYlBu_r", "salinity": "viridis", "u": "PuOr_r", "v":
 
 @dataclass(frozen=True, repr=False)
 class GriddedRecord:
-    """Temperature, salinity and velocity of a mooring on fixed levels.
+    """Temperature, salinity and velocity from a mooring, gridded on fixed levels.
 
     Attributes
     ----------
-    fields : samples and fitted field of each quantity
-    names : variable of each quantity in the dataset
+    fields : samples and fitted field, by the name of the quantity
+    names : name of the variable in the dataset, by the name of the quantity
     levels : (k,) depths of the levels [m]
     cards : summary of each file that was read
-    notes : notes on the input, in sentences
+    notes : sentences that point out oddities in the input
     layout : layout of the gridded file
     """
 
@@ -75,7 +75,7 @@ class GriddedRecord:
         Parameters
         ----------
         output : path of the file
-        progress : wraps the iteration over blocks of times
+        progress : function that wraps the iteration over blocks of times, to show progress
 
         Raises
         ------
@@ -95,12 +95,13 @@ class GriddedRecord:
     def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
         """Draw a section of a quantity over time and depth, and return the axes.
 
-        Lines show the depths of the instruments; doubtful values are pale. Requires matplotlib.
+        Lines show the depths of the instruments. Doubtful values are drawn in pale colours. The
+        method requires matplotlib.
 
         Parameters
         ----------
-        quantity : name such as `temperature`; by default the first quantity
-        ax : axes of matplotlib; by default new ones
+        quantity : name of the quantity, such as `temperature`; by default the first quantity
+        ax : matplotlib axes in which to draw; by default new axes
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -134,9 +135,9 @@ MOST_DRAWN = 600
 def draw_section(
     axes: Any, samples: Samples, levels: Floats, values: Any, flags: Any, colours: str
 ) -> Any:
-    """Draw values (n, k) over time and depth, with the depths of the instruments.
+    """Draw values (n, k) over time and depth, with the depths of the instruments as lines.
 
-    Doubtful values are pale. Return the mesh.
+    Doubtful values are drawn in pale colours. Return the mesh that matplotlib has drawn.
     """
     every = max(len(values) // MOST_DRAWN, 1)
     time = samples.time[::every].astype("datetime64[s]").astype(object)
@@ -166,21 +167,23 @@ def grid(
     ----------
     depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file that
         ``calm motion`` wrote
-    values : records of the instruments: one or several, as paths or ``LABEL=PATH``, an
-        `xarray.Dataset` with the contents of such a file, or a `pandas.DataFrame` of one instrument
-        with an index of times and columns such as ``temperature[degC]``; or a mapping from labels
-        to records of one instrument each
-    levels : depths of the levels [m], or text such as ``0:20:1500``
-    step : interval over which values are averaged [s]; by default the times of `depths`
-    variables : names among `temperature`, `salinity`, `u` and `v`; by default all that the records
-        contain. Names in capitals, such as `TEMP`, give a dataset with names in capitals
+    values : one or several records of the instruments. A record is a path, a text ``LABEL=PATH``,
+        an `xarray.Dataset` with the contents of such a file, or a `pandas.DataFrame` of one
+        instrument, with an index of times and columns such as ``temperature[degC]``. A mapping from
+        labels to records of one instrument each is also accepted
+    levels : depths of the levels [m], or a text such as ``0:20:1500``
+    step : interval over which values are averaged [s]; by default, values are averaged about the
+        times of `depths`
+    variables : names of quantities (`temperature`, `salinity`, `u` or `v`); by default, all
+        quantities in the records. If the names are in capitals, such as `TEMP`, the names in the
+        dataset are also in capitals
     method : `depth-time`, or `depth` to treat each time separately
-    flags : accepted quality flags of the values
+    flags : quality flags of the values that are used
 
     Raises
     ------
     InputError, UsageError
-        A file cannot be read or does not belong to the mooring; too few instruments are left.
+        A file cannot be read or does not belong to the mooring, or too few instruments remain.
     """
     if isinstance(depths, MotionEstimate):
         depths = depths.dataset
@@ -216,20 +219,20 @@ def read_gridded(
 
     Parameters
     ----------
-    depths : result of ``calm motion``
-    values : paths of files, ``LABEL=PATH``, or folders
+    depths : path of a result of ``calm motion``
+    values : paths of files or folders, or texts ``LABEL=PATH``
     levels : (k,) depths of the levels [m]
-    step, averaged : averaging interval, and the text that specifies it; None for the times of
-        `depths`
-    variables : names of quantities, separated by commas; None for all
+    step, averaged : averaging interval, and this interval as text; if both are None, values are
+        averaged about the times of `depths`
+    variables : names of quantities, separated by commas; None for all quantities
     method : one of `METHODS`
-    flags : accepted quality flags, separated by commas
+    flags : quality flags of the values that are used, separated by commas
     report, show : functions that receive each note and each summary card as soon as it is known
 
     Raises
     ------
     InputError, UsageError
-        See `grid`.
+        As in `grid`.
     """
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
@@ -269,12 +272,15 @@ def fields_of(
     *,
     in_time: bool,
 ) -> dict[str, GriddedQuantity]:
-    """Fit the field of each quantity; a quantity with too few instruments is omitted with a note.
+    """Fit a field to each quantity, and return the fields by the name of the quantity.
+
+    A quantity with too few instruments is omitted, and `note` is called with the reason.
 
     Raises
     ------
     UsageError
-        No quantity remains, no times overlap, or no instrument belongs to the line.
+        No quantity remains, depths and values do not overlap in time, or no instrument belongs to
+        the line.
     """
     matched = {name: points_of(each, places.places) for name, each in series.items() if each}
     for text in dict.fromkeys(text for _, texts in matched.values() for text in texts):
@@ -304,10 +310,12 @@ def sample_notes(
     series: Sequence[InstrumentSeries],
     points: Mapping[int, int],
 ) -> Iterator[str]:
-    """Yield notes on the samples of a quantity: exchanged files, excluded values, empty series.
+    """Yield sentences about problems in the samples of a quantity.
 
-    Two files seem to be exchanged if pressures do not suit the depth of the instrument, or if mean
-    values would be in the order of depth only after an exchange.
+    The problems are files that seem to be exchanged, excluded values, and series without values.
+
+    Files seem to be exchanged if pressures do not agree with the depth of the instrument, or if the
+    mean temperatures would change steadily with depth only after an exchange.
     """
     labels = places.places.label
     for i, at in points.items():

@@ -37,7 +37,7 @@ def parse_levels(text: str) -> NDArray[np.float64]:
     Raises
     ------
     UsageError
-        The text has neither form, the levels do not increase, or there are too many.
+        The text has neither form, the levels do not increase, or there are too many levels.
     """
     given, wanted = text[:40], "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
     by_step = text.count(":") == 2
@@ -61,7 +61,7 @@ def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.flo
     Raises
     ------
     UsageError
-        The levels do not increase, or one is above the sea surface.
+        The levels do not increase, or a level is above the sea surface.
     """
     levels = np.asarray(given, np.float64)
     if levels.ndim != 1 or not levels.size or not (np.diff(levels, prepend=-np.inf) > 0.0).all():
@@ -90,12 +90,12 @@ def grid_layout(
 
     Parameters
     ----------
-    fields : field of each quantity
+    fields : field of each quantity, by the name of the quantity
     levels : depths of the levels [m]
     depths : depths of the line over time
-    inputs : names of the input files, with their hashes
-    names : name of each quantity in the file
-    averaged : text of the averaging interval; None if the values are not averaged
+    inputs : names of the input files, each with its hash
+    names : name of the variable in the file, by the name of the quantity
+    averaged : averaging interval as text; None if no interval is given
     cards : summary of each file that was read
     """
     time = next(iter(fields.values())).samples.time
@@ -176,7 +176,7 @@ def grid_layout(
 
 
 def method_sentence(field: GriddedQuantity) -> str:
-    """Describe the gridding of a quantity, with its scales."""
+    """Return a sentence that describes the gridding of a quantity, with the correlation scales."""
     scales = field.scales
     time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
     return (
@@ -194,12 +194,14 @@ def write_grid(
     output: Path,
     shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
-    """Write a gridded file block by block; it gets its final name only when it is complete.
+    """Write a gridded file block by block.
+
+    The file gets its final name only when it is complete.
 
     Parameters
     ----------
-    names : name of each quantity in the file
-    shown : wraps the iteration over blocks of times, to show progress
+    names : name of the variable in the file, by the name of the quantity
+    shown : function that wraps the iteration over blocks of times, to show progress
 
     Raises
     ------

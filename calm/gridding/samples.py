@@ -27,16 +27,16 @@ _POINTS = (("clamp", "clamp_depth", "clamp_depth_sd"), ("component", "depth_top"
 
 @dataclass(frozen=True)
 class MooringDepths:
-    """Depths of p points of a line over n times.
+    """Depths of p points of a line at n times.
 
     Attributes
     ----------
-    time : (n,) increasing times, to the nanosecond
-    places : the points, with their shallowest depths (5th percentile)
+    time : (n,) increasing times, with a resolution of a nanosecond
+    places : the points, each with a depth in weak currents (5th percentile of its depths)
     depth, deviation : (n, p) depths and standard deviations [m]
-    place : latitude and longitude [degrees]; empty if unknown
-    seabed : depth of the last piece, the anchor [m]; NaN if unknown
-    attributes : attributes of the file
+    place : latitude and longitude of the mooring [degrees]; empty if unknown
+    seabed : depth of the last piece, which is the anchor [m]; NaN if unknown
+    attributes : global attributes of the file
     """
 
     time: NDArray[np.datetime64]
@@ -49,12 +49,12 @@ class MooringDepths:
 
 
 def read_depths(path: Path) -> MooringDepths:
-    """Read the depths of a result of `calm motion`.
+    """Read the depths from a result file of `calm motion`.
 
     Raises
     ------
     InputError
-        The dataset is not such a result, or has no time at which a depth is known.
+        The file is not a result of `calm motion`, or contains no known depth.
     """
     with opened(path) as dataset:
         return _understood(dataset, path)
@@ -104,7 +104,7 @@ MOST = 5_000_000
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of one quantity at n times, from s instruments in order from the top down.
+    """Values of one quantity at n times, from s instruments listed from the top down.
 
     Attributes
     ----------
@@ -124,9 +124,10 @@ class Samples:
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Choose the times of the field: those of the depths, or equal steps if a step is given.
+    """Choose the times of the field.
 
-    They cover the period in which both depths and values are known.
+    The times are those of the depths or, if a step is given, are equally spaced. They cover the
+    period in which both depths and values are known.
 
     Raises
     ------
@@ -164,13 +165,13 @@ def common_times(
 def gather(
     depths: MooringDepths, series: Sequence[InstrumentSeries], points: dict[int, int], time: Times
 ) -> Samples:
-    """Average values, and the depths at which they were measured, around each time.
+    """Average the values around each time, and the depths at which the values were measured.
 
-    A value counts for the nearest time, if that is within half a time step.
+    Each value counts for the nearest time, if this time is within half a time step.
 
     Parameters
     ----------
-    points : index of the point of the line, by index of the series
+    points : mapping from the index of a series to the index of the point of the line
     time : (n,) times from `common_times`
 
     Raises

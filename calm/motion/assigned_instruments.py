@@ -45,15 +45,15 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    Instruments are matched to parts of the line by name or serial number. Those without a match are
-    assigned by nominal depth, in order down the line. The rest of the file is unchanged.
+    Instruments are matched to parts of the line by name or serial number. Instruments without a
+    match are assigned by nominal depth, in order down the line. The rest of the file is unchanged.
 
     Raises
     ------
     InputError
         A file has mistakes, or the list has an unknown format.
     UsageError
-        The mooring is a tow, or has several legs; the order of the instruments is ambiguous; or the
+        The mooring is a tow or has several legs, the order of the instruments is ambiguous, or the
         YAML of the file cannot be edited automatically.
     """
     mooring = load(path)

@@ -26,7 +26,7 @@ REACH = 5.0
 class Common:
     """Estimate of the unknowns common to a whole record.
 
-    The q columns of the covariance are the logarithms of the factors, the datum [m] and the offsets
+    The q unknowns are, in this order, the logarithms of the factors, the datum [m] and the offsets
     of the sensors [m].
 
     Attributes
@@ -35,7 +35,8 @@ class Common:
     datum : correction added to the depths of the line [m]
     offset : (s,) offset of each sensor [m]
     covariance : (q, q) covariance of the unknowns
-    worst : error of the line itself, as a share of the knockdown, after all other corrections
+    worst : error of the computed line that remains after all corrections, as a share of the
+        knockdown
     law : prior distribution of the inferred current speeds; None if currents were measured
     """
 
@@ -53,12 +54,12 @@ class Common:
 
     @property
     def value(self) -> Floats:
-        """Values (q,) of the unknowns, in the order of the covariance."""
+        """Values (q,) of the unknowns, in the same order as in the covariance."""
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset])
 
     def at(self, value: Floats) -> Common:
-        """Return a copy with new values (q,) of the unknowns; the factors are limited."""
+        """Return a copy with new values (q,) of the unknowns; extreme factors are clipped."""
         count = len(self.factors)
         factors = np.exp(np.clip(value[:count], -FURTHEST, FURTHEST)).tolist()
         return replace(
@@ -87,14 +88,19 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append the derivatives by datum and offsets to the derivatives (n, s, f) by the factors."""
+    """Append derivatives with respect to the datum and the offsets to those of the factors.
+
+    Parameters
+    ----------
+    common : (n, s, f) derivatives of the readings with respect to the logarithms of the factors
+    """
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
 
 
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
-    """Return (n, s) increase in the depth of each sensor per metre that it slips down the line.
+    """Return the increase (n, s) in the depth of each sensor per metre of slip down the line.
 
     Parameters
     ----------
@@ -121,7 +127,7 @@ LONGEST_MEMORY = 25
 def repeated(pull: Floats) -> float:
     """Return the number of successive times that share an error.
 
-    It follows from the autocorrelation of `pull`.
+    The number follows from the autocorrelation of `pull`.
     """
     one = pull - pull.mean()
     whole = float(one @ one)
@@ -150,10 +156,12 @@ class LinearLaw:
     ----------
     time, share : (n,) times, and the share of the record that has elapsed (0 to 1)
     known : (n, s) whether a reading exists
-    raw, left : (n, s) measured less computed depths [m], with all unknowns zero, and with the
-        unknowns at the state about which the model is linearised
-    expected : (n, s, s) covariance of `left`
-    fixed : (n, s, q) derivatives of the readings by the factors, the datum and the offsets
+    raw : (n, s) measured minus computed depths [m], with all unknowns zero
+    left : (n, s) measured minus computed depths [m], with the unknowns at the state of
+        linearisation
+    expected : (n, s, s) expected covariance of `left` [m²]
+    fixed : (n, s, q) derivatives of the readings with respect to the logarithms of the factors, the
+        datum and the offsets
     fall : (n, s) increase in the depth of each sensor per metre that it slips down the line
     """
 
@@ -168,7 +176,7 @@ class LinearLaw:
 
     @cached_property
     def inverse(self) -> Floats:
-        """Inverse (n, s, s) of the covariance of the residuals."""
+        """Inverse (n, s, s) of the covariance `expected` of the residuals."""
         return np.asarray(np.linalg.inv(self.expected), np.float64)
 
     @cached_property
@@ -186,13 +194,18 @@ class LinearLaw:
 
         Parameters
         ----------
-        seen : (n, s, q) derivatives of the readings by the unknowns
+        seen : (n, s, q) derivatives of the readings with respect to the unknowns
         left : (n, s) residuals [m]
         """
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
-        """Return the (q, q) information matrix of all times, for derivatives `seen` (n, s, q)."""
+        """Return the (q, q) information matrix for the readings at all times.
+
+        Parameters
+        ----------
+        seen : (n, s, q) derivatives of the readings with respect to the unknowns
+        """
         heavy = self.weight[:, None, None] * self.inverse
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
@@ -204,12 +217,12 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
-    """Return (n,) change in the reading of a sensor per metre of offset, slip or drift.
+    """Return the change (n,) in the reading of a sensor per metre of offset, slip or drift.
 
     Parameters
     ----------
-    code : 0 for a wrong zero, the index of the time at which a slip begins, `MISHUNG`, or a code of
-        `RAMPS` for a drift
+    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong
+        place on the line throughout, or a key of `RAMPS` for a drift
     fall : (n,) increase in the depth of the sensor per metre that it slips down the line
     share : (n,) share of the record that has elapsed, 0 to 1
     """
@@ -223,7 +236,7 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 
     Parameters
     ----------
-    code : see `moved_by`
+    code : code of the fault, as in `moved_by`
     times : number of times at which a clamp may slip
     """
     if code in RAMPS:
@@ -235,14 +248,14 @@ def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) ->
     """Find the most likely start of each of several candidate changes in the readings.
 
     Each change lasts to the end of the record and is fitted jointly with the common unknowns.
-    Return the index of the time at which each change starts; 0 means that the change applies
-    throughout, or that no time has enough readings before and after it.
+    Return the index of the time at which each change starts. An index of 0 means that the change
+    applies to the whole record, or that no time has enough readings before and after it.
 
     Parameters
     ----------
     law : linear model of the readings
     covariance : (q, q) prior covariance of the unknowns, whose prior mean is zero
-    columns : for each change, (n, s) change in the readings per metre of its size
+    columns : for each change, the effect (n, s) on the readings if the change has a size of 1 m
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))

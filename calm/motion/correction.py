@@ -85,9 +85,9 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the block of times that begins at `start`, ready to be written.
+    """Estimate the depths in the block of times that begins at `start`, ready to be written.
 
-    The smallest and largest depth of the block [m] are appended to `extent`.
+    The smallest and the largest of these depths [m] are appended to `extent`.
     """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
@@ -103,8 +103,8 @@ def solve_times(
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     """Return the layout of the result file: a batch result plus the estimates of motion.
 
-    The layout includes depth flags, serial numbers and archive attributes. Its date is set only if
-    SOURCE_DATE_EPOCH is set, so equal inputs give equal bytes.
+    The layout includes depth flags, serial numbers and archive attributes. The date of the file is
+    set only if SOURCE_DATE_EPOCH is set, so that equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -156,7 +156,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
 
 
 def about(mooring: Design) -> Attributes:
-    """Return archive attributes from `document:` and `deployed:` of a mooring file."""
+    """Return archive attributes from the keys `document` and `deployed` of a mooring file."""
     file = mooring.file
     attributes: Attributes = {}
     if file.document is not None:
@@ -174,7 +174,10 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return flags of all depths: measured (points with a valid pressure), estimated or missing."""
+    """Return a flag for each depth: measured, estimated or missing.
+
+    A depth is flagged as measured if the point has a sensor with a valid pressure at that time.
+    """
     clamps = profiles.clamp_depth.shape[1]
     depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
@@ -187,7 +190,7 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Estimate (n, m) depths of m points and their standard deviations [m], without writing a file.
+    """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file.
 
     Parameters
     ----------
@@ -214,10 +217,11 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """Input of the estimate of depths. `measured` contains only the sensors in use.
+    """Input of the estimate of depths.
 
-    `smoother` is the solution for the whole record if currents were measured, else None. `faults`
-    are the diagnosed faults; None means that the diagnosis has not been made.
+    `measured` contains only the sensors in use. `smoother` is the solution for the whole record, or
+    None if no currents were measured. `faults` are the diagnosed faults, or None if the diagnosis
+    has not been made.
     """
 
     mooring: Design
@@ -288,9 +292,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Replace results by NaN at times that are too far from any current (mask `lost`, (n,)).
+    """Replace the results with NaN at times that are too far from any measured current.
 
-    Their status becomes "implausible-current" where `false` is set, otherwise "no-current".
+    `lost` (n,) marks these times. Their status becomes "implausible-current" where `false` is true,
+    and "no-current" elsewhere.
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
@@ -304,7 +309,7 @@ def without_current(
 
 
 class MeasuredRecord(Record):
-    """Measured currents in the form of a `Record`, to write them to a result."""
+    """Measured currents as a `Record`, the form in which they are written to a result file."""
 
     def __init__(
         self,
@@ -317,7 +322,7 @@ class MeasuredRecord(Record):
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """See `Record`; the depth of levels on the line is NaN."""
+        """Return the levels of profiles as `Record.profiles` does; depths on the line are NaN."""
         one = self._measured.at(slice(start, stop))
         return one.level_depth, one.u, one.v, None
 

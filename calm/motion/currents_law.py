@@ -30,10 +30,11 @@ class Linear:
 
     Attributes
     ----------
-    logs : (n, g) the state: logarithms of the factors on the currents
+    logs : (n, g) logarithms of the factors on the currents, which are the state
     depth : (n, p) depths at the state [m]
-    slope : (n, p, g) derivatives of the depths by the state
-    common : (n, p, f) derivatives of the depths by the logarithms of the common factors
+    slope : (n, p, g) derivatives of the depths with respect to the state
+    common : (n, p, f) derivatives of the depths with respect to the logarithms of the common
+        factors
     """
 
     logs: Floats
@@ -42,7 +43,7 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at another state with known depths.
+        """Return the model at another state whose depths are known.
 
         The slopes are updated by Broyden's method.
         """
@@ -62,8 +63,8 @@ class SpeedLaw:
     ----------
     mean : (k,) mean of the logarithms of the speeds [m/s]
     covariance : (k, k) covariance of these logarithms
-    kept : fits of the times from which the distribution was learnt, preceded by the line at the
-        mean speeds; their states are relative to `mean`
+    kept : stored models of the line: first at the mean speeds, then at the times from which the
+        distribution was learnt; their states are relative to `mean`
     """
 
     mean: Floats
@@ -71,6 +72,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return the mean speeds at levels (n, k) [m], all in the same direction."""
+        """Return currents in one direction, with the mean speeds at the levels (n, k) [m]."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

@@ -86,10 +86,10 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the likely faults of the sensors, the currents and the line.
+    """Return the likely faults of the sensors, the currents and the line, most likely first.
 
-    The most likely fault comes first, except that faults already stored in the task are returned as
-    they are. A record with too few times gives no faults.
+    If the task already holds diagnosed faults, they are returned unchanged. A record with too few
+    times gives no faults.
     """
     if task.faults is not None:
         return task.faults
@@ -102,8 +102,8 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     """Return the linear model of the readings, and possible faults of the line and its currents.
 
-    The model is linearised at the solution of the task. It is None if no time has measurements. The
-    list of faults is empty if the currents were inferred.
+    The model is linearised at the solution of the task. The model is None if no time has
+    measurements. The list of faults is empty if the currents were inferred.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -132,7 +132,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for the faults of a record by the likelihood of its pressures."""
+    """Search for faults in a record, by the likelihood of the pressures with each fault."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -172,7 +172,7 @@ class Diagnosis:
         return there + np.nan_to_num(bent)
 
     def faults(self) -> tuple[Fault, ...]:
-        """Find the likely faults; the odds of each are computed together with all others."""
+        """Find the likely faults; the odds of each fault allow for all other likely faults."""
         taken: list[Suspect] = []
         while len(taken) < MOST:
             likely = self.weighed(taken)
@@ -237,13 +237,13 @@ class Diagnosis:
         return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Compute the likelihood of the pressures with the faults `taken` and the fault `last`.
+        """Fit the sizes of the faults `taken` and `last`; compute the likelihood of the pressures.
 
         Parameters
         ----------
         taken : faults that are already accepted
         last : additional fault; None for none
-        alike : number of successive times with the same error
+        alike : number of successive times that share an error
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]

@@ -23,11 +23,11 @@ class Posterior:
 
     Attributes
     ----------
-    logs : (n, g) changes in the logarithms of the factors on the currents, from the prior mean
+    logs : (n, g) logarithms of the factors on the currents, relative to the prior mean
     sea : (n,) height of the sea surface above its mean [m]
     depth, variance : (n, p) depths of the points [m] and their variances [m²]
     evidence : (n,) log probability density of the measured depths
-    innovation : (n, s) measured depths less their predictions [m]
+    innovation : (n, s) measured minus predicted depths [m]
     expected : (n, s, s) covariance of the innovation
     """
 
@@ -109,7 +109,7 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """Currents at several times, with the linearised line and the posterior there."""
+    """Currents at several times, with the linearised line and the posterior at these currents."""
 
     read: ReadCurrents
     at: Linear

@@ -60,7 +60,7 @@ _OF_MOTION = ("title", "keywords", "references")
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file with one or several instruments, to which depths are added.
+    """A file of one or more instruments, to which estimated depths are to be added.
 
     Attributes
     ----------
@@ -69,8 +69,8 @@ class Instruments:
     dimension : name of the time dimension
     along : name of the dimension of the instruments; None for a single instrument
     time : (n,) times
-    who : the instruments
-    point : point of the line for each instrument; None if it has no point
+    who : identities of the instruments
+    point : index of the point of the line for each instrument; None for an unmatched instrument
     """
 
     path: Path
@@ -88,7 +88,9 @@ class Instruments:
 
 
 def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
-    """Read the instruments of a file or folder and match them to points of the line, with notes.
+    """Read the instruments of a file or folder and match them to points of the line.
+
+    Also return notes on the matches.
 
     Parameters
     ----------
@@ -100,8 +102,8 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     InputError
         A file is not NetCDF, has groups or no times, or does not identify its instruments.
     UsageError
-        A file already has depths, or a dimension with their name; no instrument is a part of the
-        line.
+        A file already has a variable or a dimension with the name of an added variable, or no
+        instrument matches a part of the line.
     """
     seabed = float(line.still[-1])
     found = [_read(path, seabed) for _, path in files_given([str(given)])]
@@ -179,7 +181,7 @@ def write_depths(
     output: Path,
     inputs: Sequence[str] = (),
 ) -> list[str]:
-    """Write a copy with depths, standard deviations and flags added.
+    """Write a copy of an instrument file with depths, standard deviations and flags added.
 
     Parameters
     ----------
@@ -191,12 +193,12 @@ def write_depths(
 
     Returns
     -------
-    Names of the instruments without depths, because they have no point of the line.
+    Names of the instruments that get no depths because they match no point of the line.
 
     Raises
     ------
     OSError
-        There is no disk space for the copy.
+        The disk has no space for the copy.
     """
     import xarray as xr
 
@@ -264,7 +266,7 @@ def at_own_times(
     Parameters
     ----------
     result : dataset of `calm motion`
-    point : index of the point, see `calm.motion.line_response.Forward`
+    point : index of the point, as defined in `calm.motion.line_response.Forward`
     time : (n,) times of the instrument
     gap : longest gap over which depths are interpolated
     """

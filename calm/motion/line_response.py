@@ -27,7 +27,7 @@ UNMEASURED = 1e4
 
 
 class LineResponse:
-    """Computes the depths of a mooring, and their derivatives, at the times of a block."""
+    """Solver for the depths of a mooring, and for their derivatives, at the times of a block."""
 
     def __init__(
         self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward]
@@ -35,19 +35,25 @@ class LineResponse:
         self.measured, self.forward, self.shifted = measured, forward, shifted
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """Return (n, p) depths of the points [m] in the given currents times their factors.
+        """Return (n, p) depths of the points [m] in the currents multiplied by their factors.
 
         Parameters
         ----------
-        read : interpretation of the currents
+        read : currents before they are multiplied by the factors
         logs : (n, k) logarithms of the factors on the currents
-        forward : mooring to use; by default that of the block
+        forward : mooring to solve; by default the mooring of this object
         """
         factor = np.exp(logs)
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return depths and slopes for factors of the currents, given as logarithms (n, k)."""
+        """Return the depths and their slopes for factors on the currents.
+
+        Parameters
+        ----------
+        read : currents before they are multiplied by the factors
+        logs : (n, k) logarithms of the factors
+        """
         factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)
@@ -64,7 +70,7 @@ def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
-    """Return a copy of a line with factors on its drag, its net buoyancy and its cable lengths."""
+    """Return a copy of a line with drag, net buoyancy and cable lengths multiplied by factors."""
     cable, rigid, lift, length = (factors.get(name, 1.0) for name in FACTORS)
     drag = np.where(line.flexible, cable, rigid)
     cut = np.where(line.flexible, length, 1.0)
@@ -83,10 +89,10 @@ def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
 
 
 class Forward:
-    """A mooring, with factors on its line, that can be solved in many currents.
+    """A mooring with factors on its line, to be solved in many currents.
 
-    The points of the line are its clamped instruments, in order down the line, followed by the
-    upper end of each component, in the order of the file.
+    The points of the line are the clamped items, in order down the line, followed by the upper end
+    of each component, in file order.
     """
 
     def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:
@@ -106,33 +112,39 @@ class Forward:
 
         Parameters
         ----------
-        depth : (n, k) of the levels [m]
+        depth : (n, k) depths of the levels [m]
         u, v : (n, k) eastward and northward current [m/s]
         """
         return self._batch.solve(u, v, depth, workers=1)
 
     def depths(self, depth: Floats, u: Floats, v: Floats) -> Floats:
-        """Return (n, p) depths of the points [m], NaN if there is no equilibrium.
+        """Return (n, p) depths of the points [m]; NaN if there is no equilibrium.
 
         Parameters
         ----------
-        depth, u, v : see `solve`
+        depth, u, v : as in `solve`
         """
         return points(self.solve(depth, u, v))
 
     def slopes(self, depth: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return (n, p) depths of the points [m], and (n, p, 2 k) derivatives by u, then v [s].
+        """Return the depths of the points, and their derivatives with respect to the currents.
+
+        The depths have shape (n, p) [m]. The derivatives have shape (n, p, 2 k) [s]: those with
+        respect to u, followed by those with respect to v.
 
         Parameters
         ----------
-        depth, u, v : see `solve`
+        depth, u, v : as in `solve`
         """
         profiles, slopes = self._batch.slopes(u, v, depth)
         return points(profiles), slopes
 
 
 def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """Return the mooring with the common factors, and for each factor a copy with a step in it."""
+    """Return the mooring with the common factors, and copies each with one factor changed.
+
+    The copies are by name of the changed factor.
+    """
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
         for name, value in common.factors.items()
@@ -141,12 +153,12 @@ def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, For
 
 
 def points(profiles: Profiles) -> Floats:
-    """Return (n, p) depths of all points [m]; `Forward` defines the points."""
+    """Return (n, p) depths of all points, as defined in `Forward` [m]."""
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
 
 
 def labels_of(mooring: Design) -> tuple[str, ...]:
-    """Return the labels of all points, see `Forward`."""
+    """Return the labels of all points, in the order given in `Forward`."""
     pieces = mooring.file.pieces
     return (*(clamp.label for clamp in clamps_down(pieces)), *(piece.label for piece in pieces))
 
@@ -172,12 +184,13 @@ point as a share of its knockdown; bends at floats and clamps cause local errors
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     """Return (n, p, p) error covariance of the computed depths, for an error share of 1 [m²].
 
-    The error is a share of the knockdown. Unless the distribution of the currents was learnt, the
-    error at a point is a share of its own knockdown, correlated over a quarter of the line. A
-    learnt distribution absorbs such errors. In that case, the error of each stretch of the line is
-    a share of its own contribution to the knockdown. The error at a point is the sum over the
-    stretches below, which is smooth between two sensors, plus a smaller share of the knockdown of
-    the point.
+    If the distribution of the currents was not learnt, the error at a point is a share of the
+    knockdown of that point, and errors are correlated over a quarter of the line.
+
+    A learnt distribution absorbs such errors. The error of each stretch of the line is then a share
+    of the contribution of the stretch to the knockdown. The error at a point is the sum over the
+    stretches below the point, plus a smaller share of the knockdown of the point. The sum varies
+    smoothly between two sensors.
 
     Parameters
     ----------

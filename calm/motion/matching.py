@@ -28,7 +28,7 @@ class LinePlaces:
     label, serial : (p,) labels and serial numbers of clamps and pieces; the serial number is empty
         if unknown
     clamps : number of clamps, which precede the other points
-    still : (p,) depths in calm water [m]
+    still : (p,) depths in still water [m]
     """
 
     name: str
@@ -47,7 +47,7 @@ def places_of(mooring: Design) -> LinePlaces:
 
 
 def serials_of(mooring: Design) -> tuple[str, ...]:
-    """Return the serial number of each clamp and piece, as deployed; empty if unknown."""
+    """Return the serial number of each deployed clamp and piece; empty if unknown."""
     file = mooring.file
     deployed = {} if file.deployed is None else file.deployed.serials
     given = {label: ", ".join(serials) for label, serials in deployed.items()}
@@ -69,12 +69,13 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
 
 @dataclass(frozen=True)
 class Clock:
-    """Clock error of an instrument; it grows linearly from zero.
+    """Clock error of an instrument, which grows linearly from zero.
 
     Attributes
     ----------
-    since, checked : time at which the clock was set, and time of the comparison
-    late : lag of the clock at the comparison [s]; positive if the clock was behind
+    since : time at which the clock was set
+    checked : time at which the clock was compared with the true time
+    late : lag of the clock at the time `checked` [s]; positive if the clock was behind
     """
 
     since: np.datetime64
@@ -82,7 +83,7 @@ class Clock:
     late: float
 
     def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
-        """Correct the times (n,) of readings for the error of this clock."""
+        """Correct the times (n,) of readings for the error of the clock."""
         share = (time - self.since) / (self.checked - self.since)
         late = np.round(self.late * 1e9 * np.maximum(share, 0.0)).astype("m8[ns]")
         true: NDArray[np.datetime64] = time + late
@@ -90,7 +91,7 @@ class Clock:
 
     @property
     def sentence(self) -> str:
-        """The clock error in words."""
+        """Sentence that describes the clock error."""
         way = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
         return f"its clock was {abs(self.late):g} s {way} at {when}; its times were corrected"
@@ -101,12 +102,12 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
 
     Parameters
     ----------
-    first : start of the record; the lag grows from this time if the deployment has no date
+    first : start of the record; if the deployment has no date, the lag grows from this time
 
     Raises
     ------
     UsageError
-        A clock was checked before the deployment.
+        A clock was checked before the deployment or at the same time.
     """
     deployed = mooring.file.deployed
     found = {}
@@ -129,9 +130,9 @@ def hung_currents(
 ) -> tuple[CurrentMeasurements, list[str]]:
     """Match the instruments of a current file to the line by serial number or nominal depth.
 
-    Levels of matched instruments move with the line. Levels that already have a label are
-    unchanged, and so are levels without an identified instrument: the bins of a profiler have fixed
-    depths. The second value are notes on the matches.
+    The levels of matched instruments get the label of their part and move with the line. Levels
+    that already have a label, and levels without an identified instrument, such as the bins of a
+    profiler, are unchanged. Also return notes on the matches.
     """
     if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
         return one, []
@@ -176,8 +177,7 @@ def matched_by_place(
 ) -> tuple[dict[int, int], list[str]]:
     """Match sensors to instruments by nominal depth, in order down the line.
 
-    Among all matches that preserve the order, the match has the smallest sum of differences in
-    depth.
+    The chosen match preserves the order and has the smallest sum of differences in depth.
 
     Parameters
     ----------
@@ -187,12 +187,13 @@ def matched_by_place(
 
     Returns
     -------
-    Index of the point for each matched index in `given`, and notes in sentences.
+    Mapping from the index of each matched sensor in `given` to the index of its point, and notes in
+    sentences.
 
     Raises
     ------
     UsageError
-        A sensor has no nominal place, there are more sensors than instruments, or the best match is
+        A sensor has no nominal depth, there are more sensors than instruments, or the best match is
         not unique.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
@@ -219,12 +220,13 @@ CLEAR = 10.0
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
     """Match series to points by label or serial number.
 
-    Series with neither are matched by nominal depth, in order down the line.
+    Series that have neither a label nor a serial number are matched by nominal depth, in order down
+    the line.
 
     Returns
     -------
-    Index of the point for each matched index in `series`, and notes on matched and unmatched
-    series.
+    Mapping from the index of each matched series in `series` to the index of its point, and notes
+    on matched and unmatched series.
 
     Raises
     ------
@@ -265,9 +267,9 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:
-    """Return the one point with the label of an instrument, or else the one with its serial number.
+    """Return the point that has the label of an instrument or, failing that, its serial number.
 
-    Return None if no point matches, or if several do.
+    Return None if no point matches, or if several points match.
     """
     at = _index(one.label, line.label)
     if at is None:
@@ -284,7 +286,7 @@ def _index(text: str, among: Sequence[str]) -> int | None:
 
 
 def nowhere(one: Identity, line: LinePlaces) -> str:
-    """Return a message that an instrument matches no point of the line."""
+    """Return the message for an instrument that matches no point of the line."""
     name = one.label or one.serial
     if not name:
         return f"{one.named} has no label, serial number or nominal depth"
@@ -302,15 +304,15 @@ def in_order(
     Parameters
     ----------
     points : candidate points
-    depths : cost per metre of difference between nominal depth and depth of the point
-    spacings : cost per metre of difference in the distance between neighbours; nominal depths of a
-        whole line often share an error, which leaves this distance unchanged
-    clear : smallest excess cost of the second-best match at which the best is accepted [m]
+    depths : cost per metre of difference between the nominal depth and the depth of the point
+    spacings : cost per metre of difference between the nominal and the actual distance of
+        neighbours; an error common to all nominal depths does not change these distances
+    clear : least excess cost of the second-best match for the best match to be accepted [m]
 
     Returns
     -------
-    Index of the point for each matched index in `series`, and the unmatched indices: if the series
-    outnumber the points, some remain.
+    Mapping from the index of each matched series in `series` to the index of its point, and the
+    indices of the unmatched series. Some series are unmatched if there are more series than points.
 
     Raises
     ------
@@ -345,13 +347,13 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order. Each alignment is its cost and the index in `many` for each of
-    `few`. The second is None if there is only one alignment.
+    Matches preserve the order. Each match is returned as its cost, and the index in `many` for each
+    of `few`. The second-cheapest match is None if there is only one match.
 
     Parameters
     ----------
-    few, many : depths, increasing [m]
-    depths, spacings : costs, see `in_order`
+    few, many : increasing depths [m]
+    depths, spacings : costs, as in `in_order`
     """
     places = len(many)
 

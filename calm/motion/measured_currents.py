@@ -115,13 +115,13 @@ FURTHEST = 0.7
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths at which the current is estimated, and interpolation from these knots to the levels.
+    """Depths (knots) at which the current is estimated, and interpolation from knots to levels.
 
     Attributes
     ----------
-    depth : (K,) depths in still water, rising [m]
-    level : (k, K) weights of the knots in the current of each level
-    measured : indices of the levels that coincide with a knot, and of these knots
+    depth : (K,) depths of the knots in still water, increasing [m]
+    level : (k, K) weights with which the knots contribute to the current at each level
+    measured : indices of the levels that coincide with a knot, and the indices of these knots
     seabed : depth of the water [m]
     """
 
@@ -131,7 +131,12 @@ class Knots:
     seabed: float
 
     def at(self, levels: Floats) -> Floats:
-        """Return (n, K) depths of the knots, which move with the levels at depths (n, k) [m]."""
+        """Return depths (n, K) of the knots, which move with the levels [m].
+
+        Parameters
+        ----------
+        levels : (n, k) depths of the levels [m]
+        """
         level, knot = self.measured
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
@@ -147,8 +152,8 @@ class Knots:
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
     """Choose the knots for levels of measured current.
 
-    Each level is a knot if there are few. A knot may be added above the top of the line and below
-    the lowest level.
+    If there are few levels, each level is a knot. A knot may be added above the top of the line,
+    and another below the lowest level.
 
     Parameters
     ----------
@@ -177,7 +182,12 @@ class Columns:
 
     Attributes
     ----------
-    current, share, tide, factor, datum, zero, place : slices of the q columns
+    current : currents at the knots
+    share : relative errors of the stretches of the line
+    tide : height of the tide
+    factor : logarithms of the factors
+    datum : correction common to all depths
+    zero, place : errors in the zeros of the sensors, and in their positions on the line
     """
 
     current: slice
@@ -190,7 +200,7 @@ class Columns:
 
     @classmethod
     def made(cls, *counts: int) -> Columns:
-        """Return slices of the given numbers of columns."""
+        """Return consecutive slices with the given numbers of columns, in attribute order."""
         ends = np.cumsum([0, *counts]).tolist()
         return cls(*(slice(*pair) for pair in pairwise(ends)))
 
@@ -201,7 +211,7 @@ class Columns:
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant but for steps: datum, zeros and places."""
+        """Columns of the unknowns that are constant except for steps: datum, zeros and places."""
         return slice(self.datum.start, self.place.stop)
 
 
@@ -212,7 +222,7 @@ class ErrorScales:
     Attributes
     ----------
     flag : factor on the error of a current meter, by quality flag
-    share : error of the line, as a share of the knockdown of each stretch
+    share : error of each stretch of the line, as a share of the knockdown of the stretch
     tide : standard deviation of the tide [m]
     hours : correlation time of the current [h]
     """
@@ -224,7 +234,10 @@ class ErrorScales:
 
 
 class CurrentSmoother:
-    """Estimate of currents, line, sensors and tide over a whole record with measured currents."""
+    """Joint estimate of the currents, line errors, sensor errors and tide over a whole record.
+
+    The record has measured currents.
+    """
 
     def __init__(
         self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
@@ -295,7 +308,7 @@ class CurrentSmoother:
     # --- the line
 
     def currents(self, state: Floats) -> tuple[Floats, Floats]:
-        """Return (n, K) u and v at the knots."""
+        """Return the currents u and v at the knots, each (n, K) [m/s]."""
         count = len(self.knots.depth)
         whole = self.mean + state
         return whole[:, :count], whole[:, count:]
@@ -305,15 +318,20 @@ class CurrentSmoother:
 
         Parameters
         ----------
-        state : (n, 2 K) currents at the knots less their mean [m/s]
+        state : (n, 2 K) currents at the knots minus their mean [m/s]
         factor : (f,) logarithms of the factors
-        times : times of the record to which the rows of `state` belong
+        times : indices of the times to which the rows of `state` belong
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring for logarithms of the factors (f,), from a small cache if possible."""
+        """Return the mooring with given factors, from a small cache if possible.
+
+        Parameters
+        ----------
+        factor : (f,) logarithms of the factors
+        """
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -323,9 +341,9 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths at the present state [m].
+        """Return (n, p) depths of the points at the current state [m].
 
-        The slopes are renewed where the state has changed.
+        The slopes are recomputed at times where the state has changed.
         """
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
@@ -367,7 +385,14 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return (n, p, z) derivatives of the depths by the relative errors of the z stretches."""
+        """Return derivatives of the depths with respect to the relative errors of the stretches.
+
+        The result has shape (n, p, z), for z stretches of the line.
+
+        Parameters
+        ----------
+        there : (n, p) depths of the points [m]
+        """
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -388,9 +413,9 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return the state-space model of the currents at the knots.
+        """Return a state-space model of the currents at the knots.
 
-        Its only readings are those of the meters.
+        The readings of this model are those of the current meters, without the pressures.
         """
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
@@ -406,7 +431,14 @@ class CurrentSmoother:
         return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
-        """Return the state-space model about the present state, and slopes (n, p, q)."""
+        """Return the state-space model about the current state, and the slopes of the depths.
+
+        The slopes (n, p, q) are derivatives with respect to the unknowns.
+
+        Parameters
+        ----------
+        there : (n, p) depths of the points at the current state [m]
+        """
         one, at, own = self.measured, self.columns, self.meter_law()
         n, flows = own.fade.shape
         steady = np.zeros((at.count, at.count))
@@ -442,7 +474,7 @@ class CurrentSmoother:
 
     @cached_property
     def alike(self) -> float:
-        """Number of successive meter readings with a common error."""
+        """Number of successive meter readings that share an error."""
         step = float(np.median(np.diff(self.hours))) if len(self.hours) > 1 else ALIKE_HOURS
         return max(ALIKE_HOURS / max(step, 1e-3), 1.0)
 
@@ -460,7 +492,7 @@ class CurrentSmoother:
 
     @property
     def at_levels(self) -> tuple[Floats, Floats]:
-        """Estimated currents (n, k), u and v, at the levels [m/s]."""
+        """Estimated currents u and v at the levels, each (n, k) [m/s]."""
         u, v = self.currents(self.state[:, self.columns.current])
         return u @ self.knots.level.T, v @ self.knots.level.T
 
@@ -471,9 +503,9 @@ class CurrentSmoother:
 
         Parameters
         ----------
-        slips : index of the sensor, index of the time and size [m] of steps with which to begin;
-            without them, the iterations for two or three sensors may attribute the step of one
-            sensor to an offset of another
+        slips : steps in sensor readings with which to begin, each as index of the sensor, index of
+            the time, and size [m]; without them, the iterations for two or three sensors may
+            attribute the step of one sensor to an offset of another sensor
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
@@ -636,7 +668,7 @@ class CurrentSmoother:
     # --- results
 
     def common(self) -> Common:
-        """Return the common unknowns; datum and offsets are their medians over time."""
+        """Return the common unknowns; datum and offsets are medians over time."""
         at = self.columns
         datum, zero, place = (
             np.median(self.state[:, each], axis=0) for each in (at.datum, at.zero, at.place)
@@ -649,7 +681,7 @@ class CurrentSmoother:
 
     @cached_property
     def best(self) -> Forward:
-        """Mooring with the estimated factors."""
+        """The mooring with the estimated factors."""
         return self.forward(self.factor)
 
     def read(self, times: slice) -> ReadCurrents:
@@ -659,7 +691,7 @@ class CurrentSmoother:
 
     @property
     def offset(self) -> Floats:
-        """Error (n, s) in the depth of each sensor at each time, from its zero and place [m]."""
+        """Depth errors (n, s) of the sensors, due to wrong zeros and wrong positions [m]."""
         at = self.columns
         return np.asarray(self.state[:, at.zero] + self.state[:, at.place] * self.fall)
 
@@ -671,7 +703,7 @@ class CurrentSmoother:
 
     @cached_property
     def plain(self) -> Floats:
-        """Depths (n, p) of the points from the measured currents alone, without a fit [m]."""
+        """Depths (n, p) of the points computed from the measured currents, without a fit [m]."""
         one, forward = self.measured, Forward(self.mooring, {})
         on_line = one.level_point != FREE
         levels = np.where(np.isfinite(one.level_depth), one.level_depth, self.places)
@@ -684,7 +716,7 @@ class CurrentSmoother:
 
     @cached_property
     def lost(self) -> NDArray[np.bool_]:
-        """Mask (n,) of times too far from any measured current."""
+        """Mask (n,) of the times that are too far from any measured current."""
         time = self.measured.time
         known = time[(np.isfinite(self.measured.u) & np.isfinite(self.measured.v)).any(axis=1)]
         away = np.abs(known[nearest(known, time)] - time) / np.timedelta64(1, "h")
@@ -701,10 +733,11 @@ class CurrentSmoother:
 
     @property
     def doubt(self) -> Floats:
-        """Probability (n, k) that the reading of a level is unrelated to the current there.
+        """Probability (n, k) that the meter reading at a level is unrelated to the current there.
 
-        It follows from the prior odds and the ratio of two normal densities of the reading: with
-        the meter error alone, and with the meter error plus the variability of the current.
+        The probability follows from the prior odds and the ratio of two normal densities of the
+        reading. One density has the variance of the meter error; the other also includes the
+        variability of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
@@ -717,10 +750,11 @@ class CurrentSmoother:
         return doubt
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
-        """Return the linear law of the pressures at several times, given the meters alone.
+        """Return a linear model of the pressures at several times, with currents from meters alone.
 
-        The law is linearised at the smoothed currents of the meters. Also return these currents at
-        the knots, and the line in them with its slopes by the logarithm of all speeds.
+        The model is linearised about the smoothed currents of the meters. Also return these
+        currents at the knots, and the line in these currents with its slopes with respect to the
+        logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

@@ -40,17 +40,19 @@ class MooringMeasurements:
     ----------
     time : (n,) increasing times, to the nanosecond
     label : (s,) labels of the sensors
-    point : (s,) index of the point of each sensor, see `calm.motion.line_response.Forward`
+    point : (s,) index of the point of each sensor, as defined in
+        `calm.motion.line_response.Forward`
     depth : (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected by a
         flag
     level_depth : (n, k) depths of the levels [m]; NaN for levels on the line
     level_point : (k,) index of the point of each level on the line; `FREE` for fixed levels
     u, v : (n, k) eastward and northward current [m/s]; NaN if missing
     flag : (n, k) quality flags of the current; 0 if the file has no flags
-    tide : (n,) height of the sea surface above its mean [m]; None if unknown
+    tide : (n,) height of the sea surface above mean sea level [m]; None if unknown
     false : (n,) whether an impossible current was removed at this time; None if no current was
         removed
-    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
+    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if the mooring
+        never moved
     """
 
     time: NDArray[np.datetime64]
@@ -68,22 +70,22 @@ class MooringMeasurements:
 
     @property
     def surface(self) -> Floats:
-        """Change (n,) in all depths: the tide, and the sinking of the whole mooring [m]."""
+        """Change (n,) common to all depths, from tide and sinking of the whole mooring [m]."""
         none = np.zeros(len(self.time))
         return none + (0.0 if self.tide is None else self.tide) + self.moved
 
     @property
     def moved(self) -> Floats:
-        """Increase (n,) in depth of the whole mooring since the first time [m]."""
+        """Increase (n,) in the depth of the whole mooring since the first time [m]."""
         return np.zeros(len(self.time)) if self.sunk is None else self.sunk
 
     @property
     def tide_deviation(self) -> float:
-        """Prior deviation of the unmeasured part of tide and air pressure [m]."""
+        """Prior standard deviation of the unmeasured part of tide and air pressure [m]."""
         return TIDE if self.tide is None else RESIDUAL_TIDE
 
     def elapsed(self, time: Times) -> Floats:
-        """Return the share (m,) of the record, 0 to 1, that has elapsed at times (m,)."""
+        """Return the share of the record, 0 to 1, that has elapsed at each of the times (m,)."""
         first, last = self.time[[0, -1]]
         share: Floats = (time - first) / max(last - first, np.timedelta64(1, "ns"))
         return share
@@ -98,7 +100,7 @@ class MooringMeasurements:
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
     """Choose up to `MOST_TIMES` times with a current and a pressure, evenly spread over the record.
 
-    If `alone`, a pressure is enough.
+    If `alone` is true, times with a pressure but no current are also eligible.
     """
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
@@ -108,7 +110,7 @@ def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers
 
 
 def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
-    """Return the name of each current level: the label of its part of the line, or its depth."""
+    """Return the name of each current level: the label of a part of the line, or a depth."""
     names = []
     for k, point in enumerate(measured.level_point.tolist()):
         depth = measured.level_depth[:, k]
@@ -119,11 +121,11 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time; the earlier one in a tie.
+    """Return the index (n,) of the time nearest to each wanted time; in a tie, the earlier time.
 
     Parameters
     ----------
-    time : (m,) increasing
+    time : (m,) increasing times
     wanted : (n,) wanted times
     """
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
@@ -135,11 +137,12 @@ def nearest(time: Times, wanted: Times) -> Integers:
 def common_times(
     currents: Sequence[CurrentMeasurements], sensors: Sequence[InstrumentSeries]
 ) -> Times:
-    """Choose the common times: those of the first current record, or of the first sensor.
+    """Choose the common times of all measurements.
 
-    The times of the other currents, and then of the sensors, are added if they are more than half
-    the median time step away from all times so far. Of several added readings within a quarter of
-    the step (a burst), only the first is used.
+    The times of the first current record, or of the first sensor if there is none, are chosen
+    first. The times of the other currents, and then of the sensors, are added if they are more than
+    half the median time step away from all times chosen before. Of several added readings within a
+    quarter of the step (a burst), only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -160,7 +163,7 @@ def _sparse(times: Times, step: np.timedelta64) -> Times:
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate values linearly to other times (n,); NaN within gaps longer than `gap`.
+    """Interpolate values linearly to other times (n,); the result is NaN in gaps longer than `gap`.
 
     Parameters
     ----------
@@ -200,14 +203,15 @@ SPIKE, ALIKE = 6.0, 3.0
 def without_spikes(
     measured: MooringMeasurements, hidden: Sequence[str] = ()
 ) -> tuple[MooringMeasurements, list[str]]:
-    """Remove readings far from those before and after, if other sensors show no change.
+    """Remove readings far from the readings before and after, if other sensors show no change.
 
-    Also return notes on the removal. The deviation from the line between the two adjacent readings
-    is compared with its usual size and a quarter of the difference between these readings.
+    The deviation of a reading from the straight line between the two adjacent readings is compared
+    with the usual deviation and with a quarter of the difference between the adjacent readings.
+    Also return notes on the removal.
 
     Parameters
     ----------
-    hidden : labels of sensors that neither judge others nor are judged
+    hidden : labels of sensors that are neither tested nor used to test others
     """
     hours = (measured.time - measured.time[:1]) / np.timedelta64(1, "h")
     step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0
@@ -248,16 +252,16 @@ def joined(
 
     Parameters
     ----------
-    points : point of each sensor
+    points : index of the point of each sensor
     labels : labels of all points
     still : (p,) depths of all points in still water [m]
     gap : longest gap over which values are interpolated
-    sea_level : times, and height of the sea surface above any datum [m]
+    sea_level : times, and heights of the sea surface above an arbitrary datum [m]
 
     Raises
     ------
     UsageError
-        A current has a label that no part of the line has; the sea level covers none of the times;
+        A current has a label that no part of the line has, the sea level covers none of the times,
         or no time has both a current and a pressure.
     """
     time = common_times(currents, sensors)
@@ -369,7 +373,7 @@ def read_currents(
     ----------
     seabed : depth of the water [m]
     place : latitude and longitude of the mooring [degrees], if known
-    declination : see `calm.records.current_terms.Terms`
+    declination : magnetic declination, positive to the east [degrees]
     maximum_speed : speed above which a current is removed and noted [m/s]
 
     Raises

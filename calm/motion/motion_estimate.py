@@ -55,7 +55,7 @@ RARE = 0.1
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
-    """Return a note if only few times have pressures from two sensors or more.
+    """Return a note if few times have pressures from two or more sensors.
 
     Raises
     ------
@@ -85,9 +85,9 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     """Return the names of the factors to estimate: the defaults and the requested factors.
 
-    The defaults are the two drag factors. Without measured currents, a factor on all drag cannot be
-    distinguished from a factor on the currents; the defaults are then the drag of rigid pieces and
-    the length.
+    With measured currents, the defaults are the two drag factors. Without measured currents, a
+    factor on all drag cannot be distinguished from a factor on the currents; the defaults are then
+    the drag of rigid pieces and the length.
 
     Raises
     ------
@@ -116,13 +116,15 @@ class RecoveredMooring:
     fit : factors to estimate in addition to the drag
     hold_out : labels of sensors that are withheld to test the result
     cross_validate : whether to withhold each sensor in turn
-    correct : members of `CORRECTABLE`; such a fault is corrected if no other fault is as likely
+    correct : kinds of fault to correct, from `CORRECTABLE`; a fault is corrected only if no other
+        fault is as likely
     sea_level : path of the sea-surface heights
     flags : accepted quality flags of the pressures, separated by commas
     gap : longest gap over which values are interpolated
-    declination : added to the directions of the currents [degrees]
+    declination : angle added to the directions of the currents [degrees]
     without : labels of sensors to ignore
-    moved : common step in the depths of all sensors, if there is one and currents were not measured
+    moved : step common to the depths of all sensors; None if there is none, or if currents were
+        measured
     measured : the measurements
     notes : notes on the measurements, in sentences
     source : names and hashes of the source files
@@ -281,8 +283,11 @@ class RecoveredMooring:
 
         Parameters
         ----------
-        output, workers, progress, tell : see `calm.batch.run.run_batch`, which also describes the
-            return value
+        output, workers, progress, tell : as in `calm.batch.run.run_batch`
+
+        Returns
+        -------
+        The same value as `calm.batch.run.run_batch`.
         """
         task = self._prepared(tell)
         if self.correct:
@@ -326,7 +331,7 @@ class RecoveredMooring:
         Parameters
         ----------
         result : result of `estimate`
-        tell : receives progress messages
+        tell : function that receives progress messages
         workers : number of threads
         """
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
@@ -368,13 +373,13 @@ def estimate_motion(
     currents : records of currents, in the same forms; if empty, CALM infers the currents from the
         pressures
     match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
-    fit : factors to estimate for the whole record besides the drag: `buoyancy`, `length`
+    fit : factors to estimate in addition to the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are withheld to test the result
     cross_validate : whether to withhold each sensor in turn to test the result
     sea_level : path of the sea-surface heights over time
     flags : accepted quality flags of the pressures
     gap : longest gap over which values are interpolated [s]; two hours by default
-    declination : added to the directions of the currents [degrees]
+    declination : angle added to the directions of the currents [degrees]
     correct : faults to correct: `clock`, `gain`, `offset`, `drift`, or `air` for absolute pressures
     without : labels of sensors to ignore
     workers : number of threads; by default one for each available processor
@@ -382,7 +387,7 @@ def estimate_motion(
     Raises
     ------
     InputError, UsageError
-        A file cannot be read or does not belong to the mooring; too few sensors are left.
+        A file cannot be read or does not belong to the mooring, or too few sensors are left.
     """
     refuse_all_but_moorings(mooring.file)
     with TemporaryDirectory() as name:

@@ -45,14 +45,15 @@ class Fault:
     ----------
     label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : size and limits of its 95 % interval. `clock`: lag [h]; `gain`: the gain;
-        `offset`, `moved`: excess depth [m]; `drift`: excess depth at its end [m]; `slip`: distance
-        moved down the line [m]; `exchanged`: 0; `OF_LINE`: factor on the value in the file, or on
-        the reading of the meter
+    value, low, high : size of the fault, and the limits of its 95 % interval. The size of a `clock`
+        fault is the lag [h]; of a `gain`, the gain; of an `offset` or `moved`, the excess depth
+        [m]; of a `drift`, the excess depth at the end of the drift [m]; of a `slip`, the distance
+        moved down the line [m]; of `exchanged`, 0; of a fault in `OF_LINE`, the factor on the value
+        in the file or on the reading of the meter
     odds : odds in favour of this fault against all alternatives, including no fault
-    since : start of the slip or drift, else NaT
-    until : end of the drift, else NaT
-    other : label of the second sensor of exchanged labels; otherwise empty
+    since : start of a slip or drift; NaT for other faults
+    until : end of a drift; NaT for other faults
+    other : label of the second of two sensors whose labels are exchanged; otherwise empty
     rival : alternative explanations that are nearly as likely; empty if there are none
     corrected : whether the fault has been corrected
     """
@@ -71,13 +72,16 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Deviation of `value` from no fault; a logarithm for faults of the line."""
+        """Deviation of `value` from the value that means no fault.
+
+        For a fault of the line, the logarithm of the factor `value` is returned.
+        """
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
 
     def sized(self, size: float, deviation: float) -> Fault:
-        """Return a copy with another size, and its 95 % interval from a standard deviation."""
+        """Return a copy with another size, and with a 95 % interval from a standard deviation."""
         three = [size, size - BAND * deviation, size + BAND * deviation]
         if self.kind in OF_LINE:
             three = [float(np.exp(one)) for one in three]
@@ -108,11 +112,11 @@ class Fault:
 
     @property
     def certain(self) -> bool:
-        """Whether the odds are high enough to exclude other explanations."""
+        """True if the odds are high enough to exclude other explanations."""
         return self.odds >= LIKELY
 
     def sentence(self, rival: bool = True) -> str:
-        """Describe the fault in a sentence, with the alternative explanations in `rival`."""
+        """Describe the fault in a sentence; if `rival` is true, append alternative explanations."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
         way = "late" if self.value > 0.0 else "early"
@@ -165,12 +169,13 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return the times at which the current of a level is probably false, by level name.
+    """Return, for each level by name, the times at which its current is probably false.
 
     Parameters
     ----------
-    time : (n,)
-    doubt : (n, k) probability that the current of a level is false
+    names : (k,) names of the levels
+    time : (n,) times
+    doubt : (n, k) probability that the current at a level is false
     """
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
@@ -182,7 +187,7 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
     Parameters
     ----------
     false : result of `false_current_times`
-    count : number of times of the record
+    count : number of times in the record
     """
     return [
         f"current at {name}: its direction or speed is probably wrong at {len(when)} of {count} "
@@ -192,15 +197,16 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def no_drag(name: str, value: float) -> bool:
-    """True if a drag factor is so far from 1 that it must absorb another error."""
+    """True if a drag factor is too far from 1 to describe drag, and must absorb another error."""
     far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name]
     return name.endswith("drag") and far
 
 
 def alone_remarks(common: Common) -> list[str]:
-    """Return a remark if the line is inconsistent with its pressures, for unmeasured currents.
+    """Return a remark if the line is inconsistent with the pressures even in inferred currents.
 
-    The pressures cannot identify the cause, because currents exist that agree with most lines.
+    The pressures do not reveal the cause, because suitable currents bring most lines into agreement
+    with the pressures.
     """
     length = common.factors.get("length", 1.0)
     far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"]
@@ -243,8 +249,9 @@ class Agreement:
     Attributes
     ----------
     count : number of times with both depths
-    bias : mean of computed less measured depth [m]
-    rms : root mean square of this difference, less its mean over the calm times [m]
+    bias : mean of computed minus measured depth [m]
+    rms : root mean square of computed minus measured depth, after subtraction of its mean over the
+        calm times [m]
     r : correlation of computed and measured depths
     slope : regression slope of computed on measured depths
     """
@@ -257,7 +264,7 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the tenth of the times with the smallest knockdown, but at least one time.
+    """Return a mask of the 10 % of the times with the smallest knockdown, but of at least one time.
 
     Parameters
     ----------
@@ -277,9 +284,9 @@ def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def difference(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Floats:
-    """Return (n,) computed less measured depth, less the mean of this difference at calm times [m].
+    """Return computed minus measured depths (n,), relative to their mean at calm times [m].
 
-    Times that are not compared are NaN.
+    The result is NaN at times that are not compared.
 
     Parameters
     ----------
@@ -294,7 +301,7 @@ def difference(
 
 
 def rms(off: Floats) -> float:
-    """Return the root mean square of the finite values; NaN if there are none."""
+    """Return the root mean square of the finite values; NaN if no value is finite."""
     known = off[np.isfinite(off)]
     return float(np.sqrt((known**2).mean())) if known.size else float("nan")
 
@@ -327,7 +334,10 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Return the share of differences within their 95 % interval; NaN if there are none."""
+    """Return the share of the differences that are within their 95 % interval.
+
+    The result is NaN if there are no differences.
+    """
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")
@@ -336,14 +346,14 @@ def coverage(off: Floats, deviation: Floats) -> float:
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] linearly between the nearest sensors.
 
-    Beyond the outermost sensors, the two nearest are extrapolated. With a single sensor, all points
-    are displaced equally.
+    Beyond the outermost sensors, depths are extrapolated from the two nearest sensors. With a
+    single sensor, all points are displaced equally.
 
     Parameters
     ----------
-    depth : (n, s) depths of the sensors; a NaN gives NaN at that time
-    point : (s,) points of the sensors
-    still : (p,) depths in still water
+    depth : (n, s) depths of the sensors [m]; a NaN gives NaN at that time
+    point : (s,) indices of the points of the sensors
+    still : (p,) depths in still water [m]
     wanted : index of the point
     """
     from scipy.interpolate import make_interp_spline
@@ -359,12 +369,12 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, by PCHIP.
 
-    The method is that of Fritsch and Carlson (1980). The coordinate is the height in still water
-    above the lowest point of the line, which is fixed.
+    The method is that of Fritsch and Carlson (1980). The knockdown is interpolated over the height
+    in still water above the lowest point of the line, where the knockdown is 0.
 
     Parameters
     ----------
-    depth, point, still, wanted : see `linear`
+    depth, point, still, wanted : as in `linear`
     """
     from scipy.interpolate import PchipInterpolator
 

@@ -52,9 +52,9 @@ def read_sensors(
     Raises
     ------
     InputError
-        A file cannot be read, or holds no pressures with their unit.
+        A file cannot be read, or has no pressures with a unit.
     UsageError
-        A label is given for a file of several sensors; two sensors have the same label.
+        A label is given for a file of several sensors, or two sensors have the same label.
     """
     found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
@@ -201,7 +201,7 @@ _STANDARD = (
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Read increasing times and the height of the sea surface above a datum [m].
+    """Read a series of sea-surface heights above a datum; return increasing times and heights [m].
 
     Raises
     ------
@@ -263,11 +263,11 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Readings are implausible if they lie far above the depth of the sensor in still water (read on
-    deck, or a fill value) or far below the seabed, or if the sensor is stuck. Only the first of
+    A reading is implausible if it is far shallower than the sensor in still water (taken on deck,
+    or a fill value), if it is far below the seabed, or if the sensor is stuck. Only the first of
     several readings at the same time is kept. Depths are corrected if the readings on deck show
-    that the pressures are absolute. If most readings are too shallow or too deep, the sensor itself
-    is wrong and none is removed: see `unusable`.
+    that the pressures are absolute. If most readings are too shallow or too deep, no reading is
+    removed, because the sensor itself is wrong; `unusable` then reports the sensor.
 
     Parameters
     ----------
@@ -277,7 +277,7 @@ def plausible(
     Raises
     ------
     UsageError
-        A third or more of its times occur twice with different depths.
+        A third or more of the times of the sensor occur twice with different depths.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -352,8 +352,8 @@ NEAR_AIR, ON_DECK = 2.5, 0.6
 def air_notes(depth: Floats, place: Floats) -> list[str]:
     """Return a remark if all depths seem to include atmospheric pressure.
 
-    In calm water the excess of all depths equals that of atmospheric pressure; currents increase
-    it. The sensor with the smallest excess decides.
+    In calm water, all depths then exceed the depths in still water by the equivalent of atmospheric
+    pressure; currents increase this excess. The sensor with the smallest excess decides.
 
     Parameters
     ----------
@@ -384,8 +384,8 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
     Raises
     ------
     UsageError
-        Half or more of the sensors are far from their places on the line, so a unit or the line
-        must be wrong; or two labels are exchanged.
+        Two labels are exchanged, or half or more of the sensors are far from their places on the
+        line. A unit or the line is then wrong.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}

@@ -26,12 +26,13 @@ class StateSpace:
 
     Attributes
     ----------
-    fade : (n, q) decay factor of each state since the previous time; the first row is not used
+    fade : (n, q) factor by which each state decays since the previous time; the first row is unused
     steady : (q, q) stationary covariance of the states that decay
     stepped : (n, q) variance added to each persistent state since the previous time
-    first : (q, q) covariance at the first time; the mean is 0 throughout
-    seen : (n, m, q) derivatives of the readings by the states
-    read, noise : (n, m) readings, NaN if missing, and the variances of their errors
+    first : (q, q) covariance of the states at the first time; their prior mean is 0 at all times
+    seen : (n, m, q) derivatives of the readings with respect to the states
+    read : (n, m) readings; NaN if missing
+    noise : (n, m) variances of the errors of the readings
     """
 
     fade: Floats
@@ -43,7 +44,10 @@ class StateSpace:
     noise: Floats
 
     def added(self, time: int) -> Floats:
-        """Return the (q, q) covariance of the state noise between the previous time and this."""
+        """Return the (q, q) covariance of the state noise between the previous time and this time.
+
+        `time` is the index of this time.
+        """
         fade = self.fade[time]
         result = self.steady * (1.0 - np.outer(fade, fade))
         result.flat[:: len(result) + 1] += self.stepped[time]
@@ -64,14 +68,15 @@ class _Filtered:
 
 @dataclass(frozen=True)
 class Smoothed:
-    """Smoothed states of b successive times, given all readings.
+    """Smoothed states at b successive times, given all readings of the record.
 
     Attributes
     ----------
     times : slice of the times
     mean, covariance : (b, q) mean and (b, q, q) covariance of the states
-    pull, hold : (b, q) r and (b, q, q) N of Durbin and Koopman: the state noise before each time,
-        with prior covariance Q, has mean Q r and covariance Q - Q N Q given all readings
+    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman. Given all readings,
+        the state noise before each time has mean Q r and covariance Q - Q N Q, where Q is its prior
+        covariance
     """
 
     times: slice

@@ -45,15 +45,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A withheld sensor, and the errors of the depths estimated without it.
+    """A withheld sensor, and the errors of the depths estimated without this sensor.
 
     Attributes
     ----------
     count : number of times with good pressures of this sensor and of all sensors in use
-    bias : mean of estimated less measured depth [m]
-    rms : RMS of this difference, less its mean over the calm times [m]
-    linear_rms, pchip_rms : the same for depths interpolated between the sensors in use, by `linear`
-        and `pchip` of `calm.motion.remarks` [m]
+    bias : mean of estimated minus measured depth [m]
+    rms : root mean square of estimated minus measured depth, after subtraction of its mean over the
+        calm times [m]
+    linear_rms, pchip_rms : `rms` of depths that are interpolated between the sensors in use by
+        `linear` and `pchip` of `calm.motion.remarks`, instead of estimated [m]
     coverage : share of the differences within the 95 % interval of the estimate
     """
 
@@ -75,13 +76,13 @@ class MotionEstimate:
     task : input of the estimate, with the common unknowns of the record
     dataset : the result of `calm motion`
     factors : value and 95 % interval of each factor of the whole record, by name
-    sensors, plain : agreement of each sensor in use with the estimate, and with the depths computed
-        from the currents alone
+    sensors : agreement of each sensor in use with the estimate, by label
+    plain : agreement of each sensor in use with depths computed from the currents alone, by label
     held_out : errors of the estimated depths of each withheld sensor
     diagnosis : faults of sensors, line and currents, with sizes and odds
-    fits : whether the line is consistent with the pressures in these currents
+    fits : whether the line is consistent with the pressures
     remarks : doubts about the data, in sentences
-    false : times at which the current of a level is probably false, by level name
+    false : for each level by name, the times at which its current is probably false
     notes : notes on the input, in sentences
     """
 
@@ -98,7 +99,7 @@ class MotionEstimate:
     notes: tuple[str, ...] = ()
 
     def faults(self, *, of_line: bool) -> list[Fault]:
-        """Return the faults of the line and its currents if `of_line`, else those of sensors."""
+        """Return the faults of line and currents if `of_line`, else the faults of the sensors."""
         return [one for one in self.diagnosis if (one.kind in OF_LINE) == of_line]
 
     def to_xarray(self) -> Dataset:
@@ -112,7 +113,7 @@ class MotionEstimate:
 
         Parameters
         ----------
-        ax : axes of matplotlib; by default new ones
+        ax : axes of matplotlib; by default, new axes are created
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -167,12 +168,12 @@ def prepare(
     measured : measurements, including the withheld sensors
     names : names of the factors to estimate
     hidden : labels of the withheld sensors
-    tell : receives progress messages
+    tell : function that receives progress messages
 
     Raises
     ------
     UsageError
-        A withheld sensor does not exist; no sensor is left; or the line has no equilibrium that
+        A withheld sensor does not exist, no sensor is left, or the line has no equilibrium that
         fits the pressures.
     """
     for label in hidden:
@@ -201,7 +202,7 @@ def prepare(
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
-    """Return the value and the 95 % interval of each factor."""
+    """Return the value and the limits of the 95 % interval of each factor, by name."""
     spread = np.sqrt(np.diag(task.common.covariance))
     return {
         name: (value, value * float(np.exp(-BAND * sd)), value * float(np.exp(BAND * sd)))
@@ -216,9 +217,10 @@ def judged(
 
     Parameters
     ----------
+    task : input of the estimate
     measured : measurements, including the withheld sensors
     result : dataset of `calm motion`
-    diagnosis : faults found
+    diagnosis : diagnosed faults
     """
     used = task.measured
     alone = task.common.inferred
@@ -259,9 +261,9 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the knockdown (n,) of the highest sensor that has a pressure [m].
+    """Return at each time the knockdown (n,) of the highest sensor that has a pressure [m].
 
-    This is the increase of the sensor's depth above its minimum.
+    The knockdown is the depth of the sensor minus its minimum depth.
     """
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
@@ -279,7 +281,7 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """Compare the estimate, and two interpolations, with a withheld sensor.
+    """Compare the estimate, and two interpolations between other sensors, with a withheld sensor.
 
     Parameters
     ----------
@@ -326,8 +328,8 @@ def cross_validated(
 
     Parameters
     ----------
-    mooring, measured, names, hidden : see `prepare`
-    tell : receives progress messages
+    mooring, measured, names, hidden : as in `prepare`
+    tell : function that receives progress messages
     workers : number of threads
 
     Raises
@@ -352,7 +354,8 @@ class SensorSeries:
 
     Attributes
     ----------
-    hidden : whether the sensor was withheld from the estimate, or has no pressure
+    hidden : True if the estimate uses no pressure of this sensor, because the sensor was withheld
+        or has no pressure
     time : (n,) times
     measured : (n,) measured depths [m]; NaN if not measured
     estimated, spread : (n,) estimated depths and their standard deviations [m]
@@ -370,7 +373,7 @@ class SensorSeries:
 
 
 def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
-    """Return (n,) depths of a point in a result, and their standard deviations [m]."""
+    """Return the depths (n,) of a point in a result, and their standard deviations (n,) [m]."""
     clamps = result.sizes.get("clamp", 0)
     names = ("clamp_depth", "clamp_depth_sd") if point < clamps else ("depth_top", "depth_sd")
     column = point if point < clamps else point - clamps
@@ -381,7 +384,10 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
     """Return the depths of all sensors from the top down, then those of the other instruments.
 
-    `measured` includes the withheld sensors.
+    Parameters
+    ----------
+    study : the estimate
+    measured : measurements, including those of the withheld sensors
     """
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     labels, columns = (

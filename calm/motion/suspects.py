@@ -36,7 +36,7 @@ CAUSES: Mapping[str, tuple[float, float]] = {
 
 @dataclass(frozen=True)
 class Suspect:
-    """Effect of one possible fault on n times of s sensors.
+    """A possible fault, and its effect on the readings of s sensors at n times.
 
     Attributes
     ----------
@@ -44,7 +44,8 @@ class Suspect:
     column : (n, s) change in the measured depths per unit of the size of the fault
     wide : prior standard deviation of the size; 0 if the size is fixed
     log : logarithm of the prior probability of the fault
-    shift : (n, s) change in the depths for a fixed size [m]; 0 if the size is fitted
+    shift : (n, s) change in the measured depths by a fault of fixed size [m]; 0 if the size is
+        fitted
     """
 
     fault: Fault
@@ -60,7 +61,8 @@ def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> 
     Parameters
     ----------
     read : currents at several times
-    at : the line in them, with its slopes by the logarithm of all speeds
+    at : depths of the line in these currents, with slopes with respect to the logarithm of a factor
+        on all speeds
     share : elapsed share of the record at the times with an equilibrium
     """
     factors = task.common.factors
@@ -95,14 +97,14 @@ which a meter is reported.
 
 
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
-    """Return a remark on each meter that is rotated, mirrored or in another unit.
+    """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with its two nearest meters while these agree with each
-    other. Agreement is measured by the complex correlation of the currents over the whole record.
-    The phase of this correlation is the mean angle between the two currents (Kundu 1976, J. Phys.
-    Oceanogr. 6, 238-242); its standard deviation is sqrt((1 - r²) / (2 r² n)) for n independent
-    times. Exchanged east and north components are found from the correlation with the mirrored
-    current.
+    A meter is reported if it disagrees with the two nearest meters although these agree with each
+    other. Agreement is measured by the complex correlation r of the currents over the whole record.
+    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
+    238-242). For n independent times, the phase has the standard deviation
+    sqrt((1 - r²) / (2 r² n)). Exchanged east and north components are found from the correlation
+    with the mirrored current.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -158,7 +160,7 @@ STRETCHED, AMISS = 1.25, 20.0
 
 
 def distances_of(mooring: Design) -> Floats:
-    """Return distances (p,) of clamps and pieces from the top along the unstretched line [m]."""
+    """Return distances (p,) of clamps and pieces from the top, along the unstretched line [m]."""
     pieces = mooring.file.pieces
     tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
     clamps = [
@@ -172,11 +174,11 @@ def distances_of(mooring: Design) -> Floats:
 def torn(
     measured: MooringMeasurements, distance: Floats, hidden: Collection[str] = ()
 ) -> tuple[MooringMeasurements, list[str]]:
-    """Remove depths of two sensors that are farther apart than the line between them is long.
+    """Remove readings of two sensors that are farther apart in depth than along the line.
 
-    The reading that is farther from the median of its sensor is removed. If this would remove half
-    or more of the readings of a sensor, none of them is removed. Return the measurements, and notes
-    on the removal.
+    The reading that is farther from the median of its sensor is removed. If half or more of the
+    readings of a sensor would be removed, all its readings are kept. Return the measurements, and
+    notes on the removal.
 
     Parameters
     ----------
@@ -211,12 +213,12 @@ to its usual change, and least size of a step [m].
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
-    """Find a step that is common to the depths of all sensors; None if there is none.
+    """Find a step common to the depths of all sensors; return None if there is no such step.
 
-    Such a step means that the whole mooring has moved to another depth. The search is for records
-    without measured currents, because inferred currents would otherwise explain the step. A current
-    moves the lowest sensor less than the highest; a mooring that moves carries all sensors down
-    equally.
+    Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
+    sensor less than the highest sensor, whereas a sinking mooring lowers all sensors equally. The
+    search is for records without measured currents, where inferred currents would otherwise explain
+    the step.
 
     Parameters
     ----------

@@ -79,10 +79,11 @@ AGAIN = 3
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
-    """Return the measurements with knots of unknown current as their levels.
+    """Return the measurements with knots of unknown current in place of their current levels.
 
-    The uppermost knot is where the top of the line is in strong currents, because pressures contain
-    no information on the current above it. This depth comes from the uppermost sensor.
+    The uppermost knot is at the depth of the top of the line in strong currents, because pressures
+    contain no information on the current above the line. This depth is computed from the readings
+    of the uppermost sensor.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -102,7 +103,7 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
 
 
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
-    """Return prior mean (k,) and covariance (k, k) of the logarithms of the speeds [m/s]."""
+    """Return prior mean (k,) and covariance (k, k) of the log speeds at the knots [m/s]."""
     knots = measured.level_depth[0]
     mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
@@ -116,14 +117,14 @@ def learn_currents(
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
 ) -> Common:
-    """Learn the distribution of the speeds jointly with the common unknowns.
+    """Estimate the distribution of the current speeds jointly with the common unknowns.
 
     Parameters
     ----------
     mooring : mooring as in its file
     measured : measurements with the knots as levels
     names : names of the factors to estimate
-    tell : receives progress messages
+    tell : function that receives progress messages
 
     Raises
     ------
@@ -180,11 +181,11 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return the difference between measured and still-water depths if a sensor is too high [m].
+    """Return measured minus still-water depth [m] of the sensor that is farthest above its place.
 
-    Currents cannot raise a line. If even the shallowest readings of a sensor are above its place in
-    still water, the water depth, a length or the place in the file is wrong. The result is the
-    largest such difference, negative, or 0 if all are small.
+    Currents only lower a line. If the shallowest readings of a sensor are far above its place in
+    still water, the water depth, a length or the place in the file is wrong. The result is
+    negative, or 0 if no sensor is far above its place.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]
@@ -295,7 +296,10 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time, starting from the nearest stored fit."""
+    """Find the most likely currents at each time.
+
+    The search starts from the stored model whose depths are closest to the measured depths.
+    """
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

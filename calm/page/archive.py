@@ -31,12 +31,13 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """Create the ZIP archive and return its content. Equal files give equal bytes.
+    """Create the ZIP archive and return its content. The same files always give the same bytes.
 
     Parameters
     ----------
-    python : version of Python in the runtime, such as "3.13"; if it is also the version that runs
-        now, the archive contains compiled modules, with which the page starts sooner
+    python : version of Python in the runtime of the page, such as "3.13". If the current process
+        runs the same version, the archive also contains compiled modules, so that the page starts
+        sooner.
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

@@ -28,7 +28,7 @@ Post = Callable[[str, str, bytes | None], object]
 
 
 class Button(NamedTuple):
-    """A button of the page: its title and the name of its action."""
+    """A button of the page, with its title and the name of its action."""
 
     title: str
     action: str
@@ -76,7 +76,7 @@ class PageBuilder(BuildApp):
 
 
 class WebPage:
-    """The page as seen from Python: a folder in memory, and the builder that edits a file.
+    """Python side of the page, which runs the builder on a file that is kept in memory.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class WebPage:
 
     @property
     def app(self) -> PageBuilder | None:
-        """Builder that is running; None if there is none."""
+        """The running builder, or None if no builder is running."""
         return self._app
 
     def receive(self, message: Mapping[str, Any]) -> None:

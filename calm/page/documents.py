@@ -20,9 +20,9 @@ class Download:
     Attributes
     ----------
     kind : name of the kind in the messages of the page
-    title : title of its button
+    title : title of the button that starts the download
     suffix : text appended to the name of the mooring file
-    content : function that makes the document from the mooring in each of its environments
+    content : function that makes the document from a list of the mooring in each environment
     """
 
     kind: str
@@ -74,8 +74,8 @@ def document(kind: str, view: live.View) -> tuple[str, bytes]:
 
     Parameters
     ----------
-    kind : a kind of `DOCUMENTS`
-    view : the line in the builder, whose solutions are reused
+    kind : name of a kind in `DOCUMENTS`
+    view : results of the line in the builder; its solutions are reused
 
     Raises
     ------

@@ -45,7 +45,7 @@ class PageTerminal:
     driver: PageDriver | None = None
 
     def resize(self, columns: int, rows: int) -> None:
-        """Set the size."""
+        """Set the size of the terminal."""
         self.columns, self.rows = columns, rows
         if self.driver is not None:
             self.driver.show_size()
@@ -86,7 +86,7 @@ class PageDriver(Driver):
             self._terminal.driver = None
 
     def disable_input(self) -> None:
-        """Do nothing: the page sends the input."""
+        """Do nothing, because the page sends the input."""
 
     def show_size(self) -> None:
         """Send the size of the terminal to the application."""
@@ -113,8 +113,8 @@ class PageDriver(Driver):
         Parameters
         ----------
         kind : `down`, `up`, `move`, `scroll up` or `scroll down`
-        x, y : column and row, from 0
-        button : number of the button, from 1; 0 for none
+        x, y : column and row, counted from 0
+        button : number of the mouse button, counted from 1; 0 if no button is pressed
         held : whether `shift`, `alt` and `ctrl` are pressed
         """
         change = x - self._mouse_at[0], y - self._mouse_at[1]

@@ -62,7 +62,7 @@ march accepts the segment.
 
 @within
 def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
-    """Return the strain of a cable at a tension [N], by its elongation curve or compliance."""
+    """Return the strain of a cable at a tension [N], from its elongation curve or compliance."""
     if cable.first_knot == cable.end_knot:
         return cable.compliance * tension
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
@@ -70,13 +70,13 @@ def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> flo
 
 @within
 def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float) -> float:
-    """Return the net buoyancy of a segment of unstretched length `cut` [m], positive up [N]."""
+    """Return the net buoyancy [N], positive up, of a segment with unstretched length `cut` [m]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
 @within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Return the length of unstretched cable that has the same drag in reference water [m].
+    """Return the length of unstretched cable with the same drag in reference water [m].
 
     If the cable keeps its volume (thinning ½), stretch increases the drag by the factor √(1 +
     strain). If thinning is 0, stretch does not change the drag.
@@ -99,7 +99,10 @@ def segment_drag(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the drag of a current on a segment of axis t [N], by the friction law of the cable."""
+    """Return the drag of the current u, v, w [m/s] on a segment with unit axis t [N].
+
+    The tangential drag follows the friction law with the number `friction`.
+    """
     if friction == BERTEAUX:
         return drag_force(kn, kt, u, v, w, tx, ty, tz)
     qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
@@ -118,10 +121,10 @@ def pass_segment(
     near: float,
     expected: Vector,
 ) -> tuple[State, float]:
-    """Compute the state below one segment of unstretched length `cut` [m], and its strain.
+    """Compute the state below a segment of unstretched length `cut` [m], and the segment's strain.
 
-    Axis, drag at mid-height and stretch of the segment depend on each other. They are computed
-    repeatedly until the vertical extent of the segment per unstretched metre converges.
+    The axis, the drag at mid-height and the stretch of the segment depend on each other. They are
+    iterated until the vertical extent of the segment per unstretched metre converges.
 
     Parameters
     ----------
@@ -131,7 +134,8 @@ def pass_segment(
 
     Returns
     -------
-    The state, and the strain, which is `NO_BALANCE` if the iteration does not converge.
+    The state below the segment, and the strain, which is `NO_BALANCE` if the iteration does not
+    converge.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
@@ -206,7 +210,7 @@ def pass_halves(
     near: float,
     expected: Vector,
 ) -> Passed:
-    """Integrate a segment, or a part of it, as one straight piece or as two straight halves.
+    """Integrate a segment, or a part of a segment, as one straight piece or as two straight halves.
 
     `near` and `expected` are as in `pass_segment`.
     """
@@ -233,13 +237,13 @@ def vibrating_share(
     ty: float,
     tz: float,
 ) -> tuple[float, float]:
-    """Return `drag_share` for a strumming cable, and the factor on its normal drag coefficient.
+    """Return the result of `drag_share` for a strumming cable, and the factor on its normal drag.
 
     Parameters
     ----------
-    vibration : vibration of the cable
-    tx, ty, tz : latest estimate of the axis, of any length. If the drag of the segment hardly turns
-        it, the factor is computed for this axis.
+    vibration : strumming law of the cable
+    tx, ty, tz : latest estimate of the axis, as a vector of any length. If drag hardly rotates the
+        segment, the factor is computed for this axis
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
@@ -268,8 +272,8 @@ def touchdown(
 ) -> Passed:
     """Find the touchdown in a segment, where the force normal to the seabed vanishes.
 
-    Return the integrated part above the touchdown. `halves`, `near` and `expected` are as in
-    `pass_halves`.
+    Return the result of `pass_halves` for the part above the touchdown. `halves`, `near` and
+    `expected` are as in `pass_halves`.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
@@ -302,9 +306,9 @@ def pass_part(
     expected: Vector,
     share: float,
 ) -> Passed:
-    """Integrate a segment down to the first point where it has to be split.
+    """Integrate a segment down to the first point where the segment has to be split.
 
-    This is a level of the water profile, or a point where a drag law switches.
+    The segment is split at levels of the water profile, and at points where a drag law switches.
 
     Parameters
     ----------
@@ -337,10 +341,10 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Return the length of a segment above the first point where it has to be split [m].
+    """Return the length [m] of a segment above the first point where the segment has to be split.
 
-    This is a level of the water profile, or a point where a drag law switches. The result is `cut`
-    if there is no such point.
+    The segment is split at levels of the water profile, and at points where a drag law switches.
+    The result is `cut` if there is no such point.
 
     Parameters
     ----------
@@ -374,9 +378,9 @@ def until_level(
     k: int,
     share: float,
 ) -> float:
-    """Return the length of a segment above a level of the water profile [m].
+    """Return the length [m] of the part of a segment above a level of the water profile.
 
-    The length is estimated from the mean load of the segment, and refined by secants if full
+    The length is estimated from the mean load of the segment, and refined by secant steps if full
     precision is required.
 
     Parameters
@@ -440,15 +444,15 @@ def until_switch(
     expected: Vector,
     law: int,
 ) -> float:
-    """Return the length of a part of a segment above the point where a drag law switches [m].
+    """Return the length [m] of a segment above the point where a drag law switches.
 
-    Return the length `part` if the law does not switch in it. The point is found by regula falsi
-    (Illinois method).
+    Only the uppermost `part` of the segment is searched. The result is `part` if the law does not
+    switch in this part. The point is found by the regula falsi (Illinois method).
 
     Parameters
     ----------
     below : state below the whole segment, of length `cut`
-    part : length of the part [m]
+    part : length of the part of the segment that is searched [m]
     halves, near, expected : see `pass_halves`
     law : see `switch_at`
     """
@@ -477,9 +481,10 @@ def until_switch(
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
     """Return a quantity whose sign changes where a drag law switches.
 
-    Friction of constant size reverses with the flow along the cable; the quantity is this flow,
-    positive down the line, times the tension [N m/s]. The factor of strumming on Cn has a maximum;
-    the quantity is this maximum minus the factor without the limit [-].
+    If `law` is `OF_FRICTION`, the quantity is the flow along the cable, positive down the line,
+    times the tension [N m/s]; friction of constant size reverses with this flow. If `law` is
+    `OF_STRUMMING`, the quantity is the largest factor by which strumming may increase Cn, minus the
+    factor without this limit [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
@@ -505,10 +510,10 @@ def segment_length(
 ) -> float:
     """Return the longest allowed length of the next segment [m].
 
-    It is limited by the rotation of the segment, the water depth, the next level of the water
-    profile, and the depth of minimum flow. The rotation is computed from the loads at both ends of
-    the segment and the tension at its top. Near a free end the tension vanishes, and a lower limit
-    keeps the number of segments finite. `share` is as in `counts_across`.
+    The length is limited by the rotation of the segment, by `reach`, by the next level of the water
+    profile, and by the depth of minimum flow. The rotation is computed from the loads at both ends
+    of the segment and the tension at its top. Near a free end the tension vanishes; a lower limit
+    on the length keeps the number of segments finite. `share` is as in `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -542,11 +547,11 @@ def rate_of_turn(
     tz: float,
     angle_step: float,
 ) -> float:
-    """Return the ratio of tension to allowed segment length [N/m], for the load at a given depth.
+    """Return the ratio of tension to allowed segment length [N/m], with the load at a given depth.
 
     `t` is the axis of the cable. If the tension is little more than the weight of the line below,
-    the tension decreases along a segment, which therefore rotates faster and faster. Hence a term
-    for the decrease of the tension is added to the term for the rotation.
+    the tension decreases along a segment, which therefore rotates faster and faster. For this
+    reason, a term for the decrease of the tension is added to the term for the rotation.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)

@@ -43,15 +43,15 @@ _within: set[Law] = set()
 
 
 def set_row(rows: Any, i: int, row: Any) -> None:
-    """Replace row i of a list of named tuples, which compiled code sees as an array of records."""
+    """Replace row i of a list of named tuples or, in compiled code, of an array of records."""
     rows[i] = row
 
 
 class Compiled:
-    """A compiled law.
+    """A physics function ("law") compiled to machine code; it is called like the Python function.
 
-    The kinds of the arguments are checked only in the first call, which saves time in short solves.
-    All later arguments must have the same kinds.
+    The types of the arguments are checked only in the first call, which saves time in short solves.
+    The arguments of all later calls must have the same types.
     """
 
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
@@ -70,9 +70,9 @@ class Compiled:
 
 
 class Addressed:
-    """A compiled law of a named tuple and a number, which returns a number.
+    """A compiled law that takes a named tuple and a number, and returns a number.
 
-    Other laws call it by its `address`, and are compiled without it.
+    Other compiled laws call this law by its `address`, so they do not contain its code.
     """
 
     def __init__(self, law: Law, task: Any) -> None:
@@ -92,26 +92,32 @@ class Addressed:
 
 _entries: dict[Law, Any] = {}
 _lock = Lock()
+if hasattr(os, "register_at_fork"):  # a child process must not inherit a compilation under way
+    os.register_at_fork(
+        before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_lock.release
+    )
 
 
 def entry(law: Law, *arguments: Any) -> Compiled:
-    """Return a law compiled for the kinds of the given arguments."""
+    """Return a law in compiled form, for arguments of the same types as the given arguments."""
     with _lock:
         if law not in _entries:
-            result = kind_asked(get_type_hints(law).get("return"))
-            _entries[law] = Compiled(law, tuple(map(kind_of, arguments)), result)
+            *hints, result = get_type_hints(law).values()
+            kinds = tuple(map(kind_of, arguments, hints))
+            _entries[law] = Compiled(law, kinds, kind_asked(result))
         found: Compiled = _entries[law]
         return found
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
-    """Call a law, compiled (see `entry`) or interpreted."""
+    """Call a law, either compiled (see `entry`) or interpreted, and return its result."""
     return (entry(law, *given) if compiled else law)(*given)
 
 
 def by_address(law: Law, task: Any) -> Addressed:
-    """Return a law of a named tuple like the given one and of a number, to be called by its
-    address.
+    """Compile a law that other laws call by its address.
+
+    The law takes a named tuple and a number. The argument `task` is an example of this named tuple.
     """
     with _lock:
         if law not in _entries:
@@ -135,10 +141,7 @@ def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
     target = _machine()
     folder, name = cache_folder(), f"{law.__module__}.{law.__qualname__}"
     file = folder and folder / f"{name}-{_short_name(kinds)}-{_machine_name()}.o"
-    try:
-        code = file.read_bytes() if file else b""
-    except OSError:
-        code = b""
+    code = _stored(file) if file else b""
     if not code:
         for listener in on_compilation:
             listener()
@@ -167,13 +170,37 @@ on_compilation: list[Callable[[], None]] = []
 
 
 def _store(file: Path, code: bytes) -> None:
-    """Write machine code to the cache if possible, completely or not at all."""
+    """Write machine code and its seal to the cache if possible, completely or not at all."""
     try:
         with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as whole:
-            whole.write(code)
-        os.replace(whole.name, file)
+            try:
+                whole.write(_seal(file, code) + code)
+                whole.close()
+                os.replace(whole.name, file)
+            except OSError:
+                os.unlink(whole.name)
     except OSError:
         return
+
+
+def _stored(file: Path) -> bytes:
+    """Return the machine code in a file of the cache; nothing if it is not what was written, since
+    LLVM ends the process at some damaged files.
+    """
+    try:
+        whole = file.read_bytes()
+    except OSError:
+        return b""
+    code = whole[_SEAL:]
+    return code if whole[:_SEAL] == _seal(file, code) else b""
+
+
+_SEAL = hashlib.sha256().digest_size
+
+
+def _seal(file: Path, code: bytes) -> bytes:
+    """Return a hash of machine code and of the name of its file."""
+    return hashlib.sha256(file.name.encode() + code).digest()
 
 
 @cache
@@ -214,7 +241,7 @@ def _in_c(name: str) -> int:
 
 
 def packed(value: Any) -> Any:
-    """Convert a named tuple for compiled code: its sequences become arrays."""
+    """Convert the sequences in a named tuple to arrays, for compiled code."""
     named: Any = type(value)
     return named(*[pack(part) for pack, part in zip(_packers(named), value, strict=True)])
 
@@ -240,21 +267,21 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
 def cache_folder() -> Path | None:
     """Return the folder for compiled code, or None if no folder can be written.
 
-    `CALM_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
-    has its own subfolder.
+    The folder is `CALM_CACHE_DIR` if this variable is set, otherwise CALM's folder in the user's
+    cache. Every version of the sources has its own subfolder.
     """
     given = os.environ.get("CALM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # its old name
-    folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
     try:
+        folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             return folder
-    except OSError:
+    except (OSError, RuntimeError):  # the second if there is no home folder
         return None
 
 
 def is_cached(law: str) -> bool:
-    """True if the cache folder contains the compiled code of a law."""
+    """Return whether the cache folder contains compiled code for a law."""
     folder = cache_folder()
     return (
         folder is not None and next(folder.glob(f"*.{law}-*-{_machine_name()}.o"), None) is not None

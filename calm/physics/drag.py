@@ -46,7 +46,10 @@ _END_CT = (1.17, 1.07, 0.97, 0.86, 0.82)
 
 
 def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    """Interpolate y at x linearly between points of increasing x; y is constant beyond the ends."""
+    """Interpolate linearly at x, between points (xs, ys) with increasing x.
+
+    The result is constant beyond the first and the last point.
+    """
     if x <= xs[0]:
         return ys[0]
     low, high = 0, len(xs) - 1
@@ -62,50 +65,53 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 def finite_length_factor(slenderness: float) -> float:
-    """Return the factor κ ≤ 1 on the drag coefficient of a long cylinder for its finite length.
+    """Return the factor κ ≤ 1 on the drag coefficient of a cylinder due to its finite length.
 
-    The factor is linear in the logarithm of L/D between the points of a table, and constant below 1
-    and above 100.
+    The factor is linear in the logarithm of L/D between the points of a table, and constant for L/D
+    below 1 and above 100.
 
     Parameters
     ----------
     slenderness : length over diameter L/D [-]
 
-    Source: DNV-RP-C205 table 6-2 (Re < 2e5); Wieselsberger (NACA report 121) below 2.
+    Source: DNV-RP-C205 table 6-2 (Re < 2e5); for L/D below 2, Wieselsberger (NACA report 121).
     """
     return interpolated([log(x) for x in _SLENDERNESS], _KAPPA, log(max(slenderness, 1.0)))
 
 
 def end_face_coefficient(slenderness: float) -> float:
-    """Return the drag coefficient Ct of a cylinder in axial flow, for the area of its end face.
+    """Return the drag coefficient Ct of a cylinder in axial flow, based on its end-face area.
 
-    The coefficient is linear between L/D of 0.1 and 1.8, and constant outside.
+    The coefficient is linear in L/D between 0.1 and 1.8, and constant outside this range.
 
     Parameters
     ----------
     slenderness : length over diameter L/D [-]
 
-    Source: Kritzinger's measurements of cylinders end-on.
+    Source: Kritzinger's measurements on cylinders in axial flow.
     """
     return interpolated(_END_SLENDERNESS, _END_CT, slenderness)
 
 
 def sphere_drag(diameter: float, cx: float | None = None) -> float:
-    """Return the drag K = ½ρ Cx πD²/4 of a sphere of diameter D [m]; Cx is 0.5 by default."""
+    """Return the drag factor K = ½ρ Cx πD²/4 of a sphere with diameter D [m].
+
+    The default drag coefficient Cx is 0.5.
+    """
     return _HALF_DENSITY * (SPHERE_CX if cx is None else cx) * pi * diameter**2 / 4
 
 
 def cylinder_drag(
     diameter: float, length: float, cn: float | None = None, ct: float | None = None
 ) -> tuple[float, float]:
-    """Return the drags Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder.
+    """Return the drag factors Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder.
 
     By default Cn is 1.2 κ(L/D), and Ct follows from `end_face_coefficient`.
 
     Parameters
     ----------
     diameter, length : diameter D and length L [m]
-    cn, ct : drag coefficients [-]
+    cn, ct : normal and tangential drag coefficients [-]
     """
     slenderness = length / diameter
     if cn is None:
@@ -116,22 +122,29 @@ def cylinder_drag(
 
 
 def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
-    """Return the drags per metre Kn = ½ρ Cn D and Kt = ½ρ Ct πD of a cable of diameter D [m]."""
+    """Return the drag factors per metre of a cable with diameter D [m].
+
+    They are Kn = ½ρ Cn D for the flow normal to the cable, and Kt = ½ρ Ct πD for the tangential
+    flow.
+    """
     return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
 
 
 def area_drag(area: float, cd: float) -> float:
-    """Return the drag K = ½ρ Cd A of a body with a reference area [m²] and a drag coefficient."""
+    """Return the drag factor K = ½ρ Cd A of a body with reference area A [m²].
+
+    Cd is the drag coefficient for this area.
+    """
     return _HALF_DENSITY * cd * area
 
 
 def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
-    """Return the drag K = Σ(F/V) / ΣV fitted to measured speeds V [m/s] and forces F [N]."""
+    """Return the drag factor K = Σ(F/V) / ΣV that fits measured speeds V [m/s] and forces F [N]."""
     return sum(f / v for v, f in zip(speeds, forces, strict=True)) / sum(speeds)
 
 
 class Friction(Enum):
-    """Tangential drag law of a cable or chain, by its name in files.
+    """Tangential drag law of a cable or chain; the value is its name in files.
 
     V is the current, t the unit vector along the cable, and Vt = (V·t) t. The drag per metre is
 
@@ -139,7 +152,7 @@ class Friction(Enum):
       1976);
     - ``hoerner``: Kt |V| V, along the current, with the same Kt (Hoerner, Fluid-Dynamic Drag,
       1965);
-    - ``constant``: Kt |V|² at any angle, along the cable, in the sense of the flow along it, with
+    - ``constant``: Kt |V|² at any angle, along the cable and in the direction of Vt, with
       Kt = Ct ½ρ Cn D (Pode, David Taylor Model Basin report 687, 1951).
     """
 
@@ -149,7 +162,7 @@ class Friction(Enum):
 
     @cached_property
     def law(self) -> int:
-        """Number of the law in `friction_force`."""
+        """Number that stands for this law in `friction_force`."""
         return list(Friction).index(self)
 
 
@@ -157,10 +170,11 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """Return the coefficient of a tangential drag that is not parallel to the cable [N/(m/s)].
+    """Return the coefficient [N/(m/s)] of a tangential drag that acts along the current.
 
-    The coefficient times the current u, v, w [m/s] is a force along the current. Unlike friction
-    along the cable, this force rotates the cable. Kt is in N/(m/s)².
+    The coefficient times the current u, v, w [m/s] is the force. Unlike friction along the cable,
+    this force rotates the cable. The coefficient is 0 for laws whose friction acts along the cable.
+    Kt is in N/(m/s)².
     """
     return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
 
@@ -168,7 +182,7 @@ def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float
 def friction_force(
     law: int, kt: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return the tangential drag [N] of the current u, v, w [m/s] on a cable of axis t.
+    """Return the tangential drag [N] of the current u, v, w [m/s] on a cable with unit axis t.
 
     Kt is in N/(m/s)².
     """
@@ -186,21 +200,21 @@ Vector = tuple[float, float, float]
 
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
-    """Return the factor c that gives the axis of a freely rotating element, parallel to A + c V.
+    """Return the factor c for which the axis of a freely rotating element is parallel to A + c V.
 
-    A is the force that rotates the element in addition to its normal drag, and V is the current. c
-    is the smallest root c ≥ 0 of c |A + c V| = k |V × A|.
+    V is the current. A is the force that rotates the element, apart from the normal drag. c is the
+    smallest non-negative root of c |A + c V| = k |V × A|.
 
     Parameters
     ----------
     ax, ay, az : force A [N]
-    k : half the normal drag coefficient of the element, Kn/2 [N/(m/s)²]
+    k : half the normal drag factor of the element, Kn/2 [N/(m/s)²]
     vx, vy, vz : relative current V [m/s]
 
     Returns
     -------
-    c [N/(m/s)], between 0 and k|V|. If A is opposite to V to within 19.5° there may be three roots;
-    the element takes the smallest when the current increases from rest.
+    c [N/(m/s)], between 0 and k|V|. If the angle between A and -V is less than 19.5°, there may be
+    three roots; the smallest root applies when the current increases from rest.
     """
     vv = vx * vx + vy * vy + vz * vz
     if k == 0.0 or vv == 0.0:
@@ -244,11 +258,11 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
 @within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
-    """Return quantities for a Newton step towards c |A + c V| = target.
+    """Return three quantities for a Newton step towards c |A + c V| = target.
 
-    These are the excess of c |A + c V| over the target, the magnitude |A + c V|, and the derivative
-    of c |A + c V| by c, times this magnitude. `aa`, `av` and `vv` are the products A·A, A·V and
-    V·V.
+    These are the excess of c |A + c V| over the target, the magnitude |A + c V|, and the product of
+    this magnitude with the derivative of c |A + c V| with respect to c. `aa`, `av` and `vv` are the
+    products A·A, A·V and V·V.
     """
     square = aa + c * (2.0 * av + c * vv)
     root = sqrt(square)
@@ -318,7 +332,10 @@ def axis_against(x: float, y: float, z: float) -> Vector:
 def drag_force(
     kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] for an axis t and a relative current V."""
+    """Return the drag Kn |Vn| Vn + Kt |Vt| Vt [N] on an element with unit axis t.
+
+    Vn and Vt are the components of the relative current V normal and parallel to the axis.
+    """
     along = vx * tx + vy * ty + vz * tz
     nx, ny, nz = vx - along * tx, vy - along * ty, vz - along * tz
     normal = kn * sqrt(nx * nx + ny * ny + nz * nz)

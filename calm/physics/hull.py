@@ -30,14 +30,14 @@ class HullRow(NamedTuple):
 
 @dataclass(frozen=True)
 class Hull:
-    """Upright hull at the surface.
+    """Hull of a float that is upright at the surface.
 
     Attributes
     ----------
     height : height from keel to top [m]
     area : lateral area of the whole hull [m²]
     form : SPHERE, SPAR or TABULATED
-    rows : rows of a tabulated hull
+    rows : rows of the hull table if the form is TABULATED
     """
 
     height: float
@@ -46,15 +46,15 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Return draft and immersed area for a share of the displaced volume.
+        """Return the draft and the immersed lateral area if a fraction of the volume is displaced.
 
-        All are shares of the values of the whole hull.
+        All quantities are fractions of those of the whole hull.
         """
         return immersed_shares(self.form, self.rows, share)
 
 
 def spherical_hull(diameter: float) -> Hull:
-    """Return a spherical hull of a given diameter [m].
+    """Return a spherical hull with a given diameter [m].
 
     A draft of x diameters immerses the fraction x² (3 - 2x) of the volume.
     """
@@ -62,15 +62,16 @@ def spherical_hull(diameter: float) -> Hull:
 
 
 def cylindrical_hull(diameter: float, length: float) -> Hull:
-    """Return the hull of a spar, an upright cylinder of given diameter and length [m]."""
+    """Return the hull of a spar (an upright cylinder) with a given diameter and length [m]."""
     return Hull(length, diameter * length, SPAR)
 
 
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     """Return a hull from rows of draft [m], displaced volume [m³] and immersed area [m²].
 
-    All values increase from row to row. They are linear between the rows, and from zero to the
-    first row. The last row describes the completely immersed hull.
+    Drafts and volumes must increase from row to row, and areas must not decrease. Values are
+    interpolated linearly between the rows, and between zero and the first row. The last row
+    describes the completely immersed hull.
 
     Raises
     ------
@@ -92,12 +93,12 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
 
 
 def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[float, float]:
-    """Return draft and immersed area of a hull, as fractions of the whole.
+    """Return the draft and the immersed area of a hull, as fractions of those of the whole hull.
 
     Parameters
     ----------
     form, rows : as in `Hull`
-    share : share of the hull's volume that is immersed, 0 to 1
+    share : immersed fraction of the hull's volume, 0 to 1
     """
     if form == SPHERE:
         x = 0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)
@@ -118,15 +119,16 @@ def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[f
 
 
 class Riding(NamedTuple):
-    """State of a float at the surface: its position, and the forces on it.
+    """Draft of a float at the surface, and the forces on the float there.
 
     Attributes
     ----------
     draft, freeboard : draft and freeboard [m]; NaN if the hull is unknown
-    standing : share of the height of the float that is above the water
-    above : share, 0 to 1, by which pieces rigidly connected above the float are out of the water
+    standing : fraction of the float's height that is above the water
+    above : fraction, 0 to 1, of the pieces rigidly connected above the float that is out of the
+        water
     drag : drag at the surface divided by the drag when fully immersed
-    push_east, push_north : force of the wind [N]
+    push_east, push_north : wind force to the east and north [N]
     """
 
     draft: float
@@ -149,13 +151,13 @@ class Floating:
 
     Attributes
     ----------
-    hull : hull of the float; None if unknown, so that the draft is unknown, too
+    hull : hull of the float; None if the hull, and therefore the draft, is unknown
     weight : weight in air [N]
     lift : net buoyancy when fully immersed [N]
     surface_drag : drag at the surface divided by the drag when fully immersed; None means that the
         drag is proportional to the immersed area
     wind : wind velocity to the east and north [m/s]
-    wind_area : area exposed to the wind [m²]; None uses the area of the hull above the water
+    wind_area : area exposed to the wind [m²]; if None, the area of the hull above the water is used
     wind_cd : drag coefficient of the area exposed to the wind
     """
 
@@ -173,15 +175,16 @@ class Floating:
         return self.wind != (0.0, 0.0)
 
     def riding(self, used: float) -> Riding:
-        """Compute position and forces of the float at the surface.
+        """Compute the draft of the float at the surface, and the forces on the float.
 
-        `used` is the downward pull of the line divided by the net buoyancy, 0 to 1.
+        `used` is the downward pull of the line divided by the net buoyancy of the immersed float, 0
+        to 1.
         """
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
     @property
     def as_numbers(self) -> SurfaceFloat:
-        """The float as plain numbers, for the solver."""
+        """The float as a `SurfaceFloat`, which holds plain numbers for the solver."""
         form, height, area = UNKNOWN_HULL, nan, 0.0
         if self.hull is not None:
             form, height, area = self.hull.form, self.hull.height, self.hull.area
@@ -203,7 +206,10 @@ UNKNOWN_HULL = -1
 
 
 class SurfaceFloat(NamedTuple):
-    """A `Floating` as plain numbers; `form` is the form of the hull, and NaN means unspecified."""
+    """A `Floating` in the form of plain numbers.
+
+    `form` is the form of the hull. Values that are not specified are NaN.
+    """
 
     form: int
     height: float
@@ -222,16 +228,16 @@ UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, na
 
 
 def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
-    """Compute position and forces of a float at the surface.
+    """Compute the draft of a float at the surface, and the forces on the float.
 
-    The displaced water carries the weight of the float and the pull of the line, so the immersed
-    share of the volume is (weight + used · lift)/(weight + lift).
+    The displaced water carries the weight of the float and the pull of the line. The immersed
+    fraction of the volume is therefore (weight + used · lift)/(weight + lift).
 
     Parameters
     ----------
-    floats : the float
-    rows : rows of its hull
-    used : downward pull of the line divided by the net buoyancy, 0 to 1
+    floats : properties of the float
+    rows : rows of the hull table of the float
+    used : downward pull of the line divided by the net buoyancy of the immersed float, 0 to 1
     """
     above = min((1.0 - used) / AWASH, 1.0)
     draft, seen, height, area = 1.0, 1.0, nan, 0.0

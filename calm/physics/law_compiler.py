@@ -43,6 +43,7 @@ from calm.physics.law_kinds import (
 Law = Callable[..., Any]
 
 INTRINSIC = {"sqrt": "llvm.sqrt.f64", "copysign": "llvm.copysign.f64"}
+OF_TWO = ("atan2", "copysign", "pow")
 ARITHMETIC = {
     ast.Add: ("add", "fadd", operator.add),
     ast.Sub: ("sub", "fsub", operator.sub),
@@ -109,18 +110,25 @@ def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
 
 
 class Program:
-    """The instructions of a law and of all laws that it calls, each once for kinds of arguments."""
+    """LLVM program for a physics function ("law") and for all laws that it calls.
+
+    A law that is called with several combinations of argument kinds is translated once for each.
+    """
 
     def __init__(self, inlined: set[Law]) -> None:
         self.inlined = inlined
         self.laws: dict[Any, tuple[str, Any]] = {}
+        self.open: set[Any] = set()
         self.texts: list[str] = []
         self.constants: dict[tuple[float, ...], str] = {}
         self.declared: dict[str, str] = {}
 
     def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
-        """Return the symbol of a law for kinds of arguments, and the kind of its result."""
+        """Translate a law for given argument kinds. Return its symbol and the result's kind."""
+        if (law, kinds) in self.open:
+            raise TypeError(f"{law.__name__} calls itself")
         if (law, kinds) not in self.laws:
+            self.open.add((law, kinds))
             symbol = f'@"{law.__module__}.{law.__qualname__}.{len(self.laws)}"'
             known: dict[str, Any] = {}
             while True:
@@ -129,11 +137,14 @@ class Program:
                     break
             self.texts.append(body.text(symbol, law in self.inlined))
             self.laws[law, kinds] = symbol, body.known.get(RESULT, NOTHING)
+            self.open.remove((law, kinds))
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function with two arguments: the address of the law's arguments, and the address to
-        which it writes a result of the wanted kind.
+        """Add a function that calls a law with arguments and result in memory.
+
+        The function has two arguments. The first is the address of the law's arguments. The second
+        is the address to which the result is written, converted to the kind `wanted`.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)
@@ -146,7 +157,10 @@ class Program:
         )
 
     def add_function(self, symbol: str, law: Law, task: Any) -> None:
-        """Add a function of the address of a named tuple and of a number, that returns a number."""
+        """Add a function that calls a law with a named tuple and a number, and returns a number.
+
+        The named tuple is passed by its address.
+        """
         entry = Instructions(self)
         _, result = entry.call_law(law, [Held(task, "%task"), Number(REAL, "%x")])
         value = entry.as_kind(result, REAL).text
@@ -157,15 +171,15 @@ class Program:
         )
 
     def declare(self, name: str, numbers: int) -> None:
-        """Declare a function of numbers that is defined elsewhere."""
+        """Declare an external function of `numbers` real arguments that returns a real number."""
         self.declared[name] = f'declare double @"{name}"({", ".join(["double"] * numbers)})'
 
     def constant(self, values: tuple[float, ...]) -> str:
-        """Return the symbol of a table of numbers."""
+        """Add a constant table of numbers to the program if needed, and return its symbol."""
         return self.constants.setdefault(values, f"@table.{len(self.constants)}")
 
     def text(self) -> str:
-        """Return the whole program."""
+        """Return the whole program as text in LLVM's language."""
         tables = [
             f"{symbol} = private constant [{len(values)} x double] "
             f"[{', '.join(f'double {number_of(value).text}' for value in values)}]"
@@ -177,7 +191,7 @@ class Program:
 
 
 class Uncompilable(TypeError):
-    """Error of a function that is not a law."""
+    """Raised if a function uses Python that a law must not use."""
 
 
 RESULT = "return"
@@ -206,7 +220,9 @@ class _Body(Instructions):
             self.take_argument(argument.arg, f"%a{i}", kind)
         try:
             if self.run(tree.body):
-                self.emit("ret void" if RESULT not in self.known else "unreachable")
+                if self.known.get(RESULT, NOTHING) != NOTHING:
+                    raise TypeError("the end of the law is reached without a result")
+                self.emit("ret void")
         except Uncompilable:
             raise
         except (TypeError, KeyError, AttributeError, ValueError) as failure:
@@ -358,21 +374,18 @@ class _Body(Instructions):
         return reached
 
     def _do_while(self, node: Any) -> bool:
-        again, body, end = self._label(), self._label(), self._label()
+        again, body, over, end = self._label(), self._label(), self._label(), self._label()
         self._jump(again)
         self._start(again)
         forever = isinstance(node.test, ast.Constant)
         if forever:
             self._jump(body)
         else:
-            self._branch(self.test(node.test), body, end)
+            self._branch(self.test(node.test), body, over)
         self._start(body)
         if self.loop(node.body, again, end):
             self._jump(again)
-        left = not forever or any(isinstance(each, ast.Break) for each in ast.walk(node))
-        if left:
-            self._start(end)
-        return left
+        return self.finish(node, not forever, over, end)
 
     def loop(self, body: list[Any], again: str, end: str) -> bool:
         """Translate the body of a loop."""
@@ -381,18 +394,32 @@ class _Body(Instructions):
         self.loops.pop()
         return reached
 
+    def finish(self, node: Any, ends: bool, over: str, end: str) -> bool:
+        """Translate what follows a loop that is `over` without `break`, if it ever `ends` so.
+
+        Return whether the next statement can be reached.
+        """
+        if ends:
+            self._start(over)
+            ends = self.run(node.orelse)
+            if ends:
+                self._jump(end)
+        left = ends or any(isinstance(each, ast.Break) for each in ast.walk(node))
+        if left:
+            self._start(end)
+        return left
+
     def _do_for(self, node: Any) -> bool:
-        end = self._label()
+        over, end = self._label(), self._label()
         if isinstance(node.iter, ast.Tuple):
-            for each in node.iter.elts:
+            for value in [self.kept(self.of(each)) for each in node.iter.elts]:
                 following = self._label()
-                self.put(node.target, self.of(each))
+                self.put(node.target, value)
                 if self.loop(node.body, following, end):
                     self._jump(following)
                 self._start(following)
-            self._jump(end)
-            self._start(end)
-            return True
+            self._jump(over)
+            return self.finish(node, True, over, end)
         given = [self.as_kind(self.of(each), WHOLE) for each in node.iter.args]
         first, last, step = number_of(0), given[-1], number_of(1)
         if len(given) > 1:
@@ -406,7 +433,7 @@ class _Body(Instructions):
         self._start(test)
         here = self.value(WHOLE, f"load i64, ptr {counter}")
         order = "slt" if step.known > 0 else "sgt"
-        self._branch(self.value(TRUTH, f"icmp {order} i64 {here.text}, {last.text}"), body, end)
+        self._branch(self.value(TRUTH, f"icmp {order} i64 {here.text}, {last.text}"), body, over)
         self._start(body)
         self.put(node.target, here)
         if self.loop(node.body, following, end):
@@ -415,8 +442,7 @@ class _Body(Instructions):
         after = self.value(WHOLE, f"add nsw i64 {here.text}, {step.text}")
         self.emit(f"store i64 {after.text}, ptr {counter}")
         self._jump(test)
-        self._start(end)
-        return True
+        return self.finish(node, True, over, end)
 
     def _do_break(self, node: Any) -> bool:
         self._jump(self.loops[-1][1])
@@ -427,6 +453,12 @@ class _Body(Instructions):
         return False
 
     # expressions
+
+    def refuse(self, part: Any) -> None:
+        """Refuse a part of Python that laws do not use."""
+        if part:
+            what = part[0] if isinstance(part, list) else part
+            raise TypeError(f"laws have no {ast.unparse(what)} here")
 
     def of(self, node: Any) -> Any:
         """Translate an expression."""
@@ -441,6 +473,9 @@ class _Body(Instructions):
 
     def test(self, node: Any) -> Number:
         """Translate a condition."""
+        if isinstance(node, ast.BoolOp):
+            found: Number = self.either(node, self.test)
+            return found
         return self.truth(self.number(node))
 
     def truth(self, value: Number) -> Number:
@@ -461,7 +496,7 @@ class _Body(Instructions):
         if node.id in self.slots:
             return self.read(self.known[node.id], self.slots[node.id], True)
         found = self.law.__globals__.get(node.id, getattr(builtins, node.id, self))
-        if found is self:
+        if found is self or node.id in self.law.__code__.co_varnames:
             raise TypeError(f"{node.id} has no value")
         return self.given(found)
 
@@ -503,7 +538,7 @@ class _Body(Instructions):
             return self.part_of(self.viewed(owner), node.slice)
         array, address = self.element(node, owner)
         if array.dimensions == 0:
-            return self.read(array.item, address)
+            return self.read(array.item, address, passing=True)
         view = self.viewed(owner)
         shape = view.shape[len(view.shape) - array.dimensions :]
         return ArrayView(array, address, shape)
@@ -526,14 +561,25 @@ class _Body(Instructions):
         return Array(view.kind.item, left), address
 
     def part_of(self, view: ArrayView, bounds: Any) -> ArrayView:
-        """Return a part of a sequence of one dimension."""
-        first = number_of(0) if bounds.lower is None else self.number(bounds.lower)
-        last = Number(WHOLE, view.shape[0])
+        """Return a part of a sequence of one dimension. Its bounds must not be negative."""
+        self.refuse(bounds.step)
+        if view.kind.dimensions != 1:
+            raise TypeError("only a sequence of one dimension has parts")
+        first, last = number_of(0), Number(WHOLE, view.shape[0])
         if bounds.upper is not None:
-            last = self.lesser(self.number(bounds.upper), last, "slt")
+            last = self.lesser(self.bound(bounds.upper), last, "slt")
+        if bounds.lower is not None:
+            first = self.bound(bounds.lower)
         data = self.at(view.data, first.text, size_of(view.kind.item))
         length = self.value(WHOLE, f"sub nsw i64 {last.text}, {first.text}")
-        return ArrayView(view.kind, data, (length.text, *view.shape[1:]))
+        return ArrayView(view.kind, data, (self.lesser(length, number_of(0), "sgt").text,))
+
+    def bound(self, node: Any) -> Number:
+        """Translate a bound of a part of a sequence."""
+        bound: Number = self.as_kind(self.number(node), WHOLE)
+        if bound.known is not None and bound.known < 0:
+            raise TypeError("bounds are not negative")
+        return bound
 
     def _of_tuple(self, node: Any) -> Made:
         return row_of(self.of(each) for each in node.elts)
@@ -543,6 +589,8 @@ class _Body(Instructions):
             value = self.test(node.operand)
             return self.value(TRUTH, f"xor i1 {value.text}, true")
         value = self.number(node.operand)
+        if not isinstance(node.op, ast.USub):
+            raise TypeError(f"{ast.unparse(node)} has an operator that laws do not use")
         if value.known is not None:
             return number_of(-value.known)
         if value.kind == REAL:
@@ -554,7 +602,7 @@ class _Body(Instructions):
         if isinstance(node.op, ast.BitOr) and left.kind == right.kind == TRUTH:
             return self.value(TRUTH, f"or i1 {left.text}, {right.text}")
         if isinstance(node.op, ast.FloorDiv) and left.kind == right.kind == WHOLE:
-            if right.known is None or right.known & (right.known - 1):
+            if right.known is None or right.known < 1 or right.known & (right.known - 1):
                 raise TypeError("// is by a power of two only")
             shift = right.known.bit_length() - 1
             return self.value(WHOLE, f"ashr i64 {left.text}, {shift}")
@@ -566,33 +614,56 @@ class _Body(Instructions):
         how = real if kind == REAL else f"{whole} nsw"
         return self.value(kind, f"{how} {kind} {left.text}, {right.text}")
 
-    def _of_boolop(self, node: Any) -> Number:
-        stop = isinstance(node.op, ast.Or)
-        slot, end = self.reserve(TRUTH), self._label()
+    def _of_boolop(self, node: Any) -> Any:
+        return self.either(node, self.number)
+
+    def either(self, node: Any, of: Callable[[Any], Number]) -> Any:
+        """Translate `and` or `or`, whose value is the last of the values that are needed."""
+        stop, end = isinstance(node.op, ast.Or), self._label()
+        values: list[Any] = []
+        later: list[list[str]] = []
         for i, each in enumerate(node.values):
-            value = self.test(each)
-            self.write(value, slot, TRUTH)
+            values.append(of(each))
+            later.append(self.gap())
             following = end if i == len(node.values) - 1 else self._label()
             if following == end:
                 self._jump(end)
             elif stop:
-                self._branch(value, end, following)
+                self._branch(self.truth(values[-1]), end, following)
             else:
-                self._branch(value, following, end)
+                self._branch(self.truth(values[-1]), following, end)
             self._start(following)
-        found: Number = self.read(TRUTH, slot)
-        return found
+        return self.one_of(values, later)
+
+    def gap(self) -> list[str]:
+        """Return a place for instructions that are added later."""
+        self.lines.append([])
+        gap: list[str] = self.lines[-1]
+        return gap
+
+    def one_of(self, values: list[Any], later: list[list[str]]) -> Any:
+        """Return the value whose branch is followed; each is written at the place left for it."""
+        kind = values[0].kind
+        for each in values:
+            kind = common(kind, each.kind)
+        slot, lines = self.reserve(kind), self.lines
+        for value, own in zip(values, later, strict=True):
+            self.lines = own
+            self.write(value, slot, kind)
+        self.lines = lines
+        return self.read(kind, slot)
 
     def _of_compare(self, node: Any) -> Number:
         left, found = self.number(node.left), None
         for op, each in zip(node.ops, node.comparators, strict=True):
             if isinstance(op, ast.In):
                 tests = [self.compared(ast.Eq, left, self.number(one)) for one in each.elts]
-                return self.joined("or", tests)
-            right = self.number(each)
-            test = self.compared(type(op), left, right)
+                test = self.joined("or", tests)
+            else:
+                right = self.number(each)
+                test = self.compared(type(op), left, right)
+                left = right
             found = test if found is None else self.joined("and", [found, test])
-            left = right
         assert found is not None
         return found
 
@@ -619,19 +690,13 @@ class _Body(Instructions):
         for label, branch in ((yes, node.body), (no, node.orelse)):
             self._start(label)
             values.append(self.of(branch))
-            later.append([])
-            self.lines.append(later[-1])
+            later.append(self.gap())
             self._jump(end)
         self._start(end)
-        kind = common(values[0].kind, values[1].kind)
-        slot, lines = self.reserve(kind), self.lines
-        for value, own in zip(values, later, strict=True):
-            self.lines = own
-            self.write(value, slot, kind)
-        self.lines = lines
-        return self.read(kind, slot)
+        return self.one_of(values, later)
 
     def _of_call(self, node: Any) -> Any:
+        self.refuse(node.keywords and node.keywords[0].value)
         called = self.of(node.func)
         given = [self.of(each) for each in node.args]
         if not isinstance(called, Global):
@@ -657,6 +722,8 @@ class _Body(Instructions):
         symbol = INTRINSIC.get(name, f"calm.{name}")
         if function is not getattr(math, name, None) or name not in (*INTRINSIC, *FROM_MATH):
             raise TypeError(f"laws do not call {name}")
+        if len(given) != (2 if name in OF_TWO else 1):
+            raise TypeError(f"{name} has {len(given)} arguments")
         self.program.declare(symbol, len(given))
         numbers = [f"double {self.as_kind(each, REAL).text}" for each in given]
         return self.value(REAL, f'call double @"{symbol}"({", ".join(numbers)})')
@@ -669,6 +736,7 @@ class _Body(Instructions):
     def _call_abs(self, _: Any, value: Number) -> Number:
         if value.kind == REAL:
             return self.value(REAL, f"call double @llvm.fabs.f64(double {value.text})")
+        value = self.as_kind(value, WHOLE)
         return self.lesser(self.value(WHOLE, f"sub nsw i64 0, {value.text}"), value, "sgt")
 
     def lesser(self, one: Number, other: Number, order: str) -> Number:
@@ -693,6 +761,9 @@ class _Body(Instructions):
 
     _call_min = _call_max
 
+    def _call_floor(self, function: Any, value: Number) -> Number:
+        return self._call_int(function, self._call_math(function, value))
+
     def _call_int(self, _: Any, value: Number) -> Number:
         if value.kind == REAL:
             return self.value(WHOLE, f"fptosi double {value.text} to i64")
@@ -707,13 +778,15 @@ class _Body(Instructions):
         return self.truth(value)
 
     def _call_isnan(self, _: Any, value: Number) -> Number:
+        value = self.as_kind(value, REAL)
         return self.value(TRUTH, f"fcmp uno double {value.text}, {value.text}")
 
     def _call_isfinite(self, function: Any, value: Number) -> Number:
-        size = self._call_abs(function, value)
+        size = self._call_abs(function, self.as_kind(value, REAL))
         return self.value(TRUTH, f"fcmp olt double {size.text}, {number_of(math.inf).text}")
 
     def _call_degrees(self, _: Any, value: Number) -> Number:
+        value = self.as_kind(value, REAL)
         return self.value(REAL, f"fmul double {value.text}, {number_of(180.0 / math.pi).text}")
 
 

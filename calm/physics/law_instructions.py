@@ -19,7 +19,7 @@ from calm.physics.law_kinds import (
 
 
 class Number(NamedTuple):
-    """A number in LLVM's notation, and its value if the compiler knows it."""
+    """A number in LLVM's notation. For a constant, `known` is the value."""
 
     kind: str
     text: str
@@ -27,7 +27,10 @@ class Number(NamedTuple):
 
 
 class Held(NamedTuple):
-    """A row or a sequence in memory, by its address. A `passing` one may be overwritten later."""
+    """A row or a sequence in memory, given by its address.
+
+    If `passing` is true, the memory may be overwritten later.
+    """
 
     kind: Any
     address: str
@@ -35,14 +38,14 @@ class Held(NamedTuple):
 
 
 class Made(NamedTuple):
-    """A tuple of values, which is not in memory."""
+    """A tuple that is not in memory, given by the values of its members."""
 
     kind: Row
     members: tuple[Any, ...]
 
 
 class ArrayView(NamedTuple):
-    """A sequence: the address of its data, and its shape."""
+    """A sequence, given by the address of its data and by its shape."""
 
     kind: Array
     data: str
@@ -50,13 +53,13 @@ class ArrayView(NamedTuple):
 
 
 class Global(NamedTuple):
-    """A function, class or module that a law names."""
+    """A function, class or module to which the source of a law refers."""
 
     value: Any
 
 
 def number_of(value: Any) -> Number:
-    """Return a known number."""
+    """Convert a Python number to a constant in LLVM's notation."""
     if isinstance(value, bool):
         return Number(TRUTH, str(value).lower(), value)
     if isinstance(value, int):
@@ -65,7 +68,7 @@ def number_of(value: Any) -> Number:
 
 
 def row_of(members: Any, named: Any = None) -> Made:
-    """Return a tuple of values."""
+    """Combine values into a tuple. The class of the tuple is `named`, if this is given."""
     members = tuple(members)
     return Made(Row(named, tuple(each.kind for each in members)), members)
 
@@ -88,12 +91,12 @@ class Instructions:
         self.lines.append(text)
 
     def fresh(self) -> str:
-        """Return a new name for a value."""
+        """Return a name that no other value has."""
         self.count += 1
         return f"%t{self.count}"
 
     def value(self, kind: str, text: str) -> Number:
-        """Emit an instruction with a result."""
+        """Append an instruction that computes a number, and return this number."""
         name = self.fresh()
         self.lines.append(f"{name} = {text}")
         return Number(kind, name)
@@ -105,7 +108,7 @@ class Instructions:
         return name
 
     def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return an address that is some numbers further."""
+        """Return the address that is `place` times `unit` words of eight bytes after an address."""
         if place in (0, "0"):
             return address
         name = self.fresh()
@@ -114,7 +117,7 @@ class Instructions:
         return name
 
     def read(self, kind: Any, address: str, passing: bool = False) -> Any:
-        """Return the value at an address. A row is not copied."""
+        """Return the value of a given kind at an address. A row is not copied."""
         if isinstance(kind, Row):
             return Held(kind, address, passing)
         if isinstance(kind, Array):
@@ -127,7 +130,7 @@ class Instructions:
         return self.value(kind, f"load {kind}, ptr {address}")
 
     def write(self, value: Any, address: str, kind: Any) -> None:
-        """Write a value, converted to a kind, to an address."""
+        """Convert a value to a kind, and write the value to an address."""
         if isinstance(kind, Row):
             if isinstance(value, Held) and value.kind.members == kind.members:
                 size = size_of(kind)
@@ -152,14 +155,14 @@ class Instructions:
             self.emit(f"store {number.kind} {number.text}, ptr {address}")
 
     def member(self, row: Any, i: int) -> Any:
-        """Return a member of a tuple."""
+        """Return member number i of a tuple."""
         if isinstance(row, Made):
             return row.members[i]
         address = self.at(row.address, places_of(row.kind)[i])
         return self.read(row.kind.members[i], address, row.passing)
 
     def viewed(self, array: Any) -> ArrayView:
-        """Return the address of the data of a sequence, and its shape."""
+        """Return a sequence as an `ArrayView`."""
         if isinstance(array, ArrayView):
             return array
         data = self.value(FUNCTION, f"load ptr, ptr {array.address}").text
@@ -170,7 +173,7 @@ class Instructions:
         return ArrayView(array.kind, data, tuple(shape))
 
     def kept(self, value: Any) -> Any:
-        """Return a value that does not change if a variable is set again."""
+        """Return a value, copied if necessary so that it is not overwritten later."""
         if isinstance(value, Held) and value.passing:
             address = self.reserve(value.kind)
             self.write(value, address, value.kind)
@@ -180,7 +183,7 @@ class Instructions:
         return value
 
     def as_kind(self, value: Any, kind: Any) -> Any:
-        """Convert a value to a kind."""
+        """Convert a value to a kind, for example a whole number to a real number."""
         if value.kind == kind:
             return value
         if isinstance(kind, Row):
@@ -198,7 +201,7 @@ class Instructions:
         return self.value(kind, f"{how[value.kind, kind]} {value.kind} {value.text} to {kind}")
 
     def address_of(self, row: Any) -> str:
-        """Return the address of a tuple, which is written to memory if it is not there."""
+        """Return the address of a tuple. The tuple is written to memory if it is not there yet."""
         if isinstance(row, Held):
             return row.address
         address = self.reserve(row.kind)
@@ -206,7 +209,7 @@ class Instructions:
         return address
 
     def call_law(self, law: Any, given: list[Any]) -> tuple[Any, Any]:
-        """Call a law, and return the kind of its result and the result."""
+        """Append the call of a law, and return the kind of its result and the result."""
         names = law.__code__.co_varnames[: law.__code__.co_argcount]
         for i, name in enumerate(names):
             hint = law.__annotations__.get(name)

@@ -20,14 +20,14 @@ BY_NAME: dict[Any, str] = {float: REAL, int: WHOLE, bool: TRUTH}
 
 
 class Row(NamedTuple):
-    """Kind of a tuple: its class, if it has names, and the kinds of its members."""
+    """Kind of a tuple, with the class of a named tuple (else None) and the kinds of the members."""
 
     named: Any
     members: tuple[Any, ...]
 
 
 class Array(NamedTuple):
-    """Kind of a sequence: the kind of its elements, and its number of dimensions."""
+    """Kind of a sequence, with the kind of its elements and its number of dimensions."""
 
     item: Any
     dimensions: int
@@ -38,7 +38,7 @@ NOTHING = Row(None, ())
 
 @cache
 def size_of(kind: Any) -> int:
-    """Return the size of a value, in numbers."""
+    """Return the number of eight-byte words that a value of a given kind takes."""
     if isinstance(kind, Row):
         return sum(map(size_of, kind.members))
     return 1 + kind.dimensions if isinstance(kind, Array) else 1
@@ -46,18 +46,21 @@ def size_of(kind: Any) -> int:
 
 @cache
 def places_of(row: Row) -> tuple[int, ...]:
-    """Return the position of every member of a row, in numbers."""
+    """Return the position of every member in a row, counted in words of eight bytes."""
     return tuple(sum(map(size_of, row.members[:i])) for i in range(len(row.members)))
 
 
 @cache
 def wanted_by(named: Any) -> tuple[Any, ...]:
-    """Return the kinds that a named tuple declares for its members; None for other types."""
+    """Return the kind of number that a named tuple declares for each member.
+
+    The kind is None for a member that is not a number.
+    """
     return tuple(BY_NAME.get(hint) for hint in get_type_hints(named).values())
 
 
 def common(one: Any, other: Any) -> Any:
-    """Return the kind of a variable that has values of two kinds."""
+    """Return the kind of a variable to which values of two kinds are assigned."""
     if one == other:
         return one
     if isinstance(one, Row) and isinstance(other, Row) and len(one.members) == len(other.members):
@@ -75,7 +78,7 @@ FROM_MATH = ("log", "pow", "sin", "cos", "tan", "asin", "acos", "atan", "atan2",
 
 @cache
 def record_type(named: type) -> np.dtype[Any]:
-    """Return the numpy record type of a named tuple of numbers."""
+    """Return the NumPy record type for a class of named tuples of numbers."""
     fields = get_type_hints(named).items()
     record = np.dtype([(name, np.int64 if kind is int else np.float64) for name, kind in fields])
     _records[record] = named
@@ -86,7 +89,7 @@ _records: dict[np.dtype[Any], type] = {}
 
 
 def kind_of(value: Any, hint: Any = None) -> Any:
-    """Return the kind of a value for `calm.physics.law_compiler`."""
+    """Return the kind of a Python value, as `calm.physics.law_compiler` uses it."""
     if hint in BY_NAME:
         return BY_NAME[hint]
     if value is None:
@@ -111,7 +114,7 @@ def _number_kind(of: Any) -> str:
 
 
 def kind_asked(hint: Any) -> Any:
-    """Return the kind of a result from its type."""
+    """Return the kind of a result from the type hint of the function."""
     if hint in BY_NAME:
         return BY_NAME[hint]
     if hint in (None, type(None)):
@@ -122,7 +125,7 @@ def kind_asked(hint: Any) -> Any:
 
 
 class Layout:
-    """Conversion of values of a kind to and from numbers of eight bytes."""
+    """Conversion between Python values of one kind and their bytes in memory."""
 
     def __init__(self, kind: Any) -> None:
         self.kind, self.size = kind, 8 * size_of(kind)
@@ -135,7 +138,7 @@ class Layout:
         return self._struct.pack(*self._numbers(value))
 
     def read(self, data: bytes) -> Any:
-        """Return the value of bytes."""
+        """Return the value that the bytes represent."""
         return _built(self.kind, iter(self._struct.unpack(data)))
 
 

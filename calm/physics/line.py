@@ -26,7 +26,11 @@ if TYPE_CHECKING:
 
 
 class MarchError(ArithmeticError):
-    """A march cannot continue: an element has no balance, or the line needs too many segments."""
+    """Raised if a march cannot continue.
+
+    The forces or moments on an element do not balance, the line extends without limit, or the line
+    needs too many segments.
+    """
 
 
 State = tuple[float, float, float, float, float, float, float, int]
@@ -51,13 +55,13 @@ NO_BALANCE = -2.0
 
 
 class Bed(NamedTuple):
-    """Plane seabed below an anchor, with its friction on a line that rests on it.
+    """Plane seabed below an anchor, with the friction on a line that lies on the seabed.
 
     Attributes
     ----------
-    east, north : slope of the seabed: increase in depth per metre east and north [-]
+    east, north : slope of the seabed, as the increase in depth per metre to the east and north [-]
     friction : friction coefficient along a line on the seabed [-]
-    excess : additional buoyancy per displaced cubic metre, relative to reference water [N/m³]
+    excess : buoyancy per displaced cubic metre, in excess of that in reference water [N/m³]
     """
 
     east: float
@@ -68,9 +72,10 @@ class Bed(NamedTuple):
 
 @within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
-    """Return the height above the seabed plane of the tip of a vector that starts on the plane.
+    """Return the height of a point above the seabed plane.
 
-    For a force, this is its component normal to the plane, times √(1 + tan² slope).
+    The vector x, y, z leads from a point on the plane to the point. If the vector is a force, the
+    result is the component of the force normal to the plane, times √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -100,7 +105,7 @@ part that is marched in two halves; level that splits a segment.
 
 @within
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write the position [m] and the force above it [N] of a state to node n of a record."""
+    """Write the position [m] of a state, and the force above it [N], to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -114,7 +119,10 @@ def write_node(record: Record, n: int, state: State) -> None:
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:
-    """Write the element that ends at node n to a record; `clamp` is -1 for a part of the piece."""
+    """Write the element that ends at node n to a record.
+
+    `clamp` is the index of the clamp, or -1 if the element is part of the piece itself.
+    """
     record[6][n] = piece
     record[7][n] = clamp
     record[8][n] = cut
@@ -124,16 +132,17 @@ def write_element(
 
 @dataclass(frozen=True)
 class Trace:
-    """Shape of a line from a recorded march: k + 1 nodes, free end first, and k elements.
+    """Shape of a line from a recorded march, with k + 1 nodes from the free end on, and k elements.
 
     Attributes
     ----------
-    position : (k+1, 3) position [m]
+    position : (k+1, 3) position of each node [m]
     force : (k+1, 3) force above each node [N]
-    piece, clamp : (k,) piece and clamp of each element; the clamp is -1 for a part of the piece
+    piece, clamp : (k,) indices of the piece and the clamp of each element; the clamp is -1 if the
+        element is part of the piece itself
     cut : (k,) unstretched length of each element [m]
-    strain : (k,) strain of each element; 0 for rigid pieces
-    better : (k+1, 6) extrapolated position [m] and force [N] of each node of a refined shape
+    strain : (k,) strain of each element; 0 for rigid pieces and clamps
+    better : (k+1, 6) extrapolated position [m] and force [N] of each node, if the shape was refined
     """
 
     position: Floats
@@ -188,7 +197,11 @@ _Made = TypeVar("_Made")
 
 
 def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]:
-    """Cache the result of a function of a `Line` or a `Water` on this object, which is constant."""
+    """Decorate a function of a `Line` or `Water` so that its result is stored in this object.
+
+    The function is then called only once for each object. This is valid because these objects do
+    not change.
+    """
     name = f"{make.__module__}.{make.__qualname__}"
 
     @wraps(make)
@@ -266,13 +279,13 @@ _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 @_of_arrays
 @dataclass(frozen=True)
 class Line(_Arrays):
-    """The n pieces of a line, and the m instruments clamped on them.
+    """The n pieces of a line, and the m instruments clamped on these pieces.
 
-    The pieces of a mooring are listed from the free end to the anchor, those of a tow from the ship
-    to the towed body.
+    The pieces of a mooring are listed from the free end to the anchor, and the pieces of a tow from
+    the ship to the towed body.
 
-    Buoyancies and drags refer to sea water of 1025 kg/m³. For `flexible` pieces (cable, chain),
-    `buoyancy`, `volume` and drags are per unstretched metre.
+    Buoyancies and drags refer to sea water with a density of 1025 kg/m³. For `flexible` pieces
+    (cable, chain), `buoyancy`, `volume` and drags are per unstretched metre.
 
     Attributes
     ----------
@@ -280,28 +293,28 @@ class Line(_Arrays):
     flexible : (n,) True for a cable or chain, which is divided into segments; False for a rigid
         piece
     buoyancy : (n,) net buoyancy, positive up [N or N/m]
-    volume : (n,) displaced volume [m³ or m³/m], by which the buoyancy varies with the density of
-        the water; 0 if unknown
+    volume : (n,) displaced volume [m³ or m³/m], which determines how the buoyancy varies with the
+        density of the water; 0 if unknown
     normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre if flexible]
     directional : (n,) False if the drag is Kn|V|V for any direction of the flow
-    compliance : (n,) 1/EA [1/N]; 0 if inextensible
+    compliance : (n,) compliance 1/EA [1/N]; 0 if the piece is inextensible
     thinning : (n,) exponent in the factor (1 + strain)**thinning by which the drag per unstretched
-        metre grows: 1/2 if the volume is conserved (cables), 0 for chains
+        metre grows; 1/2 if the volume is conserved (cables), 0 for chains
     clamp_piece : (m,) index of the piece to which each instrument is clamped
     clamp_at : (m,) distance from the top of that piece along its unstretched length [m]
     clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and K
         of the drag K|V|V [N/(m/s)²]
     anchor_height : height of the end of the line above the seabed [m]
-    lift, clamp_lift : (n,), (m,) upward force of bodies at 1 m/s [N/(m/s)²]; 0 by default
-    diameter : (n,) diameter of cables and chains [m]; 0 by default, which means no strumming
+    lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; 0 by default
+    diameter : (n,) diameter of cables and chains [m]; 0, the default, means no strumming
     friction : tangential drag law of cables and chains
-    strumming : strumming law of the cables, on which `normal_drag` is then the drag without
-        strumming; None if they do not strum
+    strumming : strumming law of the cables, or None. With a strumming law, `normal_drag` is the
+        drag without strumming
     towed : whether the free end is towed; rigid pieces at a towed end are not rigidly connected to
         each other
     push_east, push_north : (n,) force of the wind on a piece [N]; 0 by default
-    floating : properties of the first float, which is at the surface; None places it just below the
-        surface
+    floating : properties with which the first float rides at the surface; if None, a float that
+        reaches the surface is placed just below the surface
     elongation : (n,) elongation curves of cables, which replace their `compliance`; None for other
         pieces; () if no cable has a curve
     drag_curve, clamp_drag_curve : (n,), (m,) curves of the normal drag of smooth spheres and
@@ -338,7 +351,7 @@ class Line(_Arrays):
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
-        """Add zeros for forces and diameters that are not given."""
+        """Return the given arguments, with zeros for forces and diameters that are not given."""
         absent = {
             name: np.zeros(np.size(given.get(like, ())))
             for like, names in _ZERO_BY_DEFAULT.items()
@@ -380,7 +393,7 @@ class Line(_Arrays):
 
         Parameters
         ----------
-        excess : (n,) additional buoyancy per displaced cubic metre, relative to reference water
+        excess : (n,) buoyancy per displaced cubic metre, in excess of that in reference water
             [N/m³]
         """
         whole = np.where(self.flexible, self.length, 1.0)
@@ -391,9 +404,9 @@ class Line(_Arrays):
 
     @property
     def plumb_drag(self) -> Floats:
-        """Drag (n,) of each whole piece with its clamps, in vertical flow past the vertical line.
+        """Drag factor (n,) of each whole piece with its clamps, if line and flow are vertical.
 
-        It is in N/(m/s)², for reference water and constant coefficients.
+        The unit is N/(m/s)². The factor applies to reference water and constant drag coefficients.
         """
         along = np.where(self.directional, self.tangential_drag, self.normal_drag)
         total: Floats = along * np.where(self.flexible, self.length, 1.0)
@@ -416,7 +429,10 @@ class Line(_Arrays):
         }
 
     def below_a_point(self) -> Line:
-        """Return the line below an additional first piece without length, weight and drag."""
+        """Return a copy of the line with a point as an additional first piece.
+
+        This piece has no length, weight or drag.
+        """
         columns: dict[str, Any] = {
             name: np.append(np.zeros(1, column.dtype), column)
             if isinstance(column, np.ndarray)
@@ -426,7 +442,7 @@ class Line(_Arrays):
         return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
 
     def reversed(self) -> Line:
-        """Return the line listed from its other end, which clamp positions then refer to."""
+        """Return a copy of the line whose pieces and clamps are listed from the other end."""
         on = self.clamp_piece
         return replace(
             self,
@@ -439,19 +455,19 @@ class Line(_Arrays):
 @_of_arrays
 @dataclass(frozen=True)
 class Water(_Arrays):
-    """The sea: depth, and current and density by level.
+    """Depth of the sea, and current and density at given depths, which are called levels.
 
     Attributes
     ----------
     depth : water depth [m]; infinite if there is no seabed (for a tow)
     level : (k,) depths of the levels [m], strictly increasing, k ≥ 1
-    u, v, w : (k,) current to the east, to the north, upward [m/s]
+    u, v, w : (k,) components of the current to the east, to the north, and upward [m/s]
     density : (k,) density [kg/m³]
     gravity : acceleration of gravity [m/s²]
     deeper_east, deeper_north : increase in depth of the seabed per metre east and north of the
         anchor [-]
-    viscosity_level, viscosity : (j,), (j,) depths [m], strictly increasing, and the kinematic
-        viscosity there [m²/s], for drag that depends on the Reynolds number
+    viscosity_level, viscosity : (j,), (j,) strictly increasing depths [m], and the kinematic
+        viscosity at these depths [m²/s], for drag that depends on the Reynolds number
 
     Values are linear between levels, and constant above the first and below the last level.
     """
@@ -488,13 +504,13 @@ class Water(_Arrays):
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
 
     def current_at(self, depth: Floats) -> Floats:
-        """Return the current (..., 3) [m/s] at depths of any shape [m]."""
+        """Return the current (..., 3) [m/s] at depths [m] in an array of any shape."""
         return np.stack([np.interp(depth, self.level, c) for c in (self.u, self.v, self.w)], -1)
 
     def density_at(self, depth: Floats) -> Floats:
-        """Return the density (...) [kg/m³] at depths of any shape [m]."""
+        """Return the density (...) [kg/m³] at depths [m] in an array of any shape."""
         return np.interp(depth, self.level, self.density)
 
     def viscosity_at(self, depth: Floats) -> Floats:
-        """Return the kinematic viscosity (...) [m²/s] at depths of any shape [m]."""
+        """Return the kinematic viscosity (...) [m²/s] at depths [m] in an array of any shape."""
         return np.interp(depth, self.viscosity_level, self.viscosity)

@@ -33,13 +33,13 @@ arrays.
 
 
 class Cuts(NamedTuple):
-    """Segments of all cables: their unstretched lengths [m], and their number in each cable."""
+    """Unstretched lengths of all cable segments [m], and number of segments in each cable."""
 
     lengths: Floats
     counts: Integers
 
     def halved(self) -> Cuts:
-        """Divide every segment into two halves."""
+        """Return segments that are the halves of these segments."""
         return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
 
     def first(self, cables: int) -> Cuts:
@@ -52,7 +52,7 @@ class Cuts(NamedTuple):
         return Cuts(self.lengths[self.counts[:cables].sum() :], self.counts[cables:])
 
     def and_then(self, others: Cuts) -> Cuts:
-        """Append the segments of further cables."""
+        """Return these segments followed by the segments of further cables."""
         lengths = np.concatenate([self.lengths, others.lengths])
         return Cuts(lengths, np.concatenate([self.counts, others.counts]))
 
@@ -66,9 +66,9 @@ class End:
 
     Attributes
     ----------
-    z, force : height relative to the sea surface [m], and force above the end [N]
+    z, force : height of the end above the sea surface [m], and force just above the end [N]
     cuts : segments used
-    record, nodes : record of the march, and its number of nodes
+    record, nodes : record of the march, and number of nodes in the record
     """
 
     z: float
@@ -103,12 +103,13 @@ def march(
     reach : largest length of a segment [m]
     cuts : the segments to use; None lets the march choose them
     record : whether to record every node and element
-    compiled : whether to run compiled code, else the interpreter
+    compiled : whether to run compiled code; otherwise the code is interpreted
 
     Raises
     ------
     MarchError
-        An element has no balance, or a cable needs more than 50 000 segments.
+        The forces or moments on an element do not balance, or a cable needs more than 50 000
+        segments.
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
     stages, level, known = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0), cuts is not None

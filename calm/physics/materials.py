@@ -19,13 +19,14 @@ class Material:
     Attributes
     ----------
     name : name in files
-    words : regular expression that matches its common names from the beginning of a word
+    words : regular expression that matches common names of the material, from the beginning of a
+        word
     family : `metal` (corrodes), `fibre` (stretches) or `other`
-    density : density of the solid [kg/m³], None if it varies
-    potential : middle of its corrosion potential in sea water [V]
-    stiffnesses : pairs a, b of published stiffnesses EA = (a + b D) D² of ropes of diameter D
-    strength : largest tensile strength of its rope wire or yarn [Pa], None if no ropes are made of
-        it
+    density : density of the solid [kg/m³]; None if the density varies
+    potential : midpoint of the range of the corrosion potential in sea water [V]
+    stiffnesses : pairs a, b for published stiffnesses EA = (a + b D) D² of ropes with diameter D
+    strength : largest tensile strength of rope wire or yarn [Pa]; None if no ropes are made of this
+        material
     """
 
     name: str
@@ -124,18 +125,18 @@ def materials_in(text: str | None) -> tuple[Material, ...]:
 
 
 def density_of(text: str | None) -> float | None:
-    """Return the density of the single material named in a text [kg/m³].
+    """Return the density of the material that a text names [kg/m³].
 
-    Return None if the text names no material, or several with different densities.
+    Return None if the text names no material, or several materials with different densities.
     """
     densities = {material.density for material in materials_in(text)}
     return densities.pop() if len(densities) == 1 else None
 
 
 def fibre_of(text: str | None) -> Material | None:
-    """Return the fibre of a rope, or None for wire with or without a jacket.
+    """Return the fibre of which a rope is made, or None for wire rope with or without a jacket.
 
-    For a blend, this is the first fibre named.
+    For a blend, the result is the fibre that is named first.
     """
     named = materials_in(text)
     if any(material.family == "metal" and material.name != "lead" for material in named):
@@ -155,7 +156,7 @@ def potential_of(text: str | None) -> float | None:
 
 
 def published_stiffnesses(text: str | None, diameter: float) -> tuple[float, ...]:
-    """Return all published values of the stiffness EA for a rope's fibre [N], in increasing order.
+    """Return all published values of the stiffness EA [N] of a fibre rope, in increasing order.
 
     Parameters
     ----------

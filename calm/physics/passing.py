@@ -72,13 +72,13 @@ class MarchSettings(NamedTuple):
     near : allowed distance between a load and the depth at which the water is sampled [m]; 0
         requires full precision
     stages : number of stages to march
-    lands : whether the line may touch down, below the last buoyant piece, where its force normal to
-        the seabed vanishes; the rest of the line then lies on the seabed
+    lands : whether the line may touch down. A touchdown is below the last buoyant piece, where the
+        force normal to the seabed vanishes; the rest of the line then lies on the seabed
     bed : the seabed
     given : whether the segments are given; otherwise the march chooses them
-    exact : whether segments are split at every level; otherwise only at levels with an appreciable
-        effect
-    halves : whether each segment or part is integrated in two halves
+    exact : whether segments are split at every level of the water profile; otherwise they are split
+        only at levels with an appreciable effect
+    halves : whether each segment, or part of a segment, is integrated in two halves
     recording : whether every node and element is recorded
     """
 
@@ -109,12 +109,12 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of the pieces above the surface [m], which then determines the depth; 0 if there
-        are none
-    cuts, counts : unstretched lengths of the segments [m], and their number in each cable; input if
-        the segments are given, else output
-    record : output of nodes and elements
-    left : output of the results, see the indices `Z` to `FAILURE`
+    out : length of line above the surface at the free end [m], which determines the depth instead;
+        0 if no part is above the surface
+    cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
+        these are input if the segments are given, otherwise output
+    record : array to which nodes and elements are written
+    left : array to which the results are written, with the indices `Z` to `FAILURE`
     """
     if out > 0.0:
         depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)
@@ -185,8 +185,8 @@ def pass_cable(
 
     Returns
     -------
-    The state; the unstretched length above the touchdown [m], or -1 without touchdown; the numbers
-    of segments and of nodes so far; and the outcome.
+    The state at the end of the cable; the unstretched length above the touchdown [m], or -1 without
+    touchdown; the numbers of segments and of nodes so far; and the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:
@@ -276,9 +276,9 @@ def cut_evenly(
     length: float,
     reach: float,
 ) -> int:
-    """Choose equal segments for a length of cable that is not integrated.
+    """Choose equal segments for a length of cable on the seabed, which is not integrated.
 
-    Return the total number of segments so far. Segments beyond the end of the array `cuts` are
+    Return the total number of segments so far. If the array `cuts` is full, further segments are
     counted but not written.
     """
     if length <= 0.0:

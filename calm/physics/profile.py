@@ -20,9 +20,10 @@ is not split at the level. Without this limit, every part would be split at a le
 
 
 class Interval(NamedTuple):
-    """Water between two levels: current u, v, w [m/s] and density [kg/m³].
+    """Current u, v, w [m/s] and density [kg/m³] of the water between two levels.
 
-    Each has its value at the depth `origin` [m], and its increase per metre of depth.
+    Each quantity is given by its value at the depth `origin` [m] and its increase per metre of
+    depth.
     """
 
     origin: float
@@ -56,10 +57,10 @@ class Sea(NamedTuple):
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
     intervals : water in each interval
-    bends : relative change at each level of the slopes of current and density, see `find_bends`
-        [1/m]
+    bends : relative change of the slopes of current and density at each level [1/m], see
+        `find_bends`
     gravity : acceleration of gravity [m/s²]
-    strata : kinematic viscosity by depth, from -inf down
+    strata : kinematic viscosity in strata, from the top down; the first stratum begins at -inf
     """
 
     levels: Sequence[float]
@@ -72,7 +73,7 @@ class Sea(NamedTuple):
 def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
     """Return the index of the interval that contains `depth` [m], searching from interval `i`.
 
-    Return `i` if the depth is not finite, because the line has diverged.
+    The result is `i` if the depth is not finite, which means that the line has diverged.
     """
     if not isfinite(depth):
         return i
@@ -85,7 +86,7 @@ def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
 
 @within
 def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
-    """Return current u, v, w [m/s], density [kg/m³] and interval at a depth [m].
+    """Return current u, v, w [m/s], density [kg/m³], and index of the interval, at a depth [m].
 
     The search for the interval starts at interval `i`.
     """
@@ -115,11 +116,12 @@ def viscosity_at(sea: Sea, depth: float) -> float:
 def distance_to_bend(
     sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Return the distance to the next kink of the drag [m], along a path.
+    """Return the distance [m] along a path to the next kink of the drag.
 
-    The kink is at the next level. If the flow almost vanishes within a segment before that level,
-    |V| V has a kink there, at the depth of minimum flow. A level within the fraction `LEAST_PART`
-    of the length is skipped, unless a segment of that length has to be split there.
+    The next kink is usually at the next level. If the flow almost vanishes before that level,
+    within the length of a segment, |V| V has a kink at the depth of minimum flow. A level nearer
+    than the fraction `LEAST_PART` of the length is skipped, unless a segment with this length has
+    to be split at the level.
 
     Parameters
     ----------
@@ -154,17 +156,17 @@ def distance_to_bend(
 
 
 def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
-    """True if two depths [m] are both in interval `i`."""
+    """Return whether two depths [m] are both in interval `i`."""
     upper, lower = sea.levels[i], sea.levels[i + 1]
     return upper <= start < lower and upper <= end < lower
 
 
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
-    """Return the index of the first level at which a straight segment has to be split, else 0.
+    """Return the index of the first level at which a straight segment has to be split, or 0.
 
     Parameters
     ----------
-    hint : interval at which the search for the ends starts
+    hint : interval at which the search for the two depths starts
     start, end : depths of the ends of the segment [m]
     share : see `counts_across`
     """
@@ -181,30 +183,30 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 
 @within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
-    """True if a segment that crosses a level has to be split there.
+    """Return whether a segment that crosses a level has to be split at the level.
 
-    The water at the midpoint of a segment represents the mean along it. If the slope of the current
-    changes by b at a level, the error of this mean is b·off²/(2·length). The segment has to be
-    split if twice this error exceeds `share` of the flow at the level. The same holds for the
-    density, which jumps where a tow leaves the water.
+    The water at the midpoint of a segment represents the mean along the segment. If the slope of
+    the current changes by b at a level, the error of this mean is b·off²/(2·length). The segment
+    has to be split if twice this error exceeds the fraction `share` of the current at the level.
+    The density, which jumps at the surface for a tow, is treated in the same way.
 
     Parameters
     ----------
     k : index of the level
     off : depth range of the segment on the far side of the level [m]
     length : depth range of the segment [m]
-    share : allowed error relative to the flow [-]
+    share : allowed error relative to the current or density [-]
     """
     return off > NEAR_A_LEVEL * length and sea.bends[k] * off * off > share * length
 
 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
-    """Compute the relative change in slope of current and density at each level [1/m].
+    """Compute the relative change of the slopes of current and density at each level [1/m].
 
     Parameters
     ----------
     intervals : intervals of the water; interval k begins at level k
-    bends : output, one value for each level from -inf to inf
+    bends : output; one value for each level from -inf to inf
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):
@@ -220,7 +222,10 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
 
 
 class Profile:
-    """Water profile in the form used by the march, constant beyond its first and last level."""
+    """Water profile in the form used by the march.
+
+    Above the first level and below the last level, all values are constant.
+    """
 
     def __init__(self, water: Water) -> None:
         depths = water.level.tolist()
@@ -252,14 +257,14 @@ class Profile:
 
     @cached_property
     def packed(self) -> Sea:
-        """The profile in the array form used by compiled code."""
+        """The profile as arrays, for compiled code."""
         sea: Sea = packed(self.sea)
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """Return the additional buoyancy per displaced volume at a depth [N/m³].
+        """Return the excess buoyancy per displaced cubic metre at a depth [N/m³].
 
-        It is relative to reference water.
+        The excess is relative to reference water.
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity

@@ -26,14 +26,16 @@ a stretch of 2 %.
 
 
 class RefereeBody(NamedTuple):
-    """A piece or a clamp of a line.
+    """A piece or a clamp of a line, as the audit uses it.
 
     Attributes
     ----------
     flexible, length, buoyancy, volume, normal_drag, tangential_drag, directional, compliance,
     thinning, lift, push_east, push_north, diameter : as in `Line`
-    smooth, lengthening : diameter [m] and lengthening of its `DragCurve`; 0 without a curve
-    first_knot, end_knot : range of the knots of its elongation curve; equal without a curve
+    smooth, lengthening : diameter [m] and `lengthening` of the body's `DragCurve`; 0 without a
+        curve
+    first_knot, end_knot : range of the knots of the body's elongation curve; the two are equal
+        without a curve
     """
 
     flexible: int
@@ -56,10 +58,10 @@ class RefereeBody(NamedTuple):
 
 
 class Moored(NamedTuple):
-    """A line and its water: properties of the pieces, followed by those of the clamps.
+    """A line and its water, as the audit uses them.
 
-    The first `head` pieces form one rod. `friction` is the number of a friction law, and
-    `frequency` is the frequency of strumming [Hz].
+    `bodies` lists the pieces, followed by the clamps. The first `head` pieces form one rod.
+    `friction` is the number of a friction law, and `frequency` is the strumming frequency [Hz].
     """
 
     bodies: Sequence[RefereeBody]
@@ -80,12 +82,13 @@ class Moored(NamedTuple):
 
 
 class RefereeShape(NamedTuple):
-    """Nodes and elements of a shape, free end first.
+    """Nodes and elements of a shape, from the free end on.
 
     Attributes
     ----------
-    record : the nodes, and for each node the element that ends there, see `calm.physics.line`
-    nodes, hanging : numbers of nodes, and of elements above the touchdown
+    record : the nodes, and for each node the element that ends at this node, see
+        `calm.physics.line`
+    nodes, hanging : number of nodes, and number of elements above the touchdown
     first, last : first and last node of every piece
     """
 
@@ -97,7 +100,7 @@ class RefereeShape(NamedTuple):
 
 
 def find_ends(shape: RefereeShape) -> None:
-    """Find the first and the last node of every piece."""
+    """Write the first and last node of every piece to `shape.first` and `shape.last`."""
     pieces, node = len(shape.first), 0
     for piece in range(pieces):
         shape.first[piece] = node
@@ -111,8 +114,8 @@ def element_loads(
 ) -> None:
     """Compute buoyancy, drag and wind force of every element, and write them to `loads` [N].
 
-    The load of a rigid piece is computed at its midpoint and distributed over its elements by
-    length.
+    The load of a rigid piece is computed at the midpoint of the piece, and distributed over the
+    elements of the piece in proportion to their lengths.
     """
     east, north, up = loads[0], loads[1], loads[2]
     for i in range(shape.nodes - 1):
@@ -158,9 +161,10 @@ def chord(shape: RefereeShape, top: int, bottom: int) -> Vector:
 
 
 def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
-    """Return the axis of the rod to which a rigid piece belongs.
+    """Return a vector along the axis of the rod to which a rigid piece belongs.
 
-    For a rod without length, this is the direction opposite to the mean of the forces at its ends.
+    For a rod without length, the vector is opposite to the mean of the forces at the ends of the
+    rod.
     """
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
@@ -210,9 +214,9 @@ def drag_on(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the drag of a current on a body of axis t, in reference water and without stretch.
+    """Return the drag of a current on a body with unit axis t, in reference water, without stretch.
 
-    It is in N, or for cables and chains in N/m.
+    The drag is in N, or for cables and chains in N/m.
     """
     along = u * tx + v * ty + w * tz
     if not body.directional:
@@ -241,7 +245,7 @@ def drag_on(
 
 
 def varied(moored: Moored, body: RefereeBody, depth: float, speed: float) -> float:
-    """Return the ratio of the drag of a body to its drag with constant coefficients.
+    """Return the ratio of the normal drag on a body to the normal drag with constant coefficients.
 
     `speed` is the speed of the current normal to the axis of the body [m/s].
     """
@@ -277,11 +281,12 @@ def worst_moment(
 ) -> float:
     """Return the largest angle between an element and the mean of the forces at its ends [rad].
 
-    The forces are sums of the loads. If it is larger, the result is instead the difference between
-    the strain of a cable and the strain that these forces would cause. The rounding of the
-    coordinates is subtracted from both, and elements on the seabed are excluded. Towards a slack
-    end the tension vanishes, so its direction is undetermined. There, errors are subtracted that
-    correspond to the rounding of the largest tension and to the tolerance of the iterations.
+    The forces are sums of the loads. For cables, the strain is also compared with the strain that
+    these forces would cause; the result is the difference of the strains if this is larger than the
+    angles. The rounding error of the coordinates is subtracted from both, and elements on the
+    seabed are excluded. Towards a slack end the tension vanishes, so its direction is undetermined.
+    Near such an end, the errors due to the rounding of the largest tension and due to the tolerance
+    of the iterations are also subtracted.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging
@@ -321,9 +326,9 @@ def worst_moment(
 
 
 def greatest_size(shape: RefereeShape, first: int) -> float:
-    """Return the largest absolute coordinate [m], or the largest force [N].
+    """Return the largest absolute coordinate [m] or the largest force [N] of a shape.
 
-    `first` is 0 for coordinates and 3 for forces.
+    The parameter `first` is 0 for coordinates and 3 for forces.
     """
     greatest = 0.0
     for n in range(shape.nodes):
@@ -336,9 +341,9 @@ def greatest_size(shape: RefereeShape, first: int) -> float:
 
 
 def expected_strain(moored: Moored, body: RefereeBody, middle: float, half: float) -> float:
-    """Return the mean strain of a segment.
+    """Return the mean strain that the tensions in a segment cause.
 
-    The tension varies linearly by ± `half` about `middle` [N].
+    The tension varies linearly along the segment by ± `half` about `middle` [N].
     """
     if body.first_knot == body.end_knot:
         return body.compliance * middle
@@ -354,9 +359,10 @@ def rod_moment(
     fy: float,
     fz: float,
 ) -> float:
-    """Return the angle between a rod of several elements and the force that rotates it [rad].
+    """Return the angle between a rod of several elements and the force that rotates the rod [rad].
 
-    This force is the sum of the force above the rod and of the loads on it, each times its lever.
+    This force is the sum of the force above the rod and of all loads on the rod, each multiplied by
+    its lever.
     """
     dx, dy, dz = chord(shape, top, bottom)
     length = sqrt(dx * dx + dy * dy + dz * dz)
@@ -376,7 +382,10 @@ def rod_moment(
 
 
 def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
-    """Return the angle between an axis and the opposite of a force [rad]; 0 if either vanishes."""
+    """Return the angle between an axis and the opposite of a force [rad].
+
+    The result is 0 if the axis or the force is zero.
+    """
     cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
     across = sqrt(cx * cx + cy * cy + cz * cz)
     along = -(x * fx + y * fy + z * fz)

@@ -45,18 +45,20 @@ LARGEST_SPHERE, LARGEST_CYLINDER = 1e6, 4.94e6
 
 
 def cylinder_coefficient(reynolds: float) -> float:
-    """Return the coefficient Cn of a long smooth cylinder in flow normal to its axis.
+    """Return the drag coefficient Cn of a long smooth cylinder in flow normal to its axis.
 
     Parameters
     ----------
-    reynolds : |Vn| D/ν [-]; the coefficient is constant below 3.18, where drag no longer matters,
-        and above 4.94e6
+    reynolds : Reynolds number |Vn| D/ν [-]; the coefficient is constant below 3.18, where drag is
+        negligible, and above 4.94e6
 
-    Up to 1.61e5, where Cn is 1.18, the curve is Wieselsberger's measurements (NACA report 121).
-    From 2.1e5, where Cn is 1.21, it is DNV's recommendation (DNV-RP-C205, figure 6-6, smooth).
-    Between them it is linear in log Re. From 3e4 to 1.61e5 the measurements lie 2 to 4 % below the
-    recommendation. In the drag crisis the recommendation falls later, which is on the safe side,
-    and extends to higher Re. Roshko (1961) found 0.7 above 3.5e6, compared with 0.65 to 0.68 here.
+    Up to Re = 1.61e5, where Cn is 1.18, the curve follows Wieselsberger's measurements (NACA report
+    121). From Re = 2.1e5, where Cn is 1.21, the curve follows DNV's recommendation (DNV-RP-C205,
+    figure 6-6, smooth). Between these two Reynolds numbers Cn is linear in log Re. From 3e4 to
+    1.61e5 the measurements are 2 to 4 % below the recommendation. In the drag crisis, the
+    recommended Cn falls at a higher Re than the measured Cn, which is on the safe side. The
+    recommendation also extends to higher Re. Roshko (1961) found 0.7 above 3.5e6, compared with
+    0.65 to 0.68 here.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
@@ -66,8 +68,8 @@ def sphere_coefficient(reynolds: float) -> float:
 
     Parameters
     ----------
-    reynolds : |V| D/ν [-]; the coefficient is constant above 1e6, and below 0.1, where drag no
-        longer matters
+    reynolds : Reynolds number |V| D/ν [-]; the coefficient is constant above 1e6, and below 0.1,
+        where drag is negligible
 
     Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan Technological
     University, 2016), whose author advises Re < 1e6.
@@ -86,12 +88,13 @@ def sphere_coefficient(reynolds: float) -> float:
 
 
 class Smooth(NamedTuple):
-    """Properties of a smooth sphere or cylinder in water that determine its drag.
+    """Properties that determine the drag of a smooth sphere or cylinder in water.
 
     Attributes
     ----------
     reynolds : Reynolds number at 1 m/s [-]
-    lengthening : for a cylinder, κ(L/D) above the crisis divided by κ below it; 0 for a sphere
+    lengthening : for a cylinder, length factor κ(L/D) above the drag crisis divided by κ below the
+        crisis; 0 for a sphere
     """
 
     reynolds: float
@@ -99,10 +102,10 @@ class Smooth(NamedTuple):
 
 
 def drag_variation(smooth: Smooth, speed: float) -> float:
-    """Return the ratio of the drag at a speed to the drag with the constant coefficient.
+    """Return the ratio of the drag at a speed to the drag with a constant coefficient.
 
-    The speed is normal to the axis [m/s]. The constant coefficient is Cx = 0.5 for a sphere and Cn
-    = 1.2 κ for a cylinder.
+    The speed [m/s] is the speed of the flow normal to the axis. The constant coefficient is Cx =
+    0.5 for a sphere and Cn = 1.2 κ for a cylinder.
     """
     reynolds = smooth.reynolds * speed
     if smooth.lengthening == 0.0:
@@ -119,19 +122,22 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
 def varying_share(
     ax: float, ay: float, az: float, k: float, smooth: Smooth, vx: float, vy: float, vz: float
 ) -> float:
-    """Return `drag_share` for a smooth element, whose drag coefficient depends on the normal speed.
+    """Return the result of `drag_share` for a smooth element.
+
+    The drag coefficient of a smooth element depends on the normal speed.
 
     Parameters
     ----------
-    k : half the normal drag coefficient of the element for f = 1 [N/(m/s)²]
-    smooth : body for which `drag_variation` gives f > 0, a continuous function of |Vn| [m/s]
+    k : half the normal drag factor of the element for f = 1 [N/(m/s)²]
+    smooth : properties of the element, for which `drag_variation` gives f > 0 as a continuous
+        function of |Vn|
 
     Returns
     -------
     c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|. Roots
     less than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes
-    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. It
-    takes the smallest root, which has more drag, when the current grows from rest.
+    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. When
+    the current grows from rest, the element takes the smallest root, which has more drag.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -191,7 +197,7 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Return the ratio of the drag at a Reynolds number to that of the constant coefficient."""
+        """Return the ratio of the drag at a Reynolds number to that with a constant coefficient."""
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property
@@ -204,16 +210,16 @@ class DragCurve:
 
 
 def finite_length_factor_above(slenderness: float) -> float:
-    """Return the length factor κ of a cylinder above the drag crisis, from Re = 2.2e5.
+    """Return the length factor κ of a cylinder above the drag crisis, for Re of at least 2.2e5.
 
     `drag.finite_length_factor` applies up to Re = 1.8e5. κ is linear in the logarithm of L/D
-    between the points of a table, and constant below 2 and above 100.
+    between the points of a table, and constant for L/D below 2 and above 100.
 
     Parameters
     ----------
     slenderness : length over diameter L/D [-]
 
-    Source: DNV-RP-C205, table 6-2, whose columns change at Re = 2e5. Here κ is linear in log Re
-    between 1.8e5 and 2.2e5, so that the drag has no step.
+    Source: DNV-RP-C205, table 6-2, which has two columns, for Re below and above 2e5. CALM
+    interpolates κ linearly in log Re between 1.8e5 and 2.2e5, so that the drag has no step.
     """
     return interpolated(_KAPPA_AT, _KAPPA, log(max(slenderness, 1.0)))

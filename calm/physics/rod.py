@@ -33,7 +33,7 @@ def pass_clamp(
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
-    """Integrate past an instrument clamped on a cable; the results are as in `pass_rod`."""
+    """Integrate past an instrument clamped on a cable, with results as in `pass_rod`."""
     x, y, z, fx, fy, fz, tz, level = state
     qx, qy, qz = force_at(load, sea, -z, level, 0.0, 0.0, -1.0)
     sx, sy, sz, hanging = fx + qx, fy + qy, fz + qz, -1.0
@@ -63,16 +63,16 @@ def pass_rod(
 
     Parameters
     ----------
-    lands : whether the seabed `bed` supports loads that the line cannot carry: at the lower end of
-        the rod, or along the whole rod if it would tip over
+    lands : whether the seabed `bed` supports loads that the line cannot carry. The seabed supports
+        the lower end of the rod, or the whole rod if the rod would tip over
     near : as in `rod_axis`
-    record, recording, nodes : output of nodes and elements, whether to record, and the number of
-        nodes so far
+    record, recording, nodes : output for nodes and elements, whether to record them, and the number
+        of nodes so far
 
     Returns
     -------
-    The state, with `NO_BALANCE` as last axis if the rod has no balance; 0 if the rod lies on the
-    seabed, inf if it stands on the seabed, else -1; and the number of nodes.
+    The state, in which the axis is `NO_BALANCE` if the rod has no balance; 0 if the rod lies on the
+    seabed, inf if it stands on the seabed, otherwise -1; and the number of nodes.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)
@@ -98,10 +98,11 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Return the depth of the free end if a length `out` of the head is above the surface [m].
+    """Return the depth of the free end of a line [m] if its top extends above the surface.
 
-    The head is the rigid body at the free end. Its inclination follows from its loads, which depend
-    slightly on its depth. It is upright if it has no balance.
+    The depth is negative. A length `out` [m] of the topmost rod is above the surface. The
+    inclination of the rod follows from its loads, which depend slightly on its depth. The rod is
+    assumed upright if its moments balance in no orientation.
     """
     depth = -out
     for _ in range(_LEANINGS):

@@ -17,14 +17,14 @@ _NOTHING = 1e-12
 
 
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
-    """Compute the axis at which the moments about the midpoint of a rod vanish.
+    """Compute the axis of a rod for which the moments about its midpoint vanish.
 
-    The axis t is parallel to F + Σ (1 - a_i/L) q_i, with the force F above the rod, and the loads
-    q_i at distances a_i from its top. Since the drags depend on t, the equation is solved
-    repeatedly. The normal drags are combined into one current and one coefficient that give their
-    sum at the present axis. Each iteration then solves a single element exactly, including its drag
-    curve; only the change of the flow along the rod, and the curves if there are several, need
-    further iterations.
+    The axis t is parallel to F + Σ (1 - a_i/L) q_i, where F is the force above the rod, and the
+    loads q_i act at distances a_i from the top of the rod. Since the drags depend on t, the
+    equation is solved by iteration. The normal drags are combined into one current and one drag
+    factor, which give the sum of these drags at the present axis. Each iteration then solves a
+    single element exactly, including its drag curve. Further iterations are needed only because the
+    flow varies along the rod, or because there are several drag curves.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: fl
 
     Returns
     -------
-    The unit axis; its vertical component is `NO_BALANCE` if there is no such axis.
+    The unit axis. Its vertical component is `NO_BALANCE` if there is no such axis.
     """
     _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
@@ -70,8 +70,8 @@ def lone_axis(
 ) -> Vector:
     """Return the axis of a rod with a single load of constant drag, by a short iteration.
 
-    The iteration starts at the axis t. The vertical component of the result is `NO_BALANCE` if it
-    does not converge.
+    The iteration starts at the axis t. The vertical component of the result is `NO_BALANCE` if the
+    iteration does not converge.
     """
     _, _, z, fx, fy, fz, _, level = state
     for _ in range(_FEW):
@@ -94,13 +94,14 @@ def lone_axis(
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
-    """Return the axis of a rod if `rod_axis` does not converge because the water varies too much.
+    """Return the axis of a rod by bisection, if the iteration in `rod_axis` does not converge.
 
-    The depths of the loads, and so the water at them, depend only on the vertical component
-    ("rise") of the axis. In the water for a rise s, the axis in balance has a rise r(s) between -1
-    and 1, so r(s) - s changes sign; the root is found by bisection. At a jump of r, as for a float
-    without net buoyancy at the upper edge of a current, the bisection ends at the jump, where the
-    moment on the rod may vanish. If it does not, the rise is `NO_BALANCE`.
+    The iteration may fail if the water varies much along the rod. The depths of the loads, and so
+    the water at these depths, depend only on the vertical component ("rise") of the axis. In the
+    water for a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s changes
+    sign. If r jumps, as for a float without net buoyancy at the upper edge of a current, the
+    bisection ends at the jump, where the moment on the rod may vanish. If the moment does not
+    vanish there, the rise is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -230,9 +231,9 @@ def _following_axis(
 
 @within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
-    """Return buoyancy plus lift of a rigid piece or clamp [N].
+    """Return the sum of net buoyancy and hydrodynamic lift of a rigid piece or clamp [N].
 
-    `squared` is the square of the current speed.
+    `squared` is the square of the current speed [m²/s²].
     """
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
     return lift + density / REFERENCE_DENSITY * load.lift * squared
@@ -251,13 +252,13 @@ def load_force(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the force on a rigid piece or clamp of axis t [N].
+    """Return the force on a rigid piece or clamp with unit axis t [N].
 
-    It is the sum of buoyancy, drag, lift and wind force.
+    The force is the sum of net buoyancy, drag, lift and wind force.
 
     Parameters
     ----------
-    varied : ratio of the normal drag to that with constant coefficients, see `load_variation`
+    varied : ratio of the normal drag to the drag with constant coefficients, see `load_variation`
     """
     scale, squared = density / REFERENCE_DENSITY, u * u + v * v + w * w
     kn = varied * scale * load.normal_drag
@@ -273,9 +274,9 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the ratio of the normal drag on a load of axis t to that with constant coefficients.
+    """Return the ratio of the normal drag on a load to the drag with constant coefficients.
 
-    The viscosity is in m²/s.
+    The unit axis of the load is t. The viscosity is in m²/s.
     """
     if load.diameter == 0.0:
         return 1.0
@@ -289,7 +290,10 @@ def load_variation(
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Return `load_force` at a depth [m]; the search for the water starts at interval `level`."""
+    """Return the result of `load_force` for the water at a depth [m].
+
+    The search for the interval of the water starts at interval `level`.
+    """
     u, v, w, density, _ = water_at(sea, depth, level)
     varied = 1.0
     if load.diameter > 0.0:

@@ -32,17 +32,19 @@ def lay_line(
     """Lay a line on the seabed from its touchdown to the anchor.
 
     The line is straight, in the plane of the seabed, in the direction of the force at the
-    touchdown. Down the line, its tension decreases by friction and by the downslope component of
-    the weight, or increases by the weight if the line leads upslope; it is never negative. There is
-    no drag. A slack line lies across the slope. A rigid piece or a clamp at the touchdown that the
-    line could not carry rests on the seabed at a point.
+    touchdown. Towards the anchor, the tension decreases by friction. The component of the weight
+    along the line also decreases the tension if the line leads downslope, and increases the tension
+    if the line leads upslope. The tension is never negative. There is no drag. A slack line lies
+    across the slope. A rigid piece or clamp at the touchdown that the line could not carry rests on
+    the seabed at a point.
 
     Parameters
     ----------
-    stage, hanging : stage of the touchdown, and its unstretched length above the seabed [m]; for a
-        rod or clamp inf if it stands on the seabed, 0 if it lies there
-    record, recording, nodes : output of nodes and elements, whether to record, and the number of
-        nodes so far
+    stage, hanging : index of the stage with the touchdown, and unstretched length of this stage
+        above the seabed [m]. For a rod or clamp, the length is inf if it stands on the seabed, and
+        0 if it lies on the seabed
+    record, recording, nodes : output for nodes and elements, whether to record them, and the number
+        of nodes so far
 
     Returns
     -------
@@ -105,9 +107,9 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a part of a line under tension, and the tension at its end [N].
+    """Return the fraction of a line's part that is under tension, and the tension at its end [N].
 
-    Friction and slope would reduce the tension by `hold` along the whole part [N].
+    `hold` is the reduction of the tension along the whole part by friction and slope [N].
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -119,8 +121,8 @@ def lying_strain(
 ) -> float:
     """Return the mean strain of a part of a line on the seabed.
 
-    Its tension decreases linearly from `tension` to `left` [N] over the fraction `pulled` of its
-    length, and is zero beyond.
+    The tension decreases linearly from `tension` to `left` [N] over the fraction `pulled` of the
+    length. The rest of the part is without tension.
     """
     middle = 0.5 * (tension + left)
     if cable.first_knot == cable.end_knot:
@@ -139,12 +141,12 @@ def required_weight(
     """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
     The rule is W ≥ factor (V + H / friction), as in Dewey's Mooring Design & Dynamics and at WHOI.
-    The weight is never negative: an anchor that the line presses on the seabed needs no weight.
+    The result is 0 for an anchor that the line presses onto the seabed.
 
     Parameters
     ----------
-    vertical, horizontal : components V, positive up, and H of the load of the line on the anchor
-        [N]; floats or arrays
+    vertical, horizontal : vertical component V (positive up) and horizontal component H of the
+        force of the line on the anchor [N]; floats or arrays
     factor : safety factor against lifting and sliding [-], typically 1.5
     friction : friction coefficient between anchor and seabed [-], typically 0.6
     """
@@ -159,12 +161,13 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Return the relative difference between the sum of the loads and the force at the end.
+    """Return the relative difference between the sum of the loads and the force at a line's end.
 
-    If the line has a part on the seabed, the loads above its touchdown must leave no force normal
-    to the seabed. Exceptions are a downward force at a rigid piece or clamp that stands on the
-    seabed, and an upward force less than the weight of a rigid piece that lies there. Friction and
-    the downslope component of the weight reduce the remaining force.
+    If part of the line lies on the seabed, the sum of the loads above the touchdown must have no
+    component normal to the seabed. Exceptions are a downward force at a rigid piece or clamp that
+    stands on the seabed, and an upward force less than the weight of a rigid piece that lies on the
+    seabed. Friction and the component of the weight along the line are taken into account for the
+    part on the seabed.
 
     Parameters
     ----------
@@ -197,7 +200,7 @@ def closure(
 
 
 def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
-    """True if an element is a rigid piece or a clamp, which can rest on the seabed at a point."""
+    """Return whether an element (a rigid piece or clamp) can rest on the seabed at a point."""
     if element >= shape.nodes - 1:
         return False
     piece = int(shape.record[6][element + 1])

@@ -29,13 +29,14 @@ SOUTHERNMOST = -86.0
 def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np.float64]:
     """Return the dynamic viscosity of sea water [Pa s].
 
-    The formula holds at atmospheric pressure, to 1.5 %. The pressure of the deep sea changes the
-    viscosity by at most a few percent.
+    The formula applies at atmospheric pressure, with an error of up to 1.5 %. The pressure in the
+    deep sea changes the viscosity by a few percent at most.
 
     Parameters
     ----------
-    temperature : (...) in situ [°C], 0 to 180
-    salinity : (...) [g/kg], 0 to 150; practical salinity, which is 0.5 % less, may be used instead
+    temperature : (...) in situ temperature [°C], 0 to 180
+    salinity : (...) salinity [g/kg], 0 to 150; practical salinity, whose value is 0.5 % smaller,
+        may be used instead
 
     Source: Sharqawy, Lienhard & Zubair (2010), Desalination and Water Treatment 16, 354-380,
     equations 22 and 23.
@@ -67,9 +68,10 @@ def kinematic_viscosity(
 def gravity(latitude: float) -> float:
     """Return the acceleration of gravity at the sea surface [m/s²] for a latitude [degrees].
 
-    Gravity increases with depth by 0.011 m/s² down to 5000 m; this is neglected.
+    The increase of gravity with depth, 0.011 m/s² at 5000 m, is neglected.
 
-    Source: the international gravity formula as adopted in TEOS-10, to 1e-6 m/s².
+    Source: the international gravity formula as adopted in TEOS-10, with which the results agree to
+    1e-6 m/s².
     """
     square = sin(radians(latitude)) ** 2
     return 9.780327 * (1.0 + 0.0053024 * square - 0.0000058 * sin(radians(2.0 * latitude)) ** 2)
@@ -86,18 +88,20 @@ def density(
 
     Parameters
     ----------
-    temperature : (...) in situ, ITS-90 [°C]
-    salinity : (...) practical [-]
+    temperature : (...) in situ temperature, ITS-90 [°C]
+    salinity : (...) practical salinity [-]
     depth : (...) depth below the surface [m]
     latitude : latitude [degrees]
-    longitude : longitude [degrees]; without it, and far inland, sea water of reference composition
-        is assumed, which changes the density in the open ocean by less than 0.03 kg/m³
+    longitude : longitude [degrees]; if the longitude is not given, or is far inland, sea water of
+        reference composition is assumed, which changes the density in the open ocean by less than
+        0.03 kg/m³
 
     Returns
     -------
     (...) density, with the broadcast shape of the three inputs.
 
-    Valid for the sea: 0 to 42 g/kg, -6 to 40 °C, down to 10 km.
+    The formula is valid for salinities from 0 to 42 g/kg, temperatures from -6 to 40 °C, and depths
+    down to 10 km.
     """
     import gsw
 
@@ -119,9 +123,9 @@ def potential_density(
 
     Parameters
     ----------
-    temperature : (...) in situ, ITS-90 [°C]
-    salinity : (...) practical [-], of the reference composition
-    depth : (...) original depth [m], at 45 degrees of latitude
+    temperature : (...) in situ temperature, ITS-90 [°C]
+    salinity : (...) practical salinity [-]; reference composition is assumed
+    depth : (...) original depth [m], which is converted to pressure at a latitude of 45 degrees
     """
     import gsw
 
@@ -131,7 +135,7 @@ def potential_density(
 
 
 def pressure_at(depth: ArrayLike, latitude: float) -> NDArray[np.float64]:
-    """Return the pressure in the sea [dbar] at depths [m] and a latitude [degrees], by TEOS-10."""
+    """Return the pressure [dbar] at depths [m] and a latitude [degrees], according to TEOS-10."""
     import gsw
 
     return np.asarray(gsw.p_from_z(-np.asarray(depth, dtype=float), latitude), dtype=float)
@@ -147,13 +151,13 @@ def absolute_density(
 
     Parameters
     ----------
-    absolute_salinity : (...) [g/kg]
-    conservative_temperature : (...) [°C]
+    absolute_salinity : (...) absolute salinity [g/kg]
+    conservative_temperature : (...) conservative temperature [°C]
     depth : (...) depth below the surface [m]
     latitude : latitude [degrees]
 
     Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression of
-    Roquet et al. (2015), Ocean Modelling 90, 29-43, by way of the library gsw.
+    Roquet et al. (2015), Ocean Modelling 90, 29-43, as implemented in the library gsw.
     """
     import gsw
 

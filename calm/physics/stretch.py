@@ -14,9 +14,9 @@ _GAUSS = sqrt(1.0 / 3.0)
 
 
 class Knot(NamedTuple):
-    """A point of an elongation curve, and a cubic polynomial for the strain above it.
+    """A point of an elongation curve, and a cubic polynomial for the strain at higher tensions.
 
-    The strain is a + x (b + x (c + x d)) at x newtons above the tension of the point.
+    The strain is a + x (b + x (c + x d)), where x is the tension minus that of the point [N].
     """
 
     tension: float
@@ -29,8 +29,8 @@ class Knot(NamedTuple):
 def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
     """Return the strain of a rope at a tension ≥ 0 [N].
 
-    `first` and `end` are the range of the knots of its curve. Monotone cubic interpolation, with
-    linear extrapolation above the last knot.
+    The knots of the rope's curve have the indices from `first` to `end` - 1. Between the knots, the
+    strain is a monotone cubic interpolation; above the last knot, it is extrapolated linearly.
     """
     knot = knots[_knots_below(knots, first + 1, end, tension) - 1]
     x = tension - knot.tension
@@ -40,9 +40,10 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Return the mean strain if the tension varies linearly by ± `half` about `tension` [N].
+    """Return the mean strain of a rope if its tension varies by ± `half` about `tension` [N].
 
-    Two Gauss points between each pair of knots in the range make this exact.
+    The tension varies linearly. The mean is exact, since two Gauss points are used in each interval
+    between knots. `first` and `end` are as in `curve_strain`.
     """
     half = abs(half)
     low, high = tension - half, tension + half
@@ -71,32 +72,34 @@ def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 
 
 class ElongationCurve:
-    """Strain of a rope against its tension, as a smooth curve through a manufacturer's table.
+    """Strain of a rope as a smooth function of tension, through the points of a table.
 
-    Monotone cubic interpolation: the curve passes through every point, has a continuous slope and
-    decreases only where the table decreases. Above the last point it is linear, with the chord of
-    the last interval. A table of one point is a linear stiffness.
+    The table is usually a manufacturer's. Monotone cubic interpolation is used. The curve passes
+    through every point, has a continuous slope and never decreases. Above the last point, the curve
+    is linear, with the mean slope of the last interval. A table with a single point gives a
+    constant stiffness.
 
     Parameters
     ----------
-    points : pairs (load / breaking load [-], strain [-]) by increasing load, up to 1; (0, 0) is
-        added if the table does not begin with it
+    points : pairs (load / breaking load [-], strain [-]) with increasing loads, up to 1; the point
+        (0, 0) is added if it is missing
     breaking_load : breaking load [N]
-    permanent : permanent elongation after the first loading [-], added at every tension
+    permanent : permanent elongation after the first loading [-], which is added at every tension
 
     Attributes
     ----------
-    tensions, strains : points of the table, starting with (0, 0) [N], [-]
-    breaking_load, permanent : as given [N], [-]
+    tensions, strains : tensions [N] and strains [-] of the points of the table, starting with (0,
+        0)
+    breaking_load, permanent : values of the parameters
     knots : the curve in the form used by the march, including permanent elongation
-    limit : tension above which results need a warning [N]: the tension of the last point, but at
-        most 80 % of the breaking load
+    limit : tension above which results need a warning [N], which is the tension of the last point,
+        but at most 80 % of the breaking load
 
     Raises
     ------
     ValueError
-        Loads do not increase, strains decrease, there is a strain without load or a load above the
-        breaking load, or values are negative or not finite.
+        The loads do not increase, the strains decrease, the strain at zero load is not 0, a load
+        exceeds the breaking load, or a value is negative or not finite.
 
     Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the slopes
     at the points.
@@ -128,7 +131,7 @@ class ElongationCurve:
         return curve_strain(self.knots, 0, len(self.knots), tension)
 
     def stiffer(self, factor: float) -> ElongationCurve:
-        """Return the curve with all strains divided by a factor."""
+        """Return a copy of the curve with all strains divided by a factor."""
         loads = (tension / self.breaking_load for tension in self.tensions)
         strains = (strain / factor for strain in self.strains)
         return ElongationCurve(

@@ -33,7 +33,7 @@ def shedding_frequency(speed: float, diameter: float, strouhal: float = STROUHAL
 
     Parameters
     ----------
-    speed : |Vn|, speed of the current normal to the line [m/s]
+    speed : speed |Vn| of the current normal to the line [m/s]
     """
     return strouhal * speed / diameter
 
@@ -48,7 +48,7 @@ def reduced_damping(
     mass : mass per metre of line [kg/m]
     diameter : diameter of the line [m]
     density : density of the water [kg/m³]
-    damping : ζ, structural damping as a fraction of critical damping [-]
+    damping : structural damping ζ, as a fraction of critical damping [-]
     """
     return 8.0 * pi**2 * strouhal**2 * mass * damping / (density * diameter**2)
 
@@ -62,7 +62,7 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
     mode : mode factor γ [-]
 
     Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, who give the
-    double amplitude, 1.29 γ.
+    double amplitude, with 1.29 γ instead of 0.645 γ.
     """
     return 0.645 * mode * pow(1.0 + 0.43 * damping, -3.35)
 
@@ -72,24 +72,24 @@ def line_amplitude(
 ) -> float:
     """Return the amplitude ratio A/D of a strumming line.
 
-    It is that of `griffin_skop` with the mode factor of a cable. The result does not depend on the
-    current: at any speed, some mode of a long line is excited. Values for ropes and wires in water
-    are between 0.68 and 0.74.
+    The ratio is the result of `griffin_skop` with the mode factor of a cable. The ratio does not
+    depend on the current, because some mode of a long line is excited at any speed. Values for
+    ropes and wires in water are between 0.68 and 0.74.
 
     Parameters
     ----------
     mass : mass per metre of line [kg/m]
     diameter : diameter of the line [m]
     density : density of the water [kg/m³]
-    damping : ζ, structural damping as a fraction of critical damping [-]
+    damping : structural damping ζ, as a fraction of critical damping [-]
     """
     return griffin_skop(reduced_damping(mass, diameter, density, damping))
 
 
 def vandiver(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn at rest, by Vandiver.
+    """Return the ratio of Cn of a strumming line to Cn without strumming, by Vandiver's formula.
 
-    The formula is 1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2.
+    The formula is 1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2, where `amplitude` is A/D.
 
     Source: Vandiver (1983), Offshore Technology Conference, paper 4490.
     """
@@ -97,10 +97,11 @@ def vandiver(amplitude: float) -> float:
 
 
 def blevins(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn at rest, by Blevins: 1 + 2.1 A/D.
+    """Return the ratio of Cn of a strumming line to Cn without strumming, by Blevins's formula.
 
-    It is constant above A/D = 1, where the formula would exceed the values measured on cables: Cn
-    of 2.4 to 3.2, which is 2.0 to 2.7 times Cn at rest (Griffin et al. 1984).
+    The formula is 1 + 2.1 A/D, where `amplitude` is A/D. The ratio is constant above A/D = 1, where
+    the formula would exceed the values measured on cables. The measured Cn is 2.4 to 3.2, which is
+    2.0 to 2.7 times Cn without strumming (Griffin et al. 1984).
 
     Source: Blevins (1990), Flow-Induced Vibration, second edition.
     """
@@ -108,10 +109,10 @@ def blevins(amplitude: float) -> float:
 
 
 def skop_griffin(amplitude: float) -> float:
-    """Return the ratio of Cn of a strumming line to Cn at rest, by Skop & Griffin.
+    """Return the ratio of Cn of a strumming line to Cn without strumming, by Skop and Griffin.
 
-    The formula is 1 + 1.16 (w_r - 1)^0.65 with w_r = 1 + 2 A/D, at resonance (reduced speed times
-    Strouhal number equal to 1).
+    The formula is 1 + 1.16 (w_r - 1)^0.65 with w_r = 1 + 2 A/D, where `amplitude` is A/D. The
+    formula applies at resonance, where reduced speed times Strouhal number equals 1.
 
     Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884.
     """
@@ -127,13 +128,15 @@ AMPLIFICATIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 def drag_factor(ratio: float) -> float:
     """Return the ratio of the drag of a vibrating cylinder to its drag at rest.
 
-    It follows from the power balance of Bourget & Marichal: f(λ) = (1/π) ∫₀^π (1 + λ² cos²θ)^{3/2}
-    dθ = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²), evaluated by
-    arithmetic-geometric means. (The paper prints 2/π, which would give f(0) = 2.)
+    The ratio follows from the power balance of Bourget & Marichal, f(λ) = (1/π) ∫₀^π (1 + λ²
+    cos²θ)^{3/2} dθ = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²). The elliptic
+    integrals K and E are evaluated by arithmetic-geometric means. (The paper prints 2/π instead of
+    1/π, which would give f(0) = 2.)
 
     Parameters
     ----------
-    ratio : λ, maximum speed of the vibration over the speed of the current normal to the line [-]
+    ratio : ratio λ of the maximum speed of the vibration to the current speed normal to the line
+        [-]
     """
     square = ratio * ratio
     # K = π/(2 agm), E = K (1 - Σ 2^(n-1) c_n²), from a = 1, b = √(1 - m), c² = m
@@ -149,15 +152,16 @@ def drag_factor(ratio: float) -> float:
 
 
 class Vibration(NamedTuple):
-    """Strumming law by Bourget & Marichal in the form used by the march.
+    """Strumming law of Bourget & Marichal in the form used by the march.
 
     Attributes
     ----------
-    a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees
-    greatest : largest factor on the cable's Cn at rest [-]
+    a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with the angle φ
+        between cable and flow in degrees
+    greatest : largest factor by which strumming increases the cable's Cn [-]
     beat : dimensionless frequency F D/|V| of the cable at the local speed |V| [-], which is 0.166
-        sin φ_n in a uniform flow of any speed. Before diameter and speed are known, it holds F [Hz]
-        for a line, and F D [m/s] for one of its cables
+        sin φ_n in a uniform flow of any speed. In the law for a whole line, `beat` is F [Hz]
+        instead, and in the law for one cable F D [m/s]
     """
 
     a1: float
@@ -184,16 +188,16 @@ def amplitude(vibration: Vibration, angle: float) -> float:
 
 
 def strummed(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to its maximum.
+    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to `vibration.greatest`.
 
     λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow, and `across` is sin
-    φ. For flow along the cable the ratio is the maximum.
+    φ. For flow along the cable, the ratio has this largest value.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio as `strummed`, but limited only to twice the maximum."""
+    """Return the drag ratio as `strummed` does, but limited to twice `vibration.greatest`."""
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:
@@ -205,19 +209,21 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """Return `drag_share` for a strumming cable, whose Cn depends on its angle to the flow.
+    """Return the result of `drag_share` for a strumming cable, and the factor on its normal drag.
+
+    The factor depends on the angle between the cable and the flow.
 
     Parameters
     ----------
-    k : half the normal drag coefficient at rest [N/(m/s)²]
-    vibration : law for which `strummed` gives a factor f ≥ 1, which decreases as the sine of the
-        angle between axis and current grows
+    k : half the normal drag factor without strumming [N/(m/s)²]
+    vibration : strumming law, for which `strummed` gives a factor f ≥ 1 that decreases as the sine
+        of the angle between axis and current grows
 
     Returns
     -------
-    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f at this root. Fixed-point
-    iteration with f(c) approaches the root monotonically from below; the iteration is extrapolated
-    as long as the result stays below.
+    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and the factor f at this root.
+    Fixed-point iteration with f(c) approaches the root monotonically from below; the iteration is
+    extrapolated as long as the result stays below the root.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -257,21 +263,20 @@ def _leaning(
 
 @dataclass(frozen=True)
 class BourgetMarichal:
-    """Strumming law of a towed cable.
+    """Strumming law of a towed cable, by Bourget and Marichal.
 
     The speed of the ship determines the frequency of the vibration, and the local angle φ between
-    cable and flow determines its amplitude. Angles φ are above 0 and up to π/2 [rad].
+    cable and flow determines the amplitude. Angles φ are greater than 0 and at most π/2 [rad].
 
     Attributes
     ----------
-    a1, b1, c1 : coefficients of a/D = a1 + b1 φ + c1 φ², φ in degrees. The paper does not give
-        them; the defaults match its published values (a/D = 0.5 at 90°; in its example C* = 1.25 at
-        the sphere and 16.28° at the ship).
-    rest : C₀, the cable's Cn at rest; valid for φ > 15° only
+    a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with φ in degrees. The
+        paper does not give the coefficients. The defaults reproduce the values that it does give
+        (a/D = 0.5 at 90° and, in its example, C* = 1.25 at the sphere and an angle of 16.28° at the
+        ship)
+    rest : Cn of the cable without strumming, C₀; valid only for φ > 15°
     ceiling : largest allowed C*
-    strouhal : Strouhal number of the cable, for the speed normal to it
-
-
+    strouhal : Strouhal number of the cable, for the speed normal to the cable
     """
 
     a1: float = 1.60185
@@ -286,7 +291,7 @@ class BourgetMarichal:
 
     @property
     def greatest(self) -> float:
-        """Largest factor on the cable's Cn at rest [-]."""
+        """Largest factor by which strumming increases the cable's Cn [-]."""
         return self.ceiling / self.rest
 
     def amplitude(self, angle: float) -> float:
@@ -298,19 +303,19 @@ class BourgetMarichal:
         return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
-        """Return the frequency F = 0.166 V₀ sin φ_n/D [Hz], common to the whole cable.
+        """Return the frequency F = St V₀ sin φ_n/D [Hz], which is common to the whole cable.
 
         Parameters
         ----------
-        speed : V₀, speed of the ship through the water [m/s]
-        ship_angle : φ_n, angle between cable and flow at the ship [rad]
+        speed : speed V₀ of the ship through the water [m/s]
+        ship_angle : angle φ_n between cable and flow at the ship [rad]
         """
         return self.strouhal * speed * sin(ship_angle) / diameter
 
     def factor(self, angle: float, beat: float) -> float:
         """Return the drag ratio C*/C₀ of a cable at an angle φ to the flow [rad].
 
-        It is at most `greatest`. `beat` is as in `Vibration`.
+        The ratio is at most `greatest`. The parameter `beat` is as in `Vibration`.
         """
         return strummed(self.vibration(beat), min(sin(angle), 1.0))
 
@@ -319,27 +324,27 @@ class BourgetMarichal:
 
         Parameters
         ----------
-        angle, ship_angle : angle φ between cable and flow, and its value at the ship [rad]
+        angle, ship_angle : local angle φ between cable and flow, and this angle at the ship [rad]
         """
         return self.rest * self.factor(angle, self.strouhal * sin(ship_angle))
 
     def from_bare_cable(
         self, angle: float, speed: float, diameter: float, weight: float, density: float
     ) -> tuple[float, float]:
-        """Return C* and a/D of a cable without attachments, from its angle under tow.
+        """Return C* and a/D of a towed cable without attachments, from its measured angle.
 
         Parameters
         ----------
-        angle : measured angle φ, constant along the cable [rad]
-        speed : V₀, speed of the ship [m/s]
+        angle : measured angle φ between cable and flow, which is constant along the cable [rad]
+        speed : speed V₀ of the ship through the water [m/s]
         diameter : diameter of the cable [m]
-        weight : weight per metre in water [N/m]
+        weight : weight w of the cable in water, per metre [N/m]
         density : density of the water [kg/m³]
 
         Returns
         -------
-        C* for which the drag normal to the cable balances its weight, w cos φ = ½ρ D C* (V₀ sin
-        φ)², and the corresponding a/D, which is 0 if C* does not exceed C₀.
+        The value of C* for which the drag normal to the cable balances its weight, w cos φ = ½ρ D
+        C* (V₀ sin φ)², and the corresponding a/D, which is 0 if C* does not exceed C₀.
         """
         coefficient = weight * cos(angle) / (0.5 * density * diameter * (speed * sin(angle)) ** 2)
         return coefficient, _ratio(coefficient / self.rest) / (2.0 * pi * self.strouhal)

@@ -23,15 +23,15 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    piece, clamp : indices in the line; the clamp is -1 for the piece itself
-    at : distance of its centre from the top of the rod [m]
-    lever : 1 - at/length of the rod, the share of the load that rotates the rod; ½ for a rod
+    piece, clamp : indices of the piece and the clamp in the line; the clamp is -1 for the piece
+        itself
+    at : distance of the load's centre from the top of the rod [m]
+    lever : fraction of the load that rotates the rod, 1 - `at`/(length of the rod); ½ for a rod
         without length
     length : length of the rigid piece [m]; 0 for a clamp
     buoyancy, volume, normal_drag, tangential_drag, directional, lift, push_east, push_north : as in
         `Line`
-    diameter, lengthening : values of its drag curve, see `DragCurve`; the diameter is 0 without a
-        curve
+    diameter, lengthening : values of the load's `DragCurve`; the diameter is 0 without a curve
     """
 
     piece: int
@@ -52,7 +52,7 @@ class Load(NamedTuple):
 
 
 class CableStretch(NamedTuple):
-    """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps.
+    """A length of cable or chain without clamps, which is a whole piece or a part between clamps.
 
     Attributes
     ----------
@@ -60,9 +60,9 @@ class CableStretch(NamedTuple):
     length : unstretched length [m]
     buoyancy, volume, normal_drag, tangential_drag, compliance, thinning : as in `Line`
     friction : number of the friction law, see `Friction`
-    first_knot, end_knot : range of its elongation curve among the knots of the track; equal if it
-        has no curve
-    diameter : diameter [m] if the cable strums, else 0
+    first_knot, end_knot : range of the elongation curve among the knots of the track; the two are
+        equal if there is no curve
+    diameter : diameter [m] if the cable strums, otherwise 0
     """
 
     piece: int
@@ -83,13 +83,13 @@ ROD, CABLE, CLAMP = range(3)
 
 
 class Stage(NamedTuple):
-    """One step of the march along a line: a rod, a stretch of cable or a clamp.
+    """One step of the march along a line, which is a rod, a length of cable, or a clamp.
 
     Attributes
     ----------
     kind : ROD, CABLE or CLAMP
-    first, size : for a rod or clamp, index of its first load among the loads and number of its
-        loads; for a cable, its index among the cables and 1
+    first, size : for a rod or clamp, index of its first load, and number of its loads; for a cable,
+        index of the cable, and 1
     length : length of the stage [m]
     """
 
@@ -100,10 +100,10 @@ class Stage(NamedTuple):
 
 
 class Course(NamedTuple):
-    """A `Track` in the form used by the march: its parts by kind, from the top down.
+    """A `Track` in the form used by the march, with lists of its parts from the top down.
 
-    `landing` is the index of the first stage that may touch the seabed, below the last buoyant
-    stage.
+    `landing` is the index of the first stage that may touch the seabed. This stage is below the
+    last buoyant stage.
     """
 
     stages: Sequence[Stage]
@@ -116,7 +116,7 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Track:
-    """Layout of a `Line` for the march, from the free end to the anchor, as rows of plain numbers.
+    """A `Line` converted for the march to rows of plain numbers, from the free end to the anchor.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Track:
 
     @property
     def landing(self) -> int:
-        """Index of the first stage that may rest on the seabed, below the last buoyant stage."""
+        """Index of the first stage that may touch the seabed, below the last buoyant stage."""
         for i in range(len(self.stages), 0, -1):
             kind, first, size, _ = self.stages[i - 1]
             if kind == CABLE:
@@ -161,7 +161,7 @@ class Track:
         return 0
 
     def first_pieces(self, count: int) -> Track:
-        """Return the track of the first `count` pieces only."""
+        """Return a track with only the first `count` pieces."""
         cables = [row for row in self.cables if row[0] < count]
         stages = [
             row
@@ -173,7 +173,7 @@ class Track:
     @staticmethod
     @once_per_input
     def of(line: Line) -> Track:
-        """Lay out a line, free end first; the pieces counted by `head_count` become one rod."""
+        """Convert a line to a track. The pieces counted by `head_count` become one rod."""
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
         track = Track([], [], [], [], vibration)
         rows, head = _Rows(line), head_count(line)
@@ -224,9 +224,9 @@ class Track:
 def head_count(line: Line) -> int:
     """Return the number of pieces at the free end that form one rigid body.
 
-    These are the pieces down to the first buoyant piece: pieces without buoyancy above it (a
-    beacon, ballast) are rigidly connected to it. The number is 0 if a cable comes first or in
-    between, if no piece is buoyant, or if the end is towed.
+    The body consists of the pieces down to the first buoyant piece; pieces without buoyancy above
+    it (a beacon, ballast) are rigidly connected to the buoyant piece. The number is 0 if a cable
+    comes first or in between, if no piece is buoyant, or if the end is towed.
     """
     if line.towed:
         return 0

@@ -46,8 +46,8 @@ class SecondPlace:
     ----------
     latitude, longitude : WGS 84 [degrees]
     distance : distance from the chosen position [m]
-    rms : root of the sum of squared residuals divided by the degrees of freedom [m]; NaN if there
-        are none
+    rms : root of the sum of squared residuals divided by the degrees of freedom [m]; NaN without
+        degrees of freedom
     """
 
     latitude: float
@@ -65,21 +65,21 @@ class Located:
     survey : the ranges
     latitude, longitude : WGS 84 [degrees]
     depth : depth below the surface [m]
-    horizontal_95 : semi-major axis of the 95 % ellipse [m]; NaN without redundant ranges, or if the
-        ranges do not constrain it
+    horizontal_95 : semi-major axis of the 95 % ellipse [m]; NaN if there are no redundant ranges,
+        or if the ranges do not constrain the ellipse
     ellipse : both semi-axes [m], and bearing of the major axis [degrees]
     depth_95 : half of the 95 % interval of the depth [m]; 0 if the depth was given
-    rms : root of the sum of squared residuals of the ranges in use divided by the degrees of
+    rms : root of the sum of squared residuals of the ranges in use, divided by the degrees of
         freedom [m]
     residuals : (n,) measured minus computed ranges [m]
-    used : (n,) False for rejected ranges
+    used : (n,) mask of the ranges in use; False for rejected ranges
     sound_speed : harmonic mean of the speed of sound along the ray [m/s]
     warnings : warnings about geometry and consistency
     place : (3,) position east, north, up in the frame of the survey [m]
     depth_given : whether the depth was given
-    second : another position that fits, or None
+    second : another position that fits the ranges, or None
     undecided : whether both positions remain possible
-    doubts : reasons for not writing the position without confirmation
+    doubts : reasons why the position must not be written to a file without confirmation
     """
 
     survey: Survey
@@ -143,17 +143,17 @@ def locate(
     ----------
     survey : ranges, or the path of their file; a file is read with the transducer at the surface
     sound : speed of sound that converts times to ranges, as a profile or a constant [m/s]
-    depth : depth of the transponder [m]; estimated if None
-    near : planned latitude and longitude [degrees]; if two positions fit, they are weighed by their
-        distance from the plan, compared with the fallback of an anchor
+    depth : depth of the transponder [m]; None to estimate the depth
+    near : planned latitude and longitude [degrees], used to choose between two positions that fit
+        the ranges; the choice allows for the usual fallback of an anchor
 
     Raises
     ------
     InputError
         The file contains no ranges.
     UsageError
-        There are fewer ranges than unknowns, no range reaches the depth, the ranges do not
-        intersect, or they are nearly horizontal.
+        There are fewer ranges than unknowns, no range is as long as the depth, or the ranges do not
+        intersect or are nearly horizontal.
     """
     survey = survey if isinstance(survey, Survey) else read_ranges(Path(survey))
     sound = sound if isinstance(sound, Sound) else Sound.constant(sound)
@@ -357,7 +357,7 @@ def located_mooring(path: Path) -> MooringFile:
     InputError
         The file has mistakes.
     UsageError
-        It is a tow, or has several legs.
+        The file describes a tow, or a mooring with several legs.
     """
     file = read_mooring(path)
     refuse_all_but_moorings(file)
@@ -367,20 +367,21 @@ def located_mooring(path: Path) -> MooringFile:
 def with_deployed(
     path: Path, before: MooringFile, located: Located, water_depth: float
 ) -> tuple[WorkingFile, str, tuple[str, ...], tuple[str, ...]]:
-    """Write the position to `deployed` in the text of a mooring file, without saving it.
+    """Write the position to `deployed` in the text of a mooring file, without saving the file.
 
     The rest of the text, including comments and other keys of `deployed`, is unchanged.
 
     Parameters
     ----------
     path : path of the mooring file
-    before : the file as read, see `located_mooring`
+    before : the mooring file as read by `located_mooring`
     located : the position
     water_depth : depth of the water at the anchor [m]
 
     Returns
     -------
-    The file, its new text, sentences on the deviation from the plan, and any doubts.
+    The mooring file with the position, its new text, sentences on the deviation from the planned
+    position, and doubts.
 
     Raises
     ------

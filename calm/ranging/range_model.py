@@ -32,7 +32,7 @@ APART = 10.0
 
 @dataclass(frozen=True)
 class RangeModel:
-    """Model of ranges to a position. Its unknowns are east, north and, unless given, depth."""
+    """Model of the ranges to a position; the unknowns are east, north and, unless given, depth."""
 
     survey: Survey
     sound: Sound
@@ -46,9 +46,9 @@ class RangeModel:
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:
-        """Return the position (3,) for the unknowns [m].
+        """Return the position (3,) that belongs to values `x` of the unknowns [m].
 
-        A given depth is measured from the curved sea surface.
+        If the depth is given, it is measured from the curved sea surface.
         """
         if self.depth is None:
             return x
@@ -57,12 +57,12 @@ class RangeModel:
         return np.array([x[0], x[1], sagging - self.depth])
 
     def mean_speed(self, x: Floats) -> float:
-        """Return the mean speed of sound from the transducer to a position [m/s]."""
+        """Return the mean speed of sound between the transducer and a position [m/s]."""
         below = self.frame.position(self.place(x))[2]
         return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
 
     def measured(self, x: Floats) -> Floats:
-        """Return the measured ranges (n,) [m]; times are converted by the mean speed of sound."""
+        """Return the measured ranges (n,) [m]; travel times are converted at the mean speed."""
         if not self.survey.timed:
             return self.survey.measured
         ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)
@@ -75,14 +75,14 @@ class RangeModel:
         return found
 
     def jacobian(self, x: Floats) -> Floats:
-        """Return the derivatives (n, unknowns) of the residuals."""
+        """Return the derivatives (n, u) of n residuals with respect to the u unknowns."""
         step = 0.01
         steps = step * np.eye(self.unknowns)
         columns = [self.residuals(x + change) - self.residuals(x - change) for change in steps]
         return np.stack(columns, axis=1) / (2.0 * step)
 
     def fitted(self) -> tuple[Floats, Booleans]:
-        """Fit the position; return the unknowns, and a mask of the ranges in use."""
+        """Fit the position; return the fitted unknowns, and a mask of the ranges in use."""
         count = len(self.ships)
         used = np.ones(count, dtype=bool)
         if count <= self.unknowns + SPARE:
@@ -146,10 +146,10 @@ class RangeModel:
         return self._below(fit.x)
 
     def tested(self, x: Floats, used: Booleans) -> Booleans:
-        """Reject the worst outlier, or restore a rejected range with a small residual.
+        """Reject the worst outlier, or restore a rejected range whose residual is small.
 
-        A range is tested by the ratio of its residual to the standard error estimated from the
-        other ranges. Return the new mask of the ranges in use.
+        A range is tested by the ratio of its residual to the standard error, which is estimated
+        from the other ranges. Return the new mask of the ranges in use.
         """
         from scipy.stats import t as student
 
@@ -178,7 +178,7 @@ class RangeModel:
         return changed
 
     def consistency(self, x: Floats, used: Booleans) -> list[str]:
-        """Describe a factor on all ranges that improves the fit, if there is one.
+        """Return a warning if a factor on all ranges, other than 1, clearly improves the fit.
 
         Raises
         ------
@@ -223,9 +223,15 @@ class RangeModel:
         return [f"{text}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
-        """Find another position that fits nearly as well, or within a scatter [m].
+        """Find another position that fits the ranges nearly as well, or within a given scatter.
 
-        Return None if there is no other. The search starts on either side of the track.
+        Return None if there is no such position. The search starts on both sides of the track.
+
+        Parameters
+        ----------
+        x : unknowns of the fitted position
+        used : mask of the ranges in use
+        scatter : root mean square residual that also counts as a fit [m]
         """
         starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
         fits = [self.least_squares(start, used) for start in starts]
@@ -244,7 +250,7 @@ class RangeModel:
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:
-    """Estimate the standard deviation of absolute residuals [m] from their median."""
+    """Estimate the standard deviation of residuals [m] from the median of their absolute values."""
     count = len(residuals)
     freedom = max(count - unknowns, 1)
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
@@ -275,7 +281,7 @@ that are all farther the depth.
 def geometry_warnings(
     ships: Floats, place: Floats, below: float, depth_given: bool
 ) -> Iterator[str]:
-    """Yield a warning for each way in which the survey geometry constrains the position poorly.
+    """Yield a warning for each weakness of the survey geometry that makes the position uncertain.
 
     Parameters
     ----------
@@ -311,19 +317,24 @@ def geometry_warnings(
 
 
 def is_line(ships: Floats) -> bool:
-    """True if positions (n, 3) lie nearly on a line, or at a single point."""
+    """True if the positions (n, 3) lie nearly on a straight line, or at a single point."""
     _, spread, _ = np.linalg.svd((ships - ships.mean(axis=0))[:, :2], full_matrices=False)
     return len(spread) < 2 or bool(spread[1] <= NARROW * spread[0])
 
 
 def widest_gap(away: Floats) -> float:
-    """Return the widest sector between neighbouring horizontal directions (n, 2) [degrees]."""
+    """Return the largest angle between neighbouring directions [degrees].
+
+    Parameters
+    ----------
+    away : (n, 2) horizontal directions
+    """
     bearing = np.sort(np.degrees(np.arctan2(away[:, 0], away[:, 1])))
     return float(np.diff(np.append(bearing, bearing[0] + 360.0)).max())
 
 
 def mirrored(ships: Floats, place: Floats) -> Floats:
-    """Reflect a position (3,) across the line that best fits the ship's positions (n, 3)."""
+    """Reflect a position (3,) across the line that best fits the positions (n, 3) of the ship."""
     middle = ships.mean(axis=0)
     _, _, axes = np.linalg.svd((ships - middle)[:, :2], full_matrices=True)
     other = place.copy()

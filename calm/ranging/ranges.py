@@ -64,7 +64,7 @@ class Survey:
 
     @cached_property
     def frame(self) -> Frame:
-        """Local frame around the mean position of the ship, also across the 180° meridian."""
+        """Local frame centred on the mean position of the ship; valid across the 180° meridian."""
         lam = np.radians(self.longitude)
         middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
         return Frame(float(self.latitude.mean()), float(middle))
@@ -78,13 +78,14 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
 
     Parameters
     ----------
-    transducer : depth of the ship's transducer [m]; 0 means the depth in the file, else the surface
-    hemisphere : letters such as ``"S,W"`` for positions that have neither letter nor sign
+    transducer : depth of the transducer of the ship [m]; 0 means the depth in the file, or the
+        surface if the file has no depth
+    hemisphere : letters such as ``"S,W"`` that apply to positions with neither letter nor sign
 
     Raises
     ------
     InputError
-        The file has mistakes; all are listed with their lines.
+        The file has mistakes; the error lists all of them with their lines.
     """
     problems: list[Problem] = []
     signs = hemisphere_signs(hemisphere)
@@ -144,12 +145,12 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
 
 
 def hemisphere_signs(letters: str) -> dict[str, float]:
-    """Return the signs of latitude and longitude for the letters of their hemispheres.
+    """Return the signs of latitude and longitude for two letters that name the hemispheres.
 
     Raises
     ------
     UsageError
-        A letter is none of N, S, E and W, or two letters refer to the same coordinate.
+        A letter is not N, S, E or W, or both letters refer to the same coordinate.
     """
     signs: dict[str, float] = {}
     for letter in filter(None, (part.strip().upper() for part in letters.split(","))):
@@ -213,7 +214,7 @@ _EXAMPLE = "depth[m],sound_speed[m/s]"
 
 @dataclass(frozen=True)
 class Sound:
-    """Speed of sound by depth: linear between the depths, constant beyond them.
+    """Profile of the speed of sound, linear between its depths and constant above and below them.
 
     Attributes
     ----------
@@ -232,8 +233,8 @@ class Sound:
     def mean(self, above: float, below: float) -> float:
         """Return the harmonic mean of the speed between two depths [m/s].
 
-        A straight ray covers the same length in each metre of depth, whatever its slope, so its
-        length divided by this mean is its travel time.
+        A straight ray has the same length in every metre of depth. The travel time is therefore the
+        length of the ray divided by this mean speed, whatever the slope of the ray.
         """
         if len(self.speed) == 1 or below - above < 1e-6:
             return float(np.interp(0.5 * (above + below), self.depth, self.speed))
@@ -254,8 +255,8 @@ def read_sound(path: Path) -> Sound:
     Raises
     ------
     InputError
-        The file has mistakes, such as depths that do not increase or implausible speeds; all are
-        listed.
+        The file has mistakes, such as depths that do not increase or implausible speeds; the error
+        lists all of them.
     """
     problems: list[Problem] = []
     columns = read_named_columns(delimited.read_table(path, _EXAMPLE), _OF_SOUND, problems)

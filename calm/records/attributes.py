@@ -53,19 +53,20 @@ def words_in(text: str) -> str:
 
 
 def words_of(variable: xr.DataArray, *attributes: str) -> str:
-    """Join the values of the named attributes of a variable, in the form of `words_in`."""
+    """Join the values of the named attributes of a variable, and simplify them with `words_in`."""
     return words_in(" ".join(str(variable.attrs.get(name, "")) for name in attributes))
 
 
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
-    """Return the reason why a variable holds no value of one time and depth, or None.
+    """Return the reason why a variable holds no values at single times and depths, or None.
 
-    The reason is either its cell methods (a spread, a climatology, a mean over depth) or a scale
-    factor of zero.
+    The reason is either the cell methods of the variable (a spread, a climatology, a mean over
+    depth) or a scale factor of zero.
 
     Parameters
     ----------
-    layers : dimensions and coordinates of levels with bounds; means over these layers are accepted
+    layers : dimensions and coordinates of levels that have bounds; means over the layers between
+        these bounds are accepted
     """
     methods = str(variable.attrs.get("cell_methods", ""))
     for dims, method, over in _METHOD.findall(methods):
@@ -79,9 +80,13 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Return a message if velocities are not towards east and north, else None.
+    """Return a message if velocities are not eastward and northward components, else None.
 
-    The message quotes the coordinate system that the attributes of a dataset or variable state.
+    The message quotes the coordinate system that the attributes state.
+
+    Parameters
+    ----------
+    attributes : attributes of a dataset or a variable
     """
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
@@ -92,10 +97,10 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def moving_platform(dataset: xr.Dataset) -> str | None:
-    """Return a message if a dataset comes from a moving ship, None if it may come from a mooring.
+    """Return a message if a dataset comes from a moving ship, else None.
 
-    A ship is recognised by the `source_program`, or by a median platform speed over the ground
-    (from bottom track or position) above that of any mooring.
+    A ship is recognised by the attribute `source_program`, or by a median speed of the platform
+    over the ground, from bottom track or position, that no mooring reaches.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
@@ -116,8 +121,8 @@ def moving_platform(dataset: xr.Dataset) -> str | None:
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether a velocity or direction is relative to magnetic north.
 
-    The evidence is its name, long name, standard name, unit or datum, or an attribute of the
-    variable or dataset such as `magnetic_declination_applied: no`.
+    The evidence is the name, long name, standard name, unit or datum of the variable, or an
+    attribute of the variable or dataset such as `magnetic_declination_applied: no`.
     """
     own = f"{variable.name} {words_of(variable, *_NORTH_IN)}"
     return _is_magnetic_text(own) or "magnetic" in _norths(variable, dataset)
@@ -148,8 +153,8 @@ def _is_magnetic_text(text: str) -> bool:
 def sense_of_direction(variable: xr.DataArray) -> str | None:
     """Return whether a current flows ``"to"`` a direction or comes ``"from"`` it.
 
-    The answer is based on the long name, standard name and comment of the direction variable. It is
-    None if these give no sense, or contradict each other.
+    The answer is based on the long name, standard name and comment of the direction variable.
+    Return None if these texts do not give the sense of the direction, or contradict each other.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

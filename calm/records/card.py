@@ -30,8 +30,8 @@ _TEXTS = {
 class VariableSummary:
     """Name, declared unit, minimum, median and maximum of a variable.
 
-    `description` quotes its long name and comment. The three values are NaN for a variable without
-    finite values.
+    `description` quotes the long name and the comment of the variable. The three values are NaN if
+    the variable has no finite values.
     """
 
     name: str
@@ -43,7 +43,7 @@ class VariableSummary:
 
     @classmethod
     def of(cls, name: str, units: str, values: Any, description: str = "") -> VariableSummary:
-        """Summarise an array by its finite elements."""
+        """Summarise the finite elements of an array."""
         values = np.asarray(values, np.float64).ravel()
         known = values[np.isfinite(values)]
         if not known.size:
@@ -59,10 +59,10 @@ class ReadCard:
     Attributes
     ----------
     file : name of the file
-    texts : title, summary and comment, quoted
+    texts : title, summary and comment, quoted from the file
     variables : summaries of the variables by role, such as east, north, depth
     levels : number of levels or of instruments
-    times : (n,) in rising order; empty for a profile without a time
+    times : (n,) increasing times; empty for a profile without a time
     clock : name and unit of the time variable
     flags : number of readings excluded by each flag variable
     declination : angle by which currents were rotated from magnetic to true north [degrees]
@@ -115,16 +115,16 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of several quantities from one file."""
+    """Merge the cards of several quantities that were read from one file."""
     variables = {role: one for card in cards for role, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)
 
 
 def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of a file's instruments.
+    """Merge the cards of the instruments in one file.
 
-    The median of a variable is the median of the instruments' medians.
+    The median of a variable is the median over the instruments of their own medians.
     """
     variables = {}
     for role in {role: None for card in cards for role in card.variables}:
@@ -146,7 +146,7 @@ def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
 
 
 def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Format the dictionary of `ReadCard.to_dict` as (name, text) rows for display."""
+    """Format the dictionary from `ReadCard.to_dict` as rows (name, text) for display."""
     rows = [(name, card[name]) for name in _TEXTS if card[name]]
     for taken, one in card["variables"].items():
         text = f"{one['name']} [{one['units']}]" if one["units"] else one["name"]
@@ -193,7 +193,7 @@ def _counted(number: int, noun: str) -> str:
 
 
 def texts_in(attributes: Mapping[Any, Any]) -> dict[str, str]:
-    """Extract title, summary and comment from attributes, at most `LONGEST` characters each."""
+    """Extract title, summary and comment from attributes, each cut to `LONGEST` characters."""
     by_name = {str(name).lower(): value for name, value in attributes.items()}
     found = {}
     for kind, names in _TEXTS.items():
@@ -209,7 +209,7 @@ def cut(text: str) -> str:
 
 
 def description_of(attributes: Mapping[Any, Any]) -> str:
-    """Join the long name and comment of a variable's attributes, at most `LONGEST` characters."""
+    """Join long name and comment from the attributes of a variable, cut to `LONGEST` characters."""
     texts = (str(attributes.get(name, "")).strip() for name in ("long_name", "comment"))
     return cut("; ".join(filter(None, texts)))
 

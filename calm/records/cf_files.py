@@ -63,13 +63,14 @@ _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 
 class UnreadableError(Exception):
-    """Error of a file whose contents cannot be used; the message gives the reason."""
+    """Error raised if the contents of a file cannot be used; the message gives the reason."""
 
 
 def holds_arrays(path: Path) -> bool:
     """Return whether a path is NetCDF, zarr or the text file of an instrument, rather than CSV.
 
-    Raise InputError for any other folder, or for a file of a known but unsupported kind.
+    Raise InputError if the path is a folder but not a zarr store, or a file of a known but
+    unsupported kind.
     """
     if path.is_dir():
         if not is_zarr(path):
@@ -91,7 +92,7 @@ def is_zarr(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Convert any error while a file is read to InputError."""
+    """Convert any error that occurs while a file is read to an InputError."""
     try:
         yield
     except (CalmError, TimeChoiceError, ModuleNotFoundError):
@@ -118,7 +119,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
 
 @contextmanager
 def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
-    """Append a list of the dataset's variables to the message of any UnreadableError."""
+    """Append a list of the variables of the dataset to the message of any UnreadableError."""
     try:
         yield
     except UnreadableError as error:
@@ -126,7 +127,7 @@ def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
 
 
 def open_current(path: Path) -> xr.Dataset:
-    """Open a dataset of currents with lazily read values and undecoded times."""
+    """Open a dataset of currents; values are read only when needed, and times are not decoded."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -171,7 +172,10 @@ def _refuse_many(name: object, count: int) -> None:
 
 
 def engine_of(path: Path) -> str:
-    """Return the xarray engine for a NetCDF file by its first bytes, or "" for any other file."""
+    """Return the xarray engine for a NetCDF file, or "" for any other file.
+
+    The first bytes of the file decide.
+    """
     with path.open("rb") as file:
         return _ENGINES.get(file.read(4), "")
 
@@ -209,7 +213,7 @@ def groups_of(path: Path) -> list[str]:
 
 
 def factor_of(variable: xr.DataArray, dimension: str) -> float:
-    """Return the factor that converts the unit of a variable to SI (angles: degrees).
+    """Return the factor that converts the unit of a variable to SI, or to degrees for angles.
 
     Raise UnreadableError if the variable has no unit, or a unit of another dimension.
     """
@@ -227,7 +231,7 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
 
 
 def converted(variable: xr.DataArray, values: Floats, wanted: str) -> Floats:
-    """Convert values from the unit of a variable to a wanted unit, given in pint notation.
+    """Convert values from the unit of a variable to the unit `wanted`, given in pint notation.
 
     Raise UnreadableError if the variable has no unit, or a unit of another dimension.
     """
@@ -254,15 +258,15 @@ def refuse_other_salinity(variable: xr.DataArray) -> None:
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Return the names that are variables of the dataset, in order and without duplicates."""
+    """Return those of the names that are variables of the dataset, in order, without duplicates."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
     """Return the values of a variable in its declared unit, NaN outside its valid range.
 
-    `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: limits of the packed
-    type refer to packed values.
+    `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: limits that have the
+    type of the packed values refer to packed values.
     """
     _refuse_many(variable.name, variable.size)
     values = np.array(variable.values, np.float64)
@@ -273,7 +277,7 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
 
 
 def valid_range(variable: xr.DataArray) -> tuple[float, float]:
-    """Return the minimum and maximum valid value of a variable, unpacked; ±inf without a limit."""
+    """Return the unpacked minimum and maximum valid values of a variable; ±inf without a limit."""
     low, high = (variable.attrs.get(name) for name in ("valid_min", "valid_max"))
     both = variable.attrs.get("valid_range")
     if both is not None and len(both) == 2:
@@ -295,13 +299,13 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
 
 
 def texts_of(variable: xr.DataArray) -> list[str]:
-    """Return the values of a variable as stripped strings."""
+    """Return the values of a variable as strings without surrounding blanks."""
     values = np.atleast_1d(variable.values).tolist()
     return [(one.decode() if isinstance(one, bytes) else str(one)).strip() for one in values]
 
 
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
-    """Return the text labels of a dimension; None if the dataset has none."""
+    """Return the text labels along a dimension; None if the dataset has no labels."""
     for name in first_present(dataset, (*_LABELS, dimension)):
         variable = dataset[name]
         if variable.dims == (dimension,) and variable.dtype.kind in "SUO":
@@ -310,7 +314,7 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Return the nominal depths of instruments [m]; None if the dataset has none.
+    """Return the nominal depths of instruments [m]; None if the dataset has no nominal depths.
 
     Parameters
     ----------
@@ -334,9 +338,9 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
 
 
 def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
-    """Return the name of the time variable of a velocity; None if it has none.
+    """Return the name of the time variable of a velocity; None if there is no such variable.
 
-    The time variable has no dimension that the velocity lacks.
+    All dimensions of the time variable are dimensions of the velocity.
     """
     axes, coordinates = dataset.cf.axes, dataset.cf.coordinates
     units = {name: str(one.attrs.get("units", "")) for name, one in dataset.variables.items()}
@@ -351,8 +355,8 @@ def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
 def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     """Return the times of a variable as (n,) datetime64[ns], in the order of the file.
 
-    Raise UnreadableError if a value is missing or is no time, or if the calendar differs from the
-    real one.
+    Raise UnreadableError if a value is missing or is not a time, or if the calendar differs from
+    the Gregorian calendar.
     """
     times = dataset[name]
     calendar = str(times.attrs.get("calendar", "standard")).lower()
@@ -372,7 +376,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return a notice if an attribute of the times or the file names a zone other than UTC."""
+    """Return a notice if an attribute of the times or the file names a time zone other than UTC."""
     for attributes in (dataset[name].attrs, dataset.attrs):
         for key in _ZONED:
             zone = str(attributes.get(key, "")).strip()

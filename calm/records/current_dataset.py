@@ -31,19 +31,20 @@ SAMPLED = 64_000_000
 
 
 class CurrentDataset:
-    """A dataset of currents with its velocity, levels, times and place identified.
+    """A dataset of currents in which velocity, levels, times and place have been identified.
 
-    Values of the current are read later. Raise UnreadableError if no current can be read; the
-    message gives the reason and the contents of the file.
+    Values of the current are read later. The constructor raises UnreadableError if no current can
+    be read; the message gives the reason and the contents of the file.
 
     Attributes
     ----------
-    times : (n,) in the order of the file; None for a profile without a time
+    times : (n,) times in file order; None for a profile without a time
     notices : remarks to read before the data are used
-    turned : notice of the rotation from magnetic to true north, if any
+    turned : notice of a rotation of the currents from magnetic to true north; empty without one
     rules : rules by which the file was read
     source : names of the variables, and the position of the grid column
-    labels : see `Record`
+    labels : names of the parts of a line that carry the instruments, if the levels have no depths;
+        otherwise empty
     """
 
     def __init__(self, dataset: xr.Dataset, terms: Terms) -> None:
@@ -96,7 +97,7 @@ class CurrentDataset:
 
     @property
     def chunk(self) -> int:
-        """Number of times in a compressed chunk of the file; 1 without compression."""
+        """Number of times in a chunk of the file; 1 if the file has no chunks."""
         variable = self._parts[0][0]
         chunks: dict[str | None, int] = variable.encoding.get("preferred_chunks", {})
         return chunks.get(self._time, 1)
@@ -111,8 +112,9 @@ class CurrentDataset:
     def read(self, index: Index) -> Levels:
         """Read the profiles at the given time indices, or the only profile of a file without times.
 
-        Return depth (k,) [m], or (n, k) if the levels move, u and v (n, k) [m/s], and w (n, k) or
-        None. Currents are inf if the file has a negative speed or a direction outside -360 to 360°.
+        Return the depths (k,) [m], or (n, k) if the levels move; the components u and v (n, k)
+        [m/s]; and w (n, k) [m/s], or None if the file has no vertical velocity. A current is inf
+        where the file has a negative speed or a direction outside -360 to 360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor
@@ -134,16 +136,19 @@ class CurrentDataset:
         return depth, first, second, up[0] if up else None
 
     def flags(self, index: Index) -> NDArray[np.int8] | None:
-        """Return quality flags (n, k), the worse of both components; None without flags."""
+        """Return quality flags (n, k) of the currents; None if the file has no flags.
+
+        The flag of a current is the worse of the flags of its two components.
+        """
         if not self._flags:
             return None
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
         return np.asarray(np.maximum.reduce(every), np.int8)
 
     def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
-        """Return the card of the profiles at the given times, and doubts about their values.
+        """Return the summary card of the profiles at the given times, and doubts about the values.
 
-        Large records are sampled evenly.
+        From a large record, evenly spaced profiles are used.
 
         Parameters
         ----------
@@ -232,7 +237,7 @@ class CurrentDataset:
 
 
 def share_of(good: Floats) -> Floats:
-    """Return shares of good pings as fractions; values above 1 mean that they are percentages."""
+    """Return shares of good pings as fractions; percentages are recognised by a value above 1."""
     return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
@@ -290,7 +295,7 @@ def _spread(variable: xr.DataArray) -> str:
 class ArrayRecord(Record):
     """A record of profiles in NetCDF or zarr, read by the same rules as a single profile.
 
-    Parameters and errors are the same as in `open_record`.
+    The parameters and the errors raised are those of `open_record`.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -315,14 +320,14 @@ class ArrayRecord(Record):
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of profiles `start` to `stop`, see `Record.profiles`."""
+        """Return the levels of the profiles from `start` to `stop`, as `Record.profiles` does."""
         first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
         depth = depth[mine] if self._current.moves else depth
         return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return the quality flags of profiles `start` to `stop`, see `Record.flags`."""
+        """Return the quality flags of profiles `start` to `stop`, as `Record.flags` does."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 

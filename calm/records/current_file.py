@@ -44,8 +44,8 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
 
     Parameters
     ----------
-    path : CSV, NetCDF or zarr
-    time : ISO 8601; None if the file has only one
+    path : path of a file in CSV, NetCDF or zarr
+    time : time of the profile in ISO 8601; None if the file has a single profile
     terms : options for reading the current
 
     Raises
@@ -53,7 +53,7 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
     InputError
         The file has mistakes.
     TimeChoiceError
-        The time is not in the file, or is missing although the file has several.
+        The time is outside the record, or no time is given although the file has several.
     """
     read = _from_arrays if holds_arrays(path) else _from_text
     table, notices = read(path, time, terms)
@@ -76,13 +76,13 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
     Parameters
     ----------
     path, terms : path of the record, and options for reading its currents
-    time : first and last time, see `parse_period`
-    every : read every n-th profile only
+    time : period to read, as returned by `parse_period`; None for the whole record
+    every : n, if only every n-th profile is to be read
 
     Raises
     ------
     InputError
-        The file is unreadable; the message gives the reason and its contents.
+        The file is unreadable; the message gives the reason and the contents of the file.
     UsageError
         The options select no profile.
     """
@@ -183,7 +183,8 @@ def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
 class CsvRecord(Record):
     """A record in CSV, read once into memory.
 
-    Parameters and errors are the same as in `open_record`; all mistakes of the file are reported.
+    The parameters and the errors raised are those of `open_record`. An error lists all mistakes of
+    the file.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -256,7 +257,7 @@ class CsvRecord(Record):
         return header
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of profiles `start` to `stop`, see `Record.profiles`."""
+        """Return the levels of the profiles from `start` to `stop`, as `Record.profiles` does."""
         chosen = np.arange(len(self._times))[part(self._index, start, stop)]
         first, behind = self._first[chosen], self._first[chosen + 1]
         levels = first[:, np.newaxis] + np.arange(self._most)
@@ -333,7 +334,7 @@ class CurrentHeader:
 
     @property
     def timed(self) -> bool:
-        """Whether the first column holds times, which makes the file a record."""
+        """True if the first column holds times; the file is then a record, not a single profile."""
         return is_time(self.row.cells[0])
 
     @property
@@ -350,7 +351,7 @@ class CurrentHeader:
     ) -> Floats:
         """Convert rows to an array (n, 4) of depth [m], u, v and w [m/s].
 
-        If any row is wrong, the array is empty and the mistakes are added to `problems`.
+        If any row has a mistake, the array is empty and the mistakes are added to `problems`.
 
         Parameters
         ----------

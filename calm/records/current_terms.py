@@ -29,10 +29,10 @@ class Terms:
     Attributes
     ----------
     water_depth : water depth, to convert heights above the seabed [m]; inf if unknown
-    place : position whose nearest grid column is read
-    declination : magnetic declination, positive to the east [degrees]; rotates currents that the
-        file refers to magnetic north
-    maximum_speed : speed above which a current is a mistake of the file [m/s]
+    place : position for which the nearest column of a gridded file is read
+    declination : magnetic declination, positive to the east [degrees], by which currents relative
+        to magnetic north are rotated to true north
+    maximum_speed : speed above which a current is treated as a mistake in the file [m/s]
     on_the_line : whether the file holds instruments on a mooring line. Level labels may then name
         parts of the line, and bad currents are kept with their flags instead of being excluded
     """
@@ -79,7 +79,7 @@ _PART_OF_HOUR = re.compile(r"[^\d.,:]\d\d(?::?\d\d)?[.,]")
 
 
 class TimeChoiceError(ValueError):
-    """Error of a requested time that is invalid, outside the record, or missing although needed."""
+    """Error raised if a requested time is invalid or outside the record, or is not given."""
 
 
 def parse_time(text: str) -> np.datetime64:
@@ -103,10 +103,10 @@ def time_text(time: np.datetime64) -> str:
 
 
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
-    """Return the index of the time nearest to the requested one, and a notice if they differ.
+    """Return the index of the time nearest to the requested time, and a notice if the two differ.
 
-    Raise TimeChoiceError if the file has no times, if a choice between several times is missing, or
-    if the requested time lies outside the record.
+    Raise TimeChoiceError if the file has no times, if no time is requested although the file has
+    several, or if the requested time lies outside the record.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

@@ -53,17 +53,17 @@ NumberedLine = tuple[int, str]
 
 
 class NoTableError(ValueError):
-    """Error of copied text that is not a table; the message gives the line and the fault."""
+    """Error raised if copied text is not a table; the message gives the line and the fault."""
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """Separator and decimal sign of a table in text.
+    """Separator and decimal symbol of a table in text.
 
     Attributes
     ----------
     separator : tab, semicolon, comma or blank; a blank stands for any number of blanks
-    decimal : a point or a comma
+    decimal : decimal symbol, a point or a comma
     """
 
     separator: str
@@ -81,12 +81,12 @@ class Dialect:
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
-        """Return the position in a line, from 1, at which a cell begins; 1 for a missing cell."""
+        """Return the position in a line, from 1, where a cell begins; 1 for a missing cell."""
         placed = self._placed(line)
         return placed[cell][0] + 1 if cell < len(placed) else 1
 
     def with_point(self, cell: str) -> str:
-        """Replace the decimal comma of a number by a point, and return other cells unchanged."""
+        """Replace the decimal comma of a number with a point, and return other cells unchanged."""
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
@@ -111,7 +111,7 @@ class CellRow(NamedTuple):
     path : path of the file
     number : line number
     line : original text of the line
-    cells : cells of the line after the skipped ones
+    cells : cells of the line, without the skipped cells at its start
     dialect : dialect of the table
     skipped : number of cells skipped at the start of the line
     """
@@ -124,12 +124,12 @@ class CellRow(NamedTuple):
     skipped: int = 0
 
     def problem(self, message: str, cell: int | None = None) -> Problem:
-        """Return a mistake located at a cell of the line, or at the start of the line if None."""
+        """Return a mistake located at a cell, or at the start of the line if `cell` is None."""
         at = 1 if cell is None else self.dialect.column(self.line, cell + self.skipped)
         return Problem(str(self.path), self.number, at, message)
 
     def mixed_decimals(self) -> list[Problem]:
-        """Return a mistake for each number with a decimal point in a table of decimal commas."""
+        """Return a mistake for each number with a decimal point in a table with decimal commas."""
         if self.dialect.decimal != ",":
             return []
         mixed = "has a decimal point, but earlier numbers have decimal commas"
@@ -140,7 +140,7 @@ class CellRow(NamedTuple):
         ]
 
     def below(self, number: int, line: str) -> CellRow:
-        """Split a line below this header into cells.
+        """Split a line of the table below this header row into cells.
 
         In tables separated by blanks, a time may consist of two words: a date and a clock time.
         """
@@ -158,9 +158,9 @@ class TextTable:
     rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
-        """Return the rows with as many cells as the header.
+        """Return the rows that have as many cells as the header.
 
-        Mistakes in other rows are added to `problems`.
+        For each other row, a mistake is added to `problems`.
         """
         whole = []
         for row in self.rows:
@@ -195,7 +195,7 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
     ----------
     path : path of the file
     example : sample header, for messages
-    lines : numbered lines of the file, if another reader has already split it
+    lines : numbered lines of the file, if another reader has already split the file into lines
 
     Raises
     ------
@@ -250,7 +250,7 @@ def table_lines(
 def copied_table(text: str) -> CopiedTable:
     """Parse a table copied from a spreadsheet, a file or a web page.
 
-    The first line is a header unless a cell of it begins with a number.
+    The first line is a header unless one of its cells begins with a number.
     `calm.records.profile_tables` interprets the cells. Raise NoTableError if there are no rows, or
     if rows differ in length.
     """
@@ -274,17 +274,21 @@ def copied_table(text: str) -> CopiedTable:
 
 
 def cells_in(text: str) -> list[list[str]]:
-    """Split a text with or without a header into rows of cells; decimal signs are unchanged."""
+    """Split the text of a table, with or without header, into cells.
+
+    Decimal symbols are unchanged.
+    """
     lines = [line for _, line in _content(enumerate(text.splitlines(), 1))]
     dialect = Dialect(dialect_of(lines[:_SAMPLE], words=True).separator)
     return [dialect.cells(line) for line in lines]
 
 
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
-    """Find the separator and the decimal sign of a table.
+    """Find the separator and the decimal symbol of a table.
 
-    The separator is the one that divides most lines into the same number of cells. The decimal sign
-    is a comma if a number has a comma that cannot separate thousands, and no number has a point.
+    The separator is the symbol that divides most lines into the same number of cells. The decimal
+    symbol is a comma if a number has a comma that cannot separate thousands, and no number has a
+    point.
 
     Parameters
     ----------
@@ -322,7 +326,10 @@ def is_gap(cell: str | None) -> bool:
 
 
 def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
-    """Convert cells to numbers, NaN for missing values; None if a cell is not a plain number."""
+    """Convert cells to numbers, with NaN for missing values.
+
+    Return None if a cell is neither a plain number nor a missing value.
+    """
     try:
         found = np.array([float(cell) for cell in cells], np.float64)  # type: ignore[arg-type]
     except (TypeError, ValueError):

@@ -22,7 +22,7 @@ def is_record(given: Any) -> bool:
 
 @contextmanager
 def as_file(given: Given) -> Iterator[Path]:
-    """Yield the path of a record; a dataset or a table is written to a temporary file."""
+    """Yield the path of a record; a dataset or a table is first written to a temporary file."""
     with TemporaryDirectory() as folder:
         yield Path(as_files(given, Path(folder), "record")[0])
 
@@ -35,9 +35,10 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
 
     Parameters
     ----------
-    given : a record, several records, or a mapping from labels to records; for a mapping,
-        ``LABEL=PATH`` is returned
-    folder, name : output folder, and prefix of the file names
+    given : a record, several records, or a mapping from labels to records; for a mapping, the texts
+        ``LABEL=PATH`` are returned
+    folder : folder in which the files are written
+    name : prefix of the file names
 
     Raises
     ------

@@ -42,8 +42,8 @@ class GridColumn:
 
     Attributes
     ----------
-    index : index along every horizontal dimension
-    place : position of the column; None if the file does not give it
+    index : index of the column along every horizontal dimension
+    place : position of the column; None if the file does not give the position
     notes : remarks on the choice of the column
     """
 
@@ -53,7 +53,7 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Return whether latitude and longitude are separate axes, so that x is east and y is north."""
+    """Return whether latitude and longitude are grid axes, so that x is east and y is north."""
     latitudes, longitudes = (
         {dataset[name].dims for name in _named(dataset, coordinate)} for coordinate in _PLACES
     )
@@ -76,7 +76,7 @@ def choose_column(
     ------
     UnreadableError
         The file has several columns and no place is given, the place is outside the grid, or no
-        column nearby has water.
+        column nearby has a current.
     """
     import xarray as xr
 
@@ -206,12 +206,12 @@ def _wet(
 
 
 def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]:
-    """Return great-circle distances from a place [km].
+    """Return great-circle distances of points from a place [km].
 
     Parameters
     ----------
-    latitude, longitude : coordinates of the places [degrees]
-    place : reference position
+    latitude, longitude : coordinates of the points [degrees]
+    place : latitude and longitude of the place [degrees]
     """
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
@@ -284,9 +284,9 @@ class SeabedGrid:
     Attributes
     ----------
     path, sha256 : path and checksum of the file
-    latitude, longitude : origin of the mooring's coordinates [degrees]
-    reach : nodes are read up to this distance east, west, north and south of the origin [m]
-    east, north : offset of the point from the origin [m]
+    latitude, longitude : origin of the mooring coordinates [degrees]
+    reach : distance from the origin, to each of the four sides, within which nodes are read [m]
+    east, north : distances of the point east and north of the origin [m]
     """
 
     path: str
@@ -299,7 +299,7 @@ class SeabedGrid:
 
     @classmethod
     def of_file(cls, path: Path, latitude: float, longitude: float, reach: float) -> SeabedGrid:
-        """Open the seabed grid in a file around a position.
+        """Open a file with a grid of seabed depths around a position.
 
         Raise InputError if the file is unreadable, or has no positive depth at the position.
         """
@@ -319,16 +319,21 @@ class SeabedGrid:
         return grid
 
     def at(self, east: float, north: float) -> SeabedGrid:
-        """Return the grid centred on another point, given by its offset from this point [m]."""
+        """Return the grid about another point.
+
+        Parameters
+        ----------
+        east, north : distances of the other point east and north of this point [m]
+        """
         return replace(self, east=self.east + east, north=self.north + north)
 
     @property
     def depth(self) -> float:
-        """Depth at the point [m]; NaN outside the grid and in its gaps."""
+        """Depth at the point [m]; NaN outside the grid and in gaps of the grid."""
         return float(self._depths(np.zeros((1, 2)))[0])
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the depths (n,) at places minus the depth of the point [m].
+        """Return the depths (n,) at several places minus the depth at the point [m].
 
         Parameters
         ----------
@@ -340,14 +345,14 @@ class SeabedGrid:
     def slope(self) -> float:
         """Slope of the seabed at the point [degrees].
 
-        It is computed from the steepest gradients over one node spacing.
+        The slope is computed from the steepest gradients over one node spacing.
         """
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Depth gradient towards east and towards north at the point [-], by central difference."""
+        """Depth gradient to the east and to the north at the point [-], by central differences."""
         east, north = self._falls.mean(axis=1).tolist()
         return east, north
 

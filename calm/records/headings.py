@@ -26,10 +26,11 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 
 
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
-    """Split a heading into its name and unit; the unit is empty if missing.
+    """Split a heading into its name and its unit; a missing unit is empty.
 
-    Without brackets, and if `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a name of
-    several words ends where a known unit begins, preferably a unit of one of these dimensions.
+    The unit is in brackets. If there are no brackets but `dimensions` are given, as keys of
+    `calm.units.DIMENSIONS`, the name ends where a known unit begins. Units of these dimensions are
+    preferred.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -54,21 +55,22 @@ def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
 def column_unit(
     column: str, unit: str, dimensions: Sequence[str], usual: str = ""
 ) -> tuple[str, float]:
-    """Return the dimension of a column, and the factor from its unit to SI (angles: degrees).
+    """Return the dimension of a column, and the factor from its unit to SI (degrees for angles).
 
     Latitudes and longitudes need no unit. They are in degrees, or in degrees and minutes.
 
     Parameters
     ----------
     column : heading of the column, for messages
-    unit : unit in the heading, may be empty
+    unit : unit in the heading; empty if the heading has none
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
     usual : unit to suggest; by default the SI unit
 
     Raises
     ------
     QuantityError
-        The unit is missing, unknown, or of another dimension; the text is a complete message.
+        The unit is missing, unknown or of another dimension. The text of the error is a complete
+        message.
     """
     name = heading(column, dimensions)[0]
     if not unit and dimensions[0] in HEMISPHERES:
@@ -89,7 +91,7 @@ def column_unit(
 
 
 def is_time(column: str) -> bool:
-    """Return whether a heading names the time column."""
+    """Return whether a heading is that of the time column."""
     return heading(column)[0].lower() == "time"
 
 
@@ -133,12 +135,12 @@ _INFINITE = ("inf", "infinity")
 
 @dataclass(frozen=True)
 class NamedColumns:
-    """Rows of a table, with known columns identified by name.
+    """Rows of a table in which the known columns have been identified by name.
 
     Attributes
     ----------
-    factors : factor to SI (angles: degrees) of each known column that is present
-    places : index of each known column in a row
+    factors : factor from the unit of each known column present to SI (degrees for angles), by name
+    places : index of each known column in a row, by name
     rows : rows with as many cells as the header
     others : headings of the other columns
     header : header of the table
@@ -151,7 +153,7 @@ class NamedColumns:
     header: delimited.CellRow
 
     def lacks(self, name: str, unit: str) -> Problem:
-        """Return the mistake that a column is missing, with a suggested unit."""
+        """Return a mistake for the missing column `name`; the message suggests a unit."""
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
         return self.header.problem(message)
 
@@ -162,10 +164,10 @@ class TimeColumns:
 
     Attributes
     ----------
-    time : (n,) to the nanosecond, rising
-    names : label of each column
-    dimensions : dimension of each column, a key of `calm.units.DIMENSIONS`
-    values : (n, c) in SI, NaN in gaps
+    time : (n,) increasing times, to the nanosecond
+    names : label of each of the c columns
+    dimensions : dimension of each column, as a key of `calm.units.DIMENSIONS`
+    values : (n, c) values in SI units; NaN in gaps
     """
 
     time: NDArray[np.datetime64]
@@ -181,7 +183,7 @@ def read_named_columns(
     *,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
-    """Find the known columns of a table, and add mistakes in headings and rows to `problems`.
+    """Find the known columns of a table; mistakes in headings and rows are added to `problems`.
 
     Parameters
     ----------
@@ -212,7 +214,7 @@ def read_named_columns(
 
 
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
-    """Read a table of times and quantities; each heading has a label and its unit.
+    """Read a table of times and quantities; the heading of a quantity has a label and a unit.
 
     Parameters
     ----------
@@ -223,7 +225,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     Raises
     ------
     InputError
-        The table has mistakes; all are listed.
+        The table has mistakes; the error lists all of them.
     """
     table = delimited.read_table(path, f"time,{example}")
     header = table.header

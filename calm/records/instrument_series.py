@@ -67,12 +67,12 @@ class Identity:
 
     @property
     def known(self) -> bool:
-        """Whether the file states a label, a serial number or a nominal depth."""
+        """True if the file states a label, a serial number or a nominal depth."""
         return bool(self.label or self.serial) or np.isfinite(self.nominal)
 
     @property
     def named(self) -> str:
-        """Label of the instrument, else its serial number, else its file name."""
+        """Label of the instrument; if missing, its serial number, else its file name."""
         return self.label or self.serial or self.source
 
 
@@ -82,14 +82,14 @@ class InstrumentSeries(Identity):
 
     Attributes
     ----------
-    time : (n,) to the nanosecond, rising
-    value : (n,) in the unit of the quantity; NaN if missing or rejected by its flag
+    time : (n,) increasing times, to the nanosecond
+    value : (n,) values in the unit of the quantity; NaN if missing or rejected by a flag
     dropped : number of readings rejected by their flags
-    below : depth of a profiler's bin below the instrument [m]
+    below : distance of a bin of a profiler below the instrument [m]
     note : remarks on doubts and assumptions
     card : summary card of the file
     pressure : median pressure in the file [dbar]; NaN without pressures
-    called : label in the file, regardless of the label given by the user; empty if missing
+    called : label stated in the file, even if the user gives another label; empty if missing
     """
 
     time: NDArray[np.datetime64]
@@ -102,7 +102,7 @@ class InstrumentSeries(Identity):
     called: str = ""
 
     def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
-        """Return the series with impossible values replaced by NaN and doubts added to its note.
+        """Return the series with NaN in place of impossible values, and doubts added to its note.
 
         Parameters
         ----------
@@ -138,7 +138,7 @@ def read_series(
     seabed: float,
     usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
-    """Read time series of several quantities from files; return lists by quantity name.
+    """Read time series of several quantities from files; return a list of series by quantity name.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def read_series(
     Raises
     ------
     InputError
-        A file is missing or unreadable, has none of the quantities, or omits a unit.
+        A file is missing or unreadable, has none of the quantities, or lacks a unit.
     UsageError
         A label is given for a file of several instruments.
     """
@@ -176,9 +176,10 @@ def read_series(
 
 
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
-    """Return the files named by the arguments, each with its label, which may be empty.
+    """Return pairs of label and path for all files given; the label is empty if none is given.
 
-    Raise InputError if a file does not exist, or if a folder has no data files.
+    A folder stands for the data files in it. Raise InputError if a file does not exist, or if a
+    folder has no data files.
     """
     found: list[tuple[str, Path]] = []
     problems = []
@@ -228,7 +229,7 @@ def _of_file(
 
 
 def with_one_card(series: Sequence[InstrumentSeries]) -> list[InstrumentSeries]:
-    """Return the series of a file, all with one card that covers all instruments."""
+    """Return the series of a file, each with the same card, which covers all instruments."""
     cards = [*{id(one.card): one.card for one in series if one.card is not None}.values()]
     if len(cards) < 2:
         return [*series]
@@ -249,13 +250,13 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Split a dataset in which the readings of several instruments share one dimension.
 
-    In CF's indexed ragged arrays, a variable with the attribute `instance_dimension` gives the
+    In the indexed ragged arrays of CF, a variable with the attribute `instance_dimension` gives the
     instrument of each reading, as in the aggregated and hourly products of IMOS. In contiguous
-    ragged arrays, a variable with `sample_dimension` gives the number of readings of each
-    instrument. Readings without an instrument are excluded. A dataset without such a variable is
-    returned as the only part.
+    ragged arrays, a variable with the attribute `sample_dimension` gives the number of readings of
+    each instrument. Readings without an instrument are excluded. A dataset with neither variable is
+    returned unsplit.
 
-    Raise UnreadableError if the variable does not fit the dimensions.
+    Raise UnreadableError if such a variable does not fit the dimensions.
     """
     for name, index in dataset.variables.items():
         instances = index.attrs.get("instance_dimension")
@@ -403,7 +404,7 @@ class _SeriesFile:
 
 
 def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the names of the variables from which salinity can be computed, by quantity.
+    """Return the names of the variables from which salinity can be computed, by quantity name.
 
     The quantities are conductivity, temperature and, if present, pressure. The result is empty
     unless the dataset has both conductivity and temperature.
@@ -427,7 +428,7 @@ def practical_salinity(
     Parameters
     ----------
     taken : variables as returned by `conductivity_in`
-    values : values of these variables in their file units, with equal shapes
+    values : values of these variables, in the units of the file and with equal shapes
     depth : depth used if a pressure is missing [m]; an error of 10 m changes salinity by 0.004
     """
     import gsw
@@ -470,11 +471,11 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 
 
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
-    """Return the variables with the first standard name that is present.
+    """Return the variables that have the first standard name of `sought` found in the dataset.
 
-    If none is present, return the variables with a usual name. Raise UnreadableError if several
-    variables have the standard name and none of them a usual name, or if a variable with a usual
-    name has another standard name.
+    If no standard name is found, return the variables with a name in `usual`. Raise UnreadableError
+    if several variables have the standard name and none of them has a usual name, or if a variable
+    with a usual name has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
@@ -503,10 +504,10 @@ class Readings:
 
     Attributes
     ----------
-    time : (n,) rising
+    time : (n,) increasing times
     axis : dimension of the times
     along : dimension of the instruments; None for a single instrument
-    values : (n, k) of each variable, in file units
+    values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the times
     flags : number of rejected readings by flag variable
@@ -530,7 +531,7 @@ class Readings:
 
 
 def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -> Readings:
-    """Read several variables that share their dimensions.
+    """Read several variables that have the same dimensions.
 
     Parameters
     ----------
@@ -579,7 +580,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
 def card_of(
     dataset: xr.Dataset, source: str, taken: Mapping[str, str], found: Readings
 ) -> ReadCard:
-    """Return the summary card of readings.
+    """Return the card that summarises readings.
 
     Parameters
     ----------
@@ -605,7 +606,7 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
     Parameters
     ----------
     along : dimension of the instruments; None for a file of one instrument
-    seabed : water depth, for heights above the seabed [m]
+    seabed : water depth, to convert heights above the seabed [m]
     source : name of the file
     """
     if along is None:

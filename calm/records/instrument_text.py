@@ -66,12 +66,12 @@ _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 
 
 def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
-    """Return the reader for a text file of an instrument; None for any other file.
+    """Return the function that reads a text file of an instrument; None for any other file.
 
-    The reader returns a dataset with the names and attributes of OceanSITES. Times are seconds
+    The function returns a dataset with the names and attributes of OceanSITES. Times are seconds
     since 1970, and missing values are NaN. For currents, `INSTRUMENT_DEPTH` is computed from
-    pressure by TEOS-10, or is the nominal depth. The reader raises InputError if the file is
-    unreadable, has no times, or has an invalid row.
+    pressure by TEOS-10; without pressure, it is the nominal depth. The function raises InputError
+    if the file is unreadable, has no times, or has an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
@@ -239,9 +239,9 @@ _IN_TABLES = {
 
 
 def read_plain_table(path: Path) -> xr.Dataset:
-    """Read a time table of one instrument, with columns such as ``temperature[degC]``.
+    """Read a table over time of one instrument, with columns such as ``temperature[degC]``.
 
-    Raise InputError if the table has mistakes, or a column that is not a known quantity.
+    Raise InputError if the table has mistakes, or a column for an unknown quantity.
     """
     table = read_time_columns(path, tuple(_IN_TABLES), "temperature[degC]")
     names = {archive: what for what, (archive, _) in _WHAT.items()}

@@ -37,11 +37,11 @@ _STANDARD_DEPTH = "depth"
 class LevelDepths:
     """Levels of a current at depths ``start + factor * variable``, positive down [m].
 
-    If `instrument` is set, its depth is added.
+    If `instrument` is set, the depth of the instrument is added.
 
     Attributes
     ----------
-    variable : level variable; it has no dimension that the velocity lacks
+    variable : level variable; all its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
     instrument : depth variable of the instrument from which levels are counted, and its factor to
@@ -61,7 +61,10 @@ class LevelDepths:
         return any(time in one.dims for one in moving)
 
     def depths(self, time: str | None, index: Any) -> NDArray[Any]:
-        """Return depths (n, k) [m] at the given time indices, or (k,) if the levels never move."""
+        """Return the depths (n, k) of the levels at the given time indices [m].
+
+        If the levels never move, the shape is (k,).
+        """
 
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
@@ -82,19 +85,20 @@ def find_levels(
 ) -> LevelDepths:
     """Find the levels of a velocity.
 
-    Levels that move with time are preferred to fixed levels.
+    If a file describes both moving and fixed levels, the moving levels are used.
 
     Parameters
     ----------
     dataset : dataset of the velocity
-    level : level dimension of the velocity, None if it has none
-    time : time dimension of the velocity, None if it has none
+    level : level dimension of the velocity; None if the velocity has no such dimension
+    time : time dimension of the velocity; None if the velocity has no such dimension
     water_depth : water depth, to convert heights above the seabed [m]
 
     Raises
     ------
     UnreadableError
-        There are no levels, or the file does not state whether they increase upwards or downwards.
+        There are no levels, or the file does not state whether values increase upwards or
+        downwards.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [

@@ -34,7 +34,7 @@ are shallower."""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
-    """Yield a remark if directions seem to be in radians, or to be velocities.
+    """Yield a remark if directions appear to be in radians, or appear to be velocities instead.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
 
     Parameters
     ----------
-    depth : (n,) rising [m]
+    depth : (n,) increasing depths [m]
     u, v : (n,) eastward and northward components, without gaps [m/s]
     water_depth : water depth [m]; inf if unknown
     """
@@ -103,12 +103,12 @@ def _between(one: float, other: float) -> float:
 
 
 def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
-    """Yield a remark if currents are stronger than any measured in deep water.
+    """Yield a remark if currents are stronger than any currents measured in deep water.
 
     Parameters
     ----------
-    depth : (n,) of the levels [m]
-    speed : (n,) maximum at each depth [m/s]
+    depth : (n,) depths of the levels [m]
+    speed : (n,) maximum speed at each level [m/s]
     water_depth : water depth [m]; inf if unknown
     """
     if not _SHELF < water_depth < inf:

@@ -29,12 +29,12 @@ A place is ``("columns", j)`` or ``("rows", i, j)``.
 
 @dataclass(frozen=True)
 class QuantityTable:
-    """A table of quantities as text, and a list that collects its mistakes.
+    """A table of quantities as text, and a list that collects the mistakes in the table.
 
     Attributes
     ----------
-    columns : names with their units, ``"depth m"`` or ``"depth[m]"``; if a heading has no unit,
-        each value of the column has its own
+    columns : names with units, such as ``"depth m"`` or ``"depth[m]"``; if a heading has no unit,
+        each value in the column has its own unit
     rows : numbers, or quantities with a unit, as text
     report : function that builds a mistake from a place and a message
     problems : list to which mistakes are added
@@ -46,7 +46,7 @@ class QuantityTable:
     problems: list[Problem]
 
     def refuse(self, place: Sequence[str | int], message: str) -> None:
-        """Add a mistake at a place of the table."""
+        """Add a mistake at a place in the table."""
         self.problems.append(self.report(place, message))
 
 
@@ -57,10 +57,10 @@ _AMBIGUOUS = ("direction", "dir", "heading", "bearing")
 def read_columns(
     table: QuantityTable, known: Mapping[str, QuantityRange], gaps: Booleans | None = None
 ) -> dict[str, Floats]:
-    """Convert the known columns of a table to SI; return arrays by name.
+    """Convert the known columns of a table to SI units; return arrays by column name.
 
-    Wrong values become NaN and are added to the table's problems. `gaps` is a mask of rows in which
-    a value may be missing.
+    A wrong value becomes NaN, and a mistake is added to the problems of the table. `gaps` is a mask
+    of rows in which a value may be missing.
     """
     columns, rows = table.columns, table.rows
     units = _read_headings(table, known)
@@ -161,8 +161,8 @@ def check_depths(
 
     Parameters
     ----------
-    table : table that collects the mistakes
-    values : columns in SI by name
+    table : table to whose `problems` the mistakes are added
+    values : values in SI units, by name of the column
     rows : indices of the rows to check
     profile : index of the profile of each row; None if all rows form one profile
     """
@@ -226,7 +226,7 @@ class CurrentTable:
 
     Attributes
     ----------
-    record : path of the record from which the profile was read, and the options for reading it
+    record : path of the record from which the profile was read, and the options used to read it
     doubts : remarks on suspicious directions
     card : summary card of the file
     """
@@ -242,7 +242,7 @@ class CurrentTable:
 
 @dataclass(frozen=True)
 class DepthTable:
-    """A quantity at increasing depths [m], interpolated linearly and constant beyond the ends."""
+    """A quantity at increasing depths [m]; linear between depths, constant beyond the ends."""
 
     depth: tuple[float, ...]
     value: tuple[float, ...]
@@ -250,7 +250,7 @@ class DepthTable:
 
 @dataclass(frozen=True)
 class SeaWater:
-    """Profiles of the in-situ temperature [°C] and the practical salinity of sea water."""
+    """Profiles of in-situ temperature [°C] and practical salinity in sea water."""
 
     temperature: DepthTable
     salinity: DepthTable
@@ -263,9 +263,9 @@ def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> Current
 
     Parameters
     ----------
-    table : has the column `depth`, either `u` and `v` or `speed` with `toward` or `from`, and
-        optionally `w`. A unit such as ``"deg magnetic"`` marks a column as relative to magnetic
-        north.
+    table : table with the column `depth`; with `u` and `v`, or `speed` and either `toward` or
+        `from`; and optionally with `w`. A unit such as ``"deg magnetic"`` marks a column as
+        relative to magnetic north
     terms : options, of which the declination and the maximum speed are used
     """
     found = read_currents(table, terms)
@@ -296,8 +296,8 @@ def read_currents(
     Parameters
     ----------
     table, terms : as in `read_current`
-    profile : for a record, the index of the profile of each row (n,), increasing; values missing in
-        a record become NaN. None if all rows form one profile
+    profile : (n,) increasing index of the profile to which each row of a record belongs; missing
+        values then become NaN. None if all rows form one profile
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -345,7 +345,7 @@ def read_currents(
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
-    """Return a notice if columns were rotated from magnetic to true north."""
+    """Return a notice if currents in the columns were rotated from magnetic to true north."""
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
@@ -387,7 +387,7 @@ def read_water(
 
     Parameters
     ----------
-    table : has the columns `depth`, and either `density` or `temperature` and `salinity`
+    table : table with the column `depth`, and either `density` or `temperature` and `salinity`
     density : plausible range of the density
     """
     values = _by_depth(table, {**_WATER, "density": density})
@@ -399,7 +399,7 @@ def read_water(
 
 
 def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
-    """Parse `temperature` [°C] or `salinity` by depth from a table.
+    """Parse a profile of `temperature` [°C] or `salinity` from a table.
 
     If the table has mistakes, they are added to its `problems`, and None is returned.
     """
@@ -437,7 +437,7 @@ def components(speed: float, toward: float) -> tuple[float, float]:
     Parameters
     ----------
     speed : speed of the flow
-    toward : direction towards which it flows, clockwise from north [degrees]
+    toward : direction of the flow, clockwise from north [degrees]
     """
     angle = math.radians(toward)
     return speed * math.sin(angle), speed * math.cos(angle)

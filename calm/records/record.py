@@ -45,18 +45,18 @@ RULES = (
 
 
 class Record(ABC):
-    """The selected profiles of a record, in the order of time.
+    """The selected profiles of a record, in order of time.
 
-    Use a record from one thread at a time, and close it with `close` or a `with` statement.
+    Use a record in one thread at a time, and close it with `close` or a `with` statement.
 
     Attributes
     ----------
-    time : (n,) to the nanosecond, rising
+    time : (n,) increasing times, to the nanosecond
     notes : rules by which the record was read, and doubts about it
-    source : names of the file and its variables, and the position
+    source : names of the file and of its variables, and the position
     cards : summary card of each file
     labels : names of the parts of a line that carry the instruments, if the levels have no depths;
-        else empty
+        otherwise empty
     """
 
     time: NDArray[np.datetime64]
@@ -72,14 +72,15 @@ class Record(ABC):
 
     @abstractmethod
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of m profiles, NaN in gaps.
+        """Return the depths and velocities of the m profiles from `start` to `stop`.
 
-        Depths are positive down, in any order; w is None if the record has no vertical velocity.
-        Raise InputError if the file is damaged in this range.
+        The depths (k,) or (m, k) [m] are positive down, and may be in any order. The velocities u,
+        v and w, each (m, k) [m/s], are NaN in gaps. w is None if the record has no vertical
+        velocity. Raise InputError if the file is damaged in this range.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return quality flags (m, k) of m profiles; None if the record has no flags."""
+        """Return quality flags (m, k) of profiles `start` to `stop`; None if there are no flags."""
         return None
 
     @abstractmethod
@@ -96,9 +97,9 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Parse a period ``A/B`` of ISO 8601 times.
 
-    If B is a year, a month or a day, the period includes it completely. Either end may be missing,
-    as in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or ends
-    before it begins.
+    If B is a year, a month or a day, the period includes the whole of B. Either end may be missing,
+    as in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or if the
+    period ends before it begins.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -110,10 +111,11 @@ def parse_period(text: str) -> Period:
 
 
 def parse_place(text: str) -> Place:
-    """Parse a position ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+    """Parse a position ``LAT,LON`` [degrees north, degrees east].
 
-    Both may be in degrees and minutes, as in ``57 28.84 N, 19 10.2 W``. Raise UsageError if the
-    text is not a position on the earth.
+    The longitude may range from −180 to 180 or from 0 to 360. Latitude and longitude may be in
+    degrees and minutes, as in ``57 28.84 N, 19 10.2 W``. Raise UsageError if the text is not a
+    position on the earth.
     """
     parts = text.split(",")
     try:
@@ -129,13 +131,13 @@ def parse_place(text: str) -> Place:
 def choose_profiles(
     times: Times, period: Period | None, every: int, path: Path
 ) -> tuple[Index, tuple[str, ...]]:
-    """Return the indices of the profiles to read, in the order of time, and notices.
+    """Return the indices of the profiles to read, in order of time, and notices on the choice.
 
     Parameters
     ----------
-    times : (n,) in the order of the file
-    period : first and last time to read; None for all
-    every : read every n-th profile only
+    times : (n,) times in file order
+    period : first and last time to read; None for all times
+    every : n, if only every n-th profile is to be read
     path : path of the record, for messages
 
     Raises
@@ -175,12 +177,12 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return the file indices of a range of the chosen profiles.
+    """Return the indices in the file of a range of the chosen profiles.
 
     Parameters
     ----------
-    index : file indices of the chosen profiles
-    start, stop : range within the chosen profiles
+    index : indices in the file of all chosen profiles
+    start, stop : range of the chosen profiles, from `start` up to but not including `stop`
     """
     if not isinstance(index, slice):
         return index[start:stop]
@@ -230,7 +232,7 @@ _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """Return the synthetic record as bytes of a classic NetCDF file, identical on all platforms."""
+    """Return a synthetic record as a classic NetCDF file, with equal bytes on all platforms."""
     import xarray as xr
 
     hours = np.arange(24 * DAYS)

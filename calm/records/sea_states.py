@@ -64,7 +64,7 @@ A sea of the shortest period has a hundredth of its variance above that frequenc
 
 @dataclass(frozen=True)
 class SpectralForm:
-    """A spectrum as a law with its parameters, so that equal seas compare equal."""
+    """A wave spectrum as a function and its parameters, so that equal spectra compare equal."""
 
     law: Callable[..., Floats]
     figures: tuple[Any, ...]
@@ -82,9 +82,9 @@ class SeaState:
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
-    share : share of the time, for one of several seas
+    share : share of the time for which this sea state lasts, in a set of several sea states
     longest, shortest : longest and shortest peak period of a sea with several components [s]; for a
-        measured sea, `longest` is the period of its longest relevant waves
+        measured sea, `longest` is the period of the longest relevant waves
     """
 
     significant_height: float
@@ -110,9 +110,10 @@ class SeaState:
 
 
 def bretschneider(height: float, period: float) -> Density:
-    """Return the spectrum of a growing or fully developed sea, by Hs [m] and Tp [s].
+    """Return the spectrum of a growing or fully developed sea with Hs [m] and Tp [s].
 
-    S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴): Bretschneider 1959, the ITTC spectrum of two parameters.
+    S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴). This is the spectrum of Bretschneider 1959, also known
+    as the two-parameter ITTC spectrum.
     """
     return SpectralForm(_gamma_form, (((height, 2.0 * pi / period, 1.0),),))
 
@@ -124,8 +125,8 @@ def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
 
     Parameters
     ----------
-    parts : Hs [m], Tp [s] and λ of each component; λ = 1 is Bretschneider's form, and the spectrum
-        narrows as λ grows
+    parts : Hs [m], Tp [s] and λ of each component; λ = 1 gives the Bretschneider spectrum, and a
+        larger λ gives a narrower spectrum
     """
     terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
     return SpectralForm(_gamma_form, (terms,))
@@ -140,10 +141,11 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 
 
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
-    """Return the JONSWAP spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
+    """Return the JONSWAP spectrum of a fetch-limited sea with Hs [m], Tp [s] and peakedness gamma.
 
-    It is Bretschneider's spectrum times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), with σ = 0.07 below the
-    peak and 0.09 above it (Hasselmann and others 1973), normalised to the given Hs.
+    The Bretschneider spectrum is multiplied by gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), with σ = 0.07
+    below the peak and 0.09 above the peak (Hasselmann and others 1973). The product is normalised
+    to the given Hs.
     """
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
@@ -158,9 +160,9 @@ def _peaked(height: float, peak: float, gamma: float, omega: Floats) -> Floats:
 
 
 def full_sea_period(height: float) -> float:
-    """Return Tp [s] of a fully developed sea by Hs [m], from Pierson and Moskowitz 1964.
+    """Return Tp [s] of a fully developed sea with a given Hs [m].
 
-    The law is ωp² = 0.16 g/Hs.
+    The law of Pierson and Moskowitz 1964 is ωp² = 0.16 g/Hs.
     """
     return 2.0 * pi / sqrt(0.16 * 9.80665 / height)
 
@@ -178,8 +180,8 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3
     Raises
     ------
     UsageError
-        The waves are higher, longer or steeper than any real sea, or a period is given although
-        it follows from the height.
+        The waves are higher, longer or steeper than in any real sea, or a period is given although
+        the period follows from the height.
     """
     if kind == "ochi-hubble":
         if period is not None:
@@ -216,8 +218,8 @@ def _impossible(height: float, period: float) -> str | None:
 def doubted(sea: SeaState) -> str | None:
     """Return a remark if a sea is steeper than measured seas, else None.
 
-    The limit on the ratio of Hs to the length of waves of period Tp is 1/15 up to a Tp of 8 s, and
-    falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
+    The steepness is the ratio of Hs to the wavelength at Tp. The limit on the steepness is 1/15 up
+    to a Tp of 8 s, and falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
     """
     height, period = sea.significant_height, sea.peak_period
     steepness = 2.0 * pi * height / (9.80665 * period**2)
@@ -233,9 +235,9 @@ def doubted(sea: SeaState) -> str | None:
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     """Add a swell of Hs [m] and Tp [s], in the same direction, to a sea.
 
-    The swell has the narrow form of Ochi and Hubble with λ = 3, and the variances add up. Raise
-    UsageError if the swell is higher, longer or steeper than any real swell, or shorter than the
-    sea.
+    The swell has the narrow spectrum of Ochi and Hubble with λ = 3, and the variances are added.
+    Raise UsageError if the swell is higher, longer or steeper than any real swell, or if its period
+    is shorter than that of the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -277,9 +279,9 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    NetCDF files follow NDBC or WAVEWATCH III, for a single position. If they hold several times,
-    the highest sea is used. Raise InputError if the file is not a spectrum, or if its frequencies
-    do not increase.
+    A NetCDF file has the form of NDBC or WAVEWATCH III, and a single position. If it holds several
+    times, the highest sea is used. Raise InputError if the file is not a spectrum, or if its
+    frequencies do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -367,8 +369,8 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     """Return the sea states of a scatter table, each with its share of the time.
 
-    The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
-    Raise InputError with all mistakes and their lines.
+    The columns are ``significant_wave_height[m],peak_period[s],share``; the column `share` may also
+    hold counts. Raise InputError if the table has mistakes; the error lists all of them.
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":

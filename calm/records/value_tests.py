@@ -49,16 +49,17 @@ _FEET = 0.3048
 
 @dataclass(frozen=True)
 class CurrentValues:
-    """Currents of a record, as input of the tests.
+    """Currents of a record, as input to the tests for doubtful values.
 
     Attributes
     ----------
-    depth : (k,) or (n, k) [m]; NaN if unknown
+    depth : (k,) or (n, k) depths of the levels [m]; NaN if unknown
     u, v : (n, k) eastward and northward components [m/s]; NaN in gaps
-    times : (n,) rising; None for a single profile
+    times : (n,) increasing times; None for a single profile
     water_depth : water depth [m]; inf if unknown
-    unit, factor : declared unit of speed and its factor to m/s
-    good : (n, k) share of good pings; None if missing
+    unit : declared unit of speed
+    factor : factor from this unit to m/s
+    good : (n, k) share of good pings; None if unknown
     """
 
     depth: Floats
@@ -72,7 +73,7 @@ class CurrentValues:
 
 
 def current_doubts(found: CurrentValues) -> Iterator[str]:
-    """Yield doubts about the values of a current."""
+    """Yield a message for each doubt about the values of a current."""
     known = np.isfinite(found.u) & np.isfinite(found.v)
     yield from level_doubts(found.depth, known, found.water_depth)
     speed = np.where(known, np.hypot(found.u, found.v), 0.0)
@@ -100,12 +101,12 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
 
 
 def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
-    """Yield doubts about levels below the seabed, levels without values, and water without levels.
+    """Yield doubts about levels below the seabed, levels without values, and depths without levels.
 
     Parameters
     ----------
-    depth : (k,) or (n, k) of the levels [m]
-    known : (n, k) mask of values present
+    depth : (k,) or (n, k) depths of the levels [m]
+    known : (n, k) mask of the values that are present
     water_depth : water depth [m]; inf if unknown
     """
     there, levels = known.any(axis=0), _levels(depth, known)
@@ -145,7 +146,7 @@ def _median(values: Floats) -> float:
 
 
 def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
-    """Return a message on the part of the water column that a profile does not cover, if any.
+    """Return a message if a profile does not cover the whole water column, else "".
 
     Parameters
     ----------
@@ -166,11 +167,12 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
 
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
-    """Yield a doubt if all speeds (n,) [m/s] are too small for their declared unit.
+    """Yield a doubt if all speeds are so small that the declared unit is probably wrong.
 
     Parameters
     ----------
-    unit, factor : declared unit, and its factor to m/s
+    speed : (n,) speeds [m/s]
+    unit, factor : declared unit, and the factor from this unit to m/s
     """
     strongest = float(speed.max(initial=0.0))
     if speed.size < _VARIED or not 0.0 < strongest < WEAK:
@@ -187,7 +189,7 @@ def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Itera
 
 
 def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield a doubt if all currents flow towards a narrow sector that begins at north.
+    """Yield a doubt if the directions of all currents are in a narrow sector that begins at north.
 
     Parameters
     ----------
@@ -292,9 +294,9 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
 
     Parameters
     ----------
-    values : (n, k, c) components of k series; NaN in gaps
-    times : (n,) rising
-    names : (k,) place of each series, such as " at 20 m"; "" for a single series
+    values : (n, k, c) values of c components in k series; NaN in gaps
+    times : (n,) increasing times
+    names : (k,) place of each series for the messages, such as " at 20 m"; "" for a single series
     """
     yield from _years(times)
     again = int((times[1:] == times[:-1]).sum())
@@ -317,7 +319,7 @@ FAR_APART = np.timedelta64(12, "h")
 
 
 def step_doubts(times: Times) -> Iterator[str]:
-    """Yield a doubt if profiles are too far apart in time to resolve tides and peaks."""
+    """Yield a doubt if the time between profiles is too long to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
             f"the {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
@@ -327,7 +329,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Limits of a sea-water quantity, its unit, and other units that are often used by mistake.
+    """Limits of a sea-water quantity, its unit, and other units that are common for it.
 
     Each value of `likely` is the factor and the offset that convert another unit to `unit`.
     """
@@ -381,14 +383,14 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Find the pair of levels whose exchange makes a profile monotonic.
+    """Find the only pair of levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is monotonic already, or if no exchange or more than one achieves
-    this.
+    Return None if the profile is already monotonic, or if no pair or more than one pair has this
+    effect.
 
     Parameters
     ----------
-    values : mean values from top to bottom, at least four
+    values : mean value at each level, from top to bottom; at least four levels
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None
@@ -427,7 +429,10 @@ def _years(times: Times) -> Iterator[str]:
 
 
 def gaps_of(times: Times) -> tuple[np.timedelta64, NDArray[np.intp]]:
-    """Return the median step of times (n,), and the indices before steps over 1.5 medians."""
+    """Return the median step of times (n,), and the indices of the times that precede a gap.
+
+    A gap is a step longer than 1.5 times the median step.
+    """
     steps = np.diff(times)
     step = np.median(steps)
     return step, np.flatnonzero(steps > 1.5 * step)

@@ -71,10 +71,11 @@ class Velocity:
     Attributes
     ----------
     names : eastward and northward velocity, or speed and direction
-    up : upward velocity, None if missing
+    up : upward velocity; None if missing
     turn : angle to add to the direction variable to get the direction of flow [degrees]; None if
         `names` are components
-    magnetic, true : whether the file refers the velocity to magnetic north, and to true north
+    magnetic : whether the file states that directions are relative to magnetic north
+    true : whether the file states that directions are relative to true north
     notes : remarks on assumptions
     """
 
@@ -86,9 +87,11 @@ class Velocity:
     notes: tuple[str, ...]
 
     def components(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
-        """Return the eastward and northward components, from the values of the two variables.
+        """Return the eastward and northward components of the current.
 
-        Directions are in degrees.
+        Parameters
+        ----------
+        first, second : values of the two variables in `names`; directions are in degrees
         """
         if self.turn is None:
             return first, second
@@ -104,8 +107,8 @@ class Velocity:
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     """Find the velocity variables of a dataset.
 
-    Raise UnreadableError if there is no current, if there are several, or if its components are not
-    towards east and north.
+    Raise UnreadableError if there is no current, if there are several currents, or if the
+    components are not eastward and northward.
 
     Parameters
     ----------
@@ -215,10 +218,10 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the names of coordinates that describe layers, and of their dimensions.
+    """Return the names of coordinates that describe layers, and the names of their dimensions.
 
-    Such a coordinate has the attribute `bounds`. A mean over a layer is accepted as a value of this
-    layer.
+    A coordinate that describes layers has the attribute `bounds`. A mean over a layer is accepted
+    as the value of this layer.
     """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
@@ -229,9 +232,9 @@ _WHOSE = re.compile(r"(?:sensor|instrument|platform|station|mooring|serial)", re
 
 
 def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
-    """Raise UnreadableError if a variable holds readings of several instruments in sequence.
+    """Raise UnreadableError if a variable holds the readings of several instruments in sequence.
 
-    The message names the variable that assigns readings to instruments.
+    The message names the other variable that assigns these readings to instruments.
     """
     for index, variable in dataset.variables.items():
         many, counted = 0, variable.attrs.get("instance_dimension")
@@ -255,9 +258,9 @@ _DIRECTIONS = "dir"
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with a velocity `vel (dir, ...)` split into its components.
 
-    The components are called ``vel[E]`` and so on, and have the standard names of eastward,
-    northward and upward velocity. A dataset without such a variable is returned unchanged. Raise
-    UnreadableError if its directions are along beams or instrument axes.
+    The components are called ``vel[E]``, ``vel[N]`` and so on, and have the standard names of
+    eastward, northward and upward velocity. A dataset without such a variable is returned
+    unchanged. Raise UnreadableError if the components are along beams or instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
     name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
@@ -284,9 +287,10 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return the flag variable of a velocity, or None.
+    """Return the flag variable of a velocity, or None if there is none.
 
-    Its ancillary variables come first, then flags named after it, then flags for all variables.
+    Ancillary variables of the velocity take precedence, followed by flags named after the velocity,
+    and by flags for all variables.
     """
     beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
     meanings = (other for other in dataset.data_vars if _OF_VELOCITY.search(str(other)))
@@ -307,7 +311,7 @@ def _holds_flags(variable: xr.DataArray) -> bool:
 def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
     """Return flags as integers, with 9 for a missing flag.
 
-    Flags stored as bits become 4 if a bit marks a bad value, else 1.
+    A flag stored as bits becomes 4 if one of its bits marks a bad value, and 1 otherwise.
     """
     if "flag_masks" in variable.attrs:
         return np.where(marked_bad(variable), 4, 1).astype(np.int8)
@@ -319,7 +323,10 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 
 
 def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
-    """Return a mask of bad values, by the meanings of the flags or else by flags 3, 4 and 9."""
+    """Return a mask of the values that are flagged as bad.
+
+    The meanings of the flags decide; without meanings, the flags 3, 4 and 9 mark bad values.
+    """
     bad, meanings = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
     masks = np.atleast_1d(variable.attrs.get("flag_masks", [])).tolist()
     values = np.atleast_1d(variable.attrs.get("flag_values", masks)).tolist()
@@ -351,10 +358,10 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 
 
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
-    """Return the variables whose sum is the share of good pings of a velocity.
+    """Return the variables that add up to the share of good pings for a velocity.
 
-    For a variable with one value per beam, these are the first and the fourth: in earth coordinates
-    they hold the shares of three-beam and of four-beam solutions.
+    If a variable has one value per beam, the values of the first and the fourth beam are returned.
+    In earth coordinates, these are the shares of three-beam and of four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [

@@ -190,7 +190,7 @@ def _distance(distance: float) -> str:
 def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
     """Format the distances of a place north and east of the target.
 
-    Latitude and longitude follow if the target has a position.
+    If the position of the target is known, latitude and longitude of the place follow.
 
     Parameters
     ----------
@@ -215,9 +215,9 @@ _DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 def drop_figure(plan: DropPlan) -> str:
     """Draw the anchor drop as SVG.
 
-    The left panel shows, true to scale, the path of the anchor and the shape of the line at several
-    times. Each time has its own dash pattern, for black-and-white print, and an entry in the
-    legend. The right panel shows fall speed against depth.
+    The left panel shows the path of the anchor and the shape of the line at several times, true to
+    scale. The line at each time has its own dash pattern, for black-and-white print, and an entry
+    in the legend. The right panel shows the fall speed against depth.
     """
     greys = [round(255 * shade) for shade in np.linspace(0.65, 0.0, len(plan.moments))]
     moments = [
@@ -348,10 +348,11 @@ _PANEL = 290.0
 
 
 def located_figure(located: Located) -> str:
-    """Draw the ranges as SVG: circles around the ship positions, at the depth of the transponder.
+    """Draw the ranges as circles around the ship positions, as SVG.
 
-    The left panel shows the whole survey, the right panel the anchor position with its 95 %
-    ellipse. A rejected range is grey and dashed, and carries its line number in the file.
+    The circles are at the depth of the transponder. The left panel shows the whole survey; the
+    right panel shows the anchor position with its 95 % ellipse. The circle of a rejected range is
+    grey and dashed, and is labelled with the line number of the range in the file.
     """
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(

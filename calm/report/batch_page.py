@@ -30,15 +30,15 @@ from calm.report.result_files import to_json
 
 
 def summary_html(summary: Summary) -> str:
-    """Render the HTML page of a summary, which needs no other file and no network."""
+    """Render a summary as an HTML page that needs no other file and no network."""
     return page(summary_report(summary))
 
 
 def summary_report(summary: Summary) -> blocks.Report:
     """Build the report of a summary.
 
-    It contains the frequency of exceeded limits, distributions, the most severe profiles, return
-    levels and drawings.
+    The report contains the frequency of exceeded limits, distributions, the most severe profiles,
+    return levels and drawings.
     """
     lost = State.WARN if summary.count - summary.solved else None
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
@@ -90,7 +90,7 @@ _EXTRAPOLATED = (
 
 
 def limits_table(summary: Summary) -> Table:
-    """Tabulate the frequency with which each limit is exceeded, and the most severe value."""
+    """Tabulate how often each limit is exceeded, and the most severe value for each limit."""
 
     def state(one: Exceedance) -> Cell:
         broken = one.limit.criterion.beyond if one.share else State.PASS
@@ -123,7 +123,7 @@ def limits_table(summary: Summary) -> Table:
 
 
 def statistics_tables(summary: Summary) -> Iterator[Table]:
-    """Yield a table per quantity, with mean, percentiles and maximum of every component."""
+    """Yield a table for each quantity, with mean, percentiles and maximum by component."""
     for name in _QUANTITIES:
 
         def figures(part: Any, name: str = name) -> list[str]:
@@ -144,7 +144,7 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Yield a table per response, with its worst profiles and their other responses."""
+    """Yield a table for each response, with the worst profiles and all their responses."""
     for name, profiles in summary.worst.items():
         if not profiles:
             yield Prose((f"The {TITLES[name]} is unknown in all profiles.",), State.UNKNOWN)
@@ -191,11 +191,12 @@ def _fitted(fit: Fit) -> str:
 def write_summary(result: Path, mooring: Design) -> Summary:
     """Write the summary of a finished batch as JSON and HTML files next to the batch file.
 
-    The batch file is only read, so its summary can be written again at any time.
+    The batch file is not changed, so its summary can be written again at any time.
 
     Parameters
     ----------
-    result : RESULT.nc; RESULT.summary.json and RESULT.summary.html are written
+    result : path of the batch file RESULT.nc, next to which RESULT.summary.json and
+        RESULT.summary.html are written
     mooring : mooring of the batch
 
     Raises
@@ -213,7 +214,7 @@ def write_summary(result: Path, mooring: Design) -> Summary:
 
 
 def summary_paths(result: Path) -> tuple[Path, Path]:
-    """Return the paths of a summary's JSON file and HTML page."""
+    """Return the paths of the JSON file and the HTML page with the summary of a result."""
     return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")
 
 
@@ -229,8 +230,9 @@ _ALL = (
 def summary_part(summary: Summary) -> ReportPart:
     """Build the summary of a batch for a terminal of 80 columns, with long labels wrapped.
 
-    It lists components and clamps with the 99th percentile and the maximum of each quantity. The
-    failure rate of each rule, the worst profile for each response, and return levels follow.
+    The summary lists components and clamps with the 99th percentile and the maximum of each
+    quantity. The failure rate of each rule, the worst profile for each response, and the return
+    levels follow.
     """
     lost = State.FAIL if summary.count - summary.solved else None
     ended = blocks.Span(batch_summary.standing(summary), lost)
@@ -333,7 +335,7 @@ class _Panel(NamedTuple):
 
 
 def exceedance_figure(summary: Summary) -> str:
-    """Draw for each response the fraction of profiles that exceed a value, as SVG."""
+    """Draw, as SVG, the fraction of profiles in which each response exceeds a given value."""
     panels = []
     for response in summary.known_responses:
         one, limit = response.distribution, _limit_of(summary, response)

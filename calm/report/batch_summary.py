@@ -21,13 +21,13 @@ from calm.version import __version__
 def summary_document(summary: Summary) -> dict[str, Any]:
     """Return the JSON object of a summary.
 
-    Values are in SI units and degrees, times in UTC, and shares are fractions of 1; unknown values
-    are null.
+    Values are in SI units and degrees, times are in UTC, and shares are fractions of 1; unknown
+    values are null.
 
     Keys: `profiles`, the number of profiles by status; `components` and `clamps`, with
     distributions; `rules` and `limits`, with the frequency of violations; `limits_used`, the limits
     that the rules apply; `responses` of the line as a whole, with exceedance curves and return
-    levels; `worst`, the worst profiles by each response.
+    levels; `worst`, the worst profiles for each response.
     """
 
     def part_documents(*, clamped: bool) -> list[dict[str, Any]]:
@@ -163,8 +163,9 @@ def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> 
 
     Parameters
     ----------
-    profiles : pairs of a text for the first column and a profile; the text names the response for
-        which the profile is the worst, or is empty
+    title : title of the table
+    profiles : pairs of a text for the first column and a profile; the text is empty, or names the
+        response for which the profile is the worst
     """
 
     def response(name: str) -> Field:
@@ -234,7 +235,7 @@ def extent(summary: Summary) -> str:
 
 
 def standing(summary: Summary) -> str:
-    """Format the number of profiles by status of the solver."""
+    """Format the number of profiles for each status of the solver."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)
 
@@ -252,7 +253,7 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Yield each reason for missing return levels, after the names of the responses concerned."""
+    """Yield each reason for missing return levels, preceded by the names of the responses."""
     reasons: dict[str, list[str]] = {}
     for response in summary.known_responses:
         for fit in response.return_levels:
@@ -265,7 +266,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Tabulate percentiles of the depth of each profiler stop, in dbar and in metres."""
+    """Tabulate percentiles of pressure [dbar] and depth [m] at each stop of a profiler."""
     if not summary.stops:
         return
     shares = (*(f"{share:g} %\ndbar" for share in statistics.STOP_SHARES),

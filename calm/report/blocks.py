@@ -22,9 +22,10 @@ class Column:
     ----------
     heading, unit : title, and unit below the title
     numeric : whether the cells are numbers
-    share : weight of the column when the remaining width is distributed: 0 for short words, 1 for
-        names, more for sentences. A numeric column takes no part in this if its share is 1
-    short : shorter title for narrow tables, which may have several lines
+    share : weight of the column when the remaining width of the page is distributed: 0 for short
+        words, 1 for names, more for sentences. A numeric column with a share of 1 gets no
+        additional width
+    short : shorter title for narrow tables; it may have several lines
     narrow : whether narrow tables include the column
     marked : whether cells may carry a mark
     """
@@ -45,13 +46,13 @@ class Cell:
     Attributes
     ----------
     text, detail : text, and a smaller line below it
-    state : state, which is shown by colour and words
-    mark : sign after a value that is close to a limit or beyond it
+    state : state of a check, shown by colour and words
+    mark : symbol after a value that is close to a limit or beyond it
     indented : whether the cell is indented below the row above
     strong : whether the text is bold
     goes_on : whether, in print, the detail follows on the same line
     then : suggested action
-    bar : fraction of a limit, drawn as a bar with a mark at 1
+    bar : value as a fraction of its limit, drawn as a bar with a mark at 1
     picture : SVG drawing
     tone : highlight in a matrix: `fail`, `over` or `near`
     """
@@ -71,14 +72,14 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """Table with columns and rows; a row of a single cell is a heading for the rows below it.
+    """Table with columns and rows; a row of a single cell is a heading for the following rows.
 
     Attributes
     ----------
     note : text below the table
     totals : number of rows at the end that are sums
     sortable : whether the rows can be sorted and filtered
-    dense : whether the columns are so many that their spacing is reduced
+    dense : whether the spacing of the columns is reduced because there are many
     by_hand : whether the table is filled in by hand, and has rules and room to write
     aside : text in smaller letters next to the title
     ruled : whether there is a hairline below each row
@@ -96,7 +97,7 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Remove columns without text, unless the table is filled in by hand."""
+        """Return the table without empty columns; a table to be filled in by hand keeps them."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -118,7 +119,7 @@ _EMPTY = Cell()
 
 @dataclass(frozen=True)
 class Pairs:
-    """List of names with values; a value may have several lines."""
+    """List of pairs of a name and a value; a value may have several lines."""
 
     pairs: tuple[tuple[str, str], ...]
 
@@ -142,7 +143,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Part of a sentence in the colour of a state, or in the type of secondary text (`quiet`)."""
+    """Part of a sentence, in the colour of a state or, if `quiet`, styled as secondary text."""
 
     text: str
     state: State | None = None
@@ -155,7 +156,7 @@ Line = str | tuple[Span, ...]
 
 @dataclass(frozen=True)
 class Prose:
-    """Paragraphs of a single sentence each, highlighted if they have a `state`."""
+    """Paragraphs of one sentence each; all are highlighted if `state` is set."""
 
     lines: tuple[Line, ...]
     state: State | None = None
@@ -177,9 +178,10 @@ class Heading:
 
 @dataclass(frozen=True)
 class Listing:
-    """Text of a file; in print it is attached as a file `name`, if set.
+    """Text of a file, to be shown in a report.
 
-    A text of more than `most` lines is not printed, but only attached.
+    If `name` is set, the text is attached to a PDF as a file of this name. If the text has more
+    than `most` lines, it is not printed in the PDF but only attached.
     """
 
     title: str
@@ -190,7 +192,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """Title block of a drawing: small text above the title, lines below it, and named fields."""
+    """Title block of a drawing: title with small text above and lines below, and named fields."""
 
     above: str
     title: str
@@ -200,11 +202,11 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class SignOff:
-    """Revisions, and boxes for signatures, at the foot of a page.
+    """Table of revisions, and boxes for signatures, at the foot of a page.
 
     Attributes
     ----------
-    revisions : revision, date, author and reason
+    revisions : revision, date, author and reason of each revision
     roles : role of each signatory, and the name if known
     note : text next to the boxes
     """
@@ -216,7 +218,7 @@ class SignOff:
 
 @dataclass(frozen=True)
 class OpenItem:
-    """Open item, with its state, number, heading and text (value and suggested action)."""
+    """Open item, with its state, number, heading, and text (value and suggested action)."""
 
     state: State
     number: int
@@ -226,7 +228,7 @@ class OpenItem:
 
 @dataclass(frozen=True)
 class OpenItems:
-    """List of open items, most severe first; `more` is printed if not all of them fit."""
+    """List of open items, most severe first; `more` is printed if not all items fit on the page."""
 
     title: str
     items: tuple[OpenItem, ...]
@@ -241,7 +243,7 @@ class Beside:
     Attributes
     ----------
     share : fraction of the width for the left group
-    height : exact height of both groups in print [pt]; 0 for their natural height
+    height : exact height of both groups in print [pt]; 0 if their contents determine the height
     """
 
     left: tuple[Block, ...]
@@ -265,7 +267,7 @@ Block = (
 class ReportPart:
     """Blocks under a heading.
 
-    `size` is the font size of the tables in print [pt]; only listings use a smaller one.
+    `size` is the font size of tables in print [pt]; only listings have a smaller font.
     """
 
     title: str
@@ -293,7 +295,7 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a report on one mooring or tow, with its name and its parts.
+    """Section of a report, on one mooring or tow, with its name and its parts.
 
     A section with its own `running` header starts a new page without a title. Sections may be built
     in separate processes.
@@ -317,7 +319,8 @@ class Report:
     plates : full-page drawings at the beginning
     verdict : verdict with its state, in the header of every page
     foot : text in the footer of every page
-    running : replaces title, verdict, date and foot if the first page has its own title block
+    running : header and footer that replace title, verdict, date and foot if the first page has its
+        own title block
     """
 
     title: str
@@ -345,7 +348,8 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
     Parameters
     ----------
     heading : heading of the column
-    show : name of the attribute of an item, or index of its member; the heading by default
+    show : what a cell shows of an item: the name of an attribute, the index of a member, or a
+        function of the item; by default, the attribute with the name `heading`
     share : share of the width, as in `Column`
     more : further attributes of `Column`
     """
@@ -367,7 +371,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Convert columns of items to columns of rows whose first member is the item."""
+    """Convert columns for items to columns for rows in which the item is the first member."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])
@@ -386,8 +390,9 @@ def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None)
     Parameters
     ----------
     name : name of the quantity, or the quantity itself
-    show : value of an item [SI, degrees], as in `words`; by default the attribute of that name
-    heading : heading, if it differs from that of the quantity
+    show : value to show of an item [SI, degrees], as in `words`; by default, the attribute with the
+        name of the quantity
+    heading : heading of the column, if it differs from the usual heading of the quantity
     """
     shown = QUANTITIES[name] if isinstance(name, str) else name
     value = _getter(show, shown.name)
@@ -403,7 +408,7 @@ _SHORT = {
 
 
 def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
-    """Create the heading for a quantity's column, in display units."""
+    """Create the heading for a column with values of a quantity in display units."""
     short = None if heading else _SHORT.get(quantity.name)
     marked = quantity.name in ("tilt", "safety_factor")
     title, unit = heading or quantity.heading, quantity.display_unit
@@ -416,7 +421,8 @@ def figure_cell(quantity: Quantity, value: float | None, state: State | None = N
     Parameters
     ----------
     value : value in SI units or degrees; None if unknown
-    state : warning or failure if the value is close to a limit or beyond it; sets the mark
+    state : state of the value, which selects the mark: a warning if the value is close to a limit,
+        or a failure if it is beyond the limit
     """
     return Cell(quantity.format(value), state=state, mark=state.sign if state else "")
 
@@ -435,7 +441,7 @@ def table_of(
 
     Parameters
     ----------
-    items : items; a `Cell` among them is a heading for the rows below it
+    items : items to tabulate; a `Cell` among the items is a heading for the following rows
     fields : fields created by `words`, `number` and `quantity`
     note : text below the table
     sums : items of the total rows at the end of the table
@@ -456,11 +462,11 @@ def _cell(shown: Any) -> Cell:
 
 
 def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]:
-    """Return a block with the warnings, if any."""
+    """Return a block with the given warnings, or no block if there are none."""
     lines = tuple(texts)
     return (Prose(lines, state),) if lines else ()
 
 
 def quiet(*texts: str) -> Prose:
-    """Create paragraphs in the type of secondary text."""
+    """Create paragraphs in the style of secondary text."""
     return Prose(tuple((Span(text, quiet=True),) for text in texts))

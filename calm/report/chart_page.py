@@ -40,7 +40,7 @@ _HIGHEST = 3.0
 
 @dataclass(frozen=True)
 class Family:
-    """Family of curves with a constant ratio: name of the ratio, colour, and values to draw."""
+    """Family of curves of constant ratio: name of the ratio, colour, and values to draw."""
 
     name: str
     colour: str
@@ -60,9 +60,9 @@ _FAMILIES = (
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     """Draw the chart for one value of K (0 to 100) on an A4 page, without overlapping labels.
 
-    The cables begin at angles ``below-90`` or ``above-90`` degrees at their lower ends. Raise
-    UsageError if K is out of range, or for ``above-90`` at K = 0, where the curve ends at 90°. The
-    figure is not attached to a window.
+    `lower_end` states whether the angles at the lower ends of the cables are ``below-90`` or
+    ``above-90`` degrees. Raise UsageError if K is out of range, or for ``above-90`` at K = 0, where
+    the curve ends at 90°. The figure is not attached to a window.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -203,7 +203,7 @@ class Labels:
     """Ticks and labels that do not overlap.
 
     A label without a free position is omitted. The axes must have their final limits, and the
-    figure a canvas.
+    figure must have a canvas.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -223,12 +223,12 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick at a point of a curve, to the right of its direction.
+        """Draw a tick at a point of a curve, to the right of the direction of the curve.
 
         Parameters
         ----------
         angle : direction of the curve [rad]
-        size : length of the tick in points; a negative size draws to the left
+        size : length of the tick in points; if negative, the tick is drawn to the left of the curve
         """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
@@ -238,7 +238,7 @@ class Labels:
     def beside(
         self, text: str, x: float, y: float, angle: float, size: float, colour: str, font: float
     ) -> None:
-        """Write a label beyond the end of a tick, which is defined as in `tick`."""
+        """Write a label beyond the end of a tick; the tick is defined as in `tick`."""
         place, right = self._place(x, y, angle)
         side = right * np.sign(size)
         label = self._text(text, place, 0.0, colour, font)
@@ -248,7 +248,10 @@ class Labels:
         self._keep(label)
 
     def along(self, text: str, path: Floats, colour: str, font: float) -> bool:
-        """Write a text along a line of points (n, 2); return whether there was a free position."""
+        """Write a text along a line of points (n, 2), and return whether it was written.
+
+        The text is omitted if no position along the line is free.
+        """
         line = self.axes.transData.transform(path)
         lengths = _lengths(line)
         if lengths[-1] < _SHORTEST * self._points:
@@ -331,7 +334,7 @@ def answer_document(answer: ChartAnswer) -> dict[str, Any]:
 
 
 def answer_part(answer: ChartAnswer) -> ReportPart:
-    """Build a table with one column per cable."""
+    """Build a table of the solutions, with one column per cable."""
     figures = [_figures(solution) for solution in answer.solutions]
     several = len(figures) > 1
 

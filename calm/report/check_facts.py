@@ -14,7 +14,7 @@ from calm.report.result_files import members
 
 @dataclass(frozen=True)
 class StrongestCurrent:
-    """Strongest current of all environments, and a warning if even this current is weak."""
+    """Strongest current in all environments, and a warning if even this current is weak."""
 
     speed: float
     depth: float
@@ -26,8 +26,8 @@ class StrongestCurrent:
 class LeastFactor:
     """Minimum safety factor over all environments, and the piece with this factor.
 
-    The safety factor is the breaking load over the tension; `unknown` counts the pieces without a
-    breaking load.
+    The safety factor is the breaking load divided by the tension. `unknown` is the number of pieces
+    without a breaking load.
     """
 
     factor: float
@@ -61,7 +61,7 @@ def key_figures(assessment: Assessment) -> dict[str, Any]:
 
 
 def strongest_current(assessment: Assessment) -> StrongestCurrent:
-    """Find the strongest current of all environments."""
+    """Find the strongest current in all environments."""
     found = []
     for stand in assessment.in_environments:
         water = stand.leg.water

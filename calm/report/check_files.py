@@ -34,13 +34,14 @@ MUCH_USED = 0.5
 def listed_findings(
     assessment: Assessment, *, every: bool = False
 ) -> Iterator[tuple[Finding, bool]]:
-    """Yield the findings to list for a mooring, each with a flag: whether it governs its rule.
+    """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
-    The list contains the governing finding of each rule. It also contains the governing finding of
-    each rule on each component over all environments, unless this finding passes with a utilisation
-    below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment. A cluster of
-    equal floats counts as a single component. With `every`, all findings of all situations are
-    listed.
+    Among several findings, the finding with the largest utilisation governs. The list contains the
+    governing finding of each rule; its flag is true. The list also contains the governing finding
+    of each rule on each component over all environments, unless this finding passes with a
+    utilisation below `MUCH_USED`. Failures, unknowns and warnings are listed for each environment.
+    A cluster of equal floats counts as a single component. If `every` is true, all findings of all
+    situations are listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -68,7 +69,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
 
     Parameters
     ----------
-    every : list every finding instead of the selection of `listed_findings`
+    every : whether to list every finding instead of the selection made by `listed_findings`
 
     Returns
     -------
@@ -76,9 +77,10 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         Keys: `verdict`, the conclusion from all findings, and `state`, the worst state;
         `estimated`, the number of findings based on estimates; `accepted`, the accepted findings
         with reasons; `findings`, the listed findings, and `findings_in_all`, their total number;
-        `situations`, the solved situations of each mooring in each environment; and by name of each
-        mooring, the `key_figures` of page one, `launch`, `recovery`, `backup`, `inventory` with its
-        `totals`, and the `document` if a file has any.
+        `situations`, the solved situations of each mooring in each environment; the `key_figures`
+        of page one; `launch`, `recovery` and `backup`; `inventory`, and the `totals` of the
+        inventory; and `document` if a mooring file has one. The values from `situations` on are
+        objects whose keys are the names of the moorings.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:
@@ -126,7 +128,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
 
 
 def limit_document(key: LimitKey) -> dict[str, Any]:
-    """Return the JSON object of a limit, with the value used in this check."""
+    """Return the JSON object that describes a limit, with the value used in the design check."""
     return members(key, "name", "value", "default", "source", "departs")
 
 
@@ -198,7 +200,7 @@ def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str
 
     Parameters
     ----------
-    every : list every finding, as in `check_document`
+    every : whether to list every finding, as in `check_document`
     """
     rows = (
         _finding_row(*listed)

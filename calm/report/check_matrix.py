@@ -63,10 +63,10 @@ class SummaryRow:
     ----------
     mooring : name of the mooring
     depth : water depth as text
-    cells : cells by environment, in order
-    handling : cell of launch, recovery and breaks
+    cells : cells by name of the environment, in the order of the columns
+    handling : cell for launch, recovery and breaks
     governs : check with the largest utilisation in the first environment
-    accepted, findings : number of accepted findings, and of all findings
+    accepted, findings : number of accepted findings, and number of all findings
     conclusion : verdict
     """
 
@@ -81,7 +81,7 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """First environment in which the mooring fails, and the finding that fails, or None."""
+        """First environment in which the mooring fails, and text of the failure, or None."""
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.text) for name, cell in cells.items()
@@ -176,8 +176,8 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
     """Return all environments, the environments that have a column in the matrix, and all codes.
 
-    The columns are the most severe environments. The codes, such as E1, are by name of the
-    environment.
+    Only the most severe environments have a column. The codes, such as E1, are in a mapping from
+    the names of the environments.
     """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
@@ -214,7 +214,7 @@ def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
 
 
 def mooring_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the one-page report of a mooring: verdict, load cases, and every rule."""
+    """Yield the blocks of the one-page report on a mooring: verdict, load cases, and every rule."""
     findings = [*signed.assessment.every_finding()]
     yield title_block(signed)
     yield verdict_box(signed)

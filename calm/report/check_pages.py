@@ -57,7 +57,7 @@ from calm.report.sheet import accuracy_text
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the table of all rules, with governing component and case, limit and remedy."""
+    """Yield the table of all rules, with governing component, governing case, limit and remedy."""
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
     yield blocks.Heading("Accuracy of these values")
@@ -136,7 +136,7 @@ def _trust(signed: SignedMooring) -> str:
 
 
 def handling_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield a summary of launch and recovery, the net buoyancy after breaks, and the parts list."""
+    """Yield a summary of launch and recovery, net buoyancy after breaks, and the parts list."""
     assessment = signed.assessment
     if assessment.launch is not None or assessment.recovery is not None:
         yield Beside((_launch(assessment),), (_recovery(assessment),))
@@ -338,7 +338,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
 
 def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield limits, environments and exclusions, the mooring file, and the hash of all inputs."""
+    """Yield limits, environments, exclusions, the mooring file, and the hash of all inputs."""
     assessment = signed.assessment
     waters = {
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water

@@ -25,7 +25,7 @@ _SIZE = 9.0
 
 @dataclass(frozen=True, kw_only=True)
 class CheckedSection(Section):
-    """Section on one mooring in the report of a design check, with its row of the matrix."""
+    """Section on one mooring in the report of a design check, with its row in the matrix."""
 
     row: SummaryRow
 
@@ -44,7 +44,7 @@ def mooring_section(
 
     Parameters
     ----------
-    against : comparison of the mooring with its original design
+    against : comparison of the mooring with the original design
     """
     signed = signed_mooring(assessment)
     details = chain(
@@ -81,7 +81,7 @@ def _page(shown: Sequence[Block]) -> ReportPart:
 
 
 def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
-    """Build the report of a design check; several moorings are summarised in a matrix first."""
+    """Build the report of a design check; for several moorings, it begins with a matrix."""
     rows = [each.row for each in sections]
     if len(rows) == 1:
         name = sections[0].name

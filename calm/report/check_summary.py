@@ -48,7 +48,7 @@ _HALF = 0.5  # utilisation from which a check has a row
 
 
 def check_part(assessments: Sequence[Assessment]) -> ReportPart:
-    """Build the summary of a design check; signs show the states, so that colour is not needed."""
+    """Build the summary of a design check; states have symbols, so that colour is not needed."""
     if len(assessments) > 1:
         return ReportPart("", tuple(_of_many(assessments)))
     return ReportPart("", tuple(_of_one(assessments[0])))

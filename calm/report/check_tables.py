@@ -25,7 +25,7 @@ def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Group findings of one rule that differ only in component and values.
 
-    Findings that lack the same value of a component form their own group.
+    Findings that are unknown because the same value of a component is missing form their own group.
     """
     return [*grouped_by(
         findings, lambda one: (one.rule, one.state, one.missing or _wording(one))
@@ -43,7 +43,8 @@ def _wording(finding: Finding) -> str:
 def named(labels: Iterable[str], most: int = 3) -> str:
     """Join labels, with consecutive numbers as a range, such as ``glass 1 to 4, cable``.
 
-    A range counts as a single name. After `most` names, the number of omitted labels follows.
+    At most `most` names are listed, followed by the number of omitted labels. A range counts as a
+    single name.
     """
     numbered: dict[str, list[int]] = {}
     for label in labels:
@@ -65,15 +66,16 @@ def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
 
 
 def named_components(findings: Iterable[Finding]) -> str:
-    """Join the labels of the components of findings."""
+    """Join the labels of the components that findings concern."""
     return named(one.component or "whole line" for one in findings)
 
 
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     """Count the results of rules on components by state, for one or several moorings.
 
-    For each rule, the most severe state of a component counts. A missing value of a component
-    counts once. A cluster of equal floats counts once if every float fails or warns.
+    For each rule, only the most severe state of a component is counted. A missing value of a
+    component is counted once. A cluster of equal floats is counted once if every float fails or
+    warns.
     """
     by_mooring = grouped_by(findings, attrgetter("mooring")).values()
     groups = (grouped_by(worst_by_part(each), counted_as).values() for each in by_mooring)
@@ -87,8 +89,8 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
     """Return a key that is equal for findings that are counted together.
 
-    Findings with a state in `GRAVE` are counted together for equal pieces from one row of the file,
-    such as a cluster of floats.
+    Findings on equal pieces from one row of the file, such as a cluster of floats, are counted
+    together if their state is in `GRAVE`.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -114,9 +116,9 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def component_text(name: str, units: int) -> str:
-    """Format the name of a component, and its number of units if it has several.
+    """Format the name of a component, with the number of units if it consists of several.
 
-    An example is a pair of releases.
+    An example of such a component is a pair of releases.
     """
     return f"{name}, {units} units each" if units > 1 else name
 

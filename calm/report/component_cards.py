@@ -74,7 +74,7 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
 
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
-    """Create the card of a definition, with all values in display units and their source.
+    """Create the card of a definition, with all values in display units and with their sources.
 
     Derived values follow the specified values. If the catalogue has several definitions of the same
     product, the card ends with a comparison that recommends the best definition.
@@ -89,8 +89,8 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
 def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
     """Return JSON objects with `id`, `family` and every field (SI or degrees, None if absent).
 
-    `derived` contains derived values. `same_thing` lists the ids of definitions of the same
-    product, the preferred one first.
+    The key `derived` contains derived values. The key `same_thing` lists the ids of all definitions
+    of the same product, with the preferred definition first.
     """
     return [
         {"id": identifier, "family": _family(catalogue, identifier)}
@@ -204,7 +204,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def in_words(missing: MissingFigures) -> str:
-    """List the missing values of a component, ending with values known to be unpublished."""
+    """List the missing values of a component; values known to be unpublished come last."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"lacks {', '.join(open_yet)}"] if open_yet else []
@@ -213,7 +213,7 @@ def in_words(missing: MissingFigures) -> str:
 
 
 def summarised(missing: Sequence[MissingFigures]) -> str:
-    """Return a sentence on how many components lack values, and how many lack each value."""
+    """Return a sentence with the number of components with missing values, in all and by value."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack values: {figures}"

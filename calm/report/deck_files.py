@@ -23,15 +23,15 @@ Rows = Iterable[Sequence[object]]
 
 
 def deck_csvs(deck: Deck) -> dict[str, str]:
-    """Return the CSV text of each sheet by file name (UTF-8, SI units, empty if unknown)."""
+    """Return the CSV text of each sheet by file name, in SI units; unknown values are empty."""
     return {f"{name}.csv": table_csv(*sheet) for name, sheet in deck_sheets(deck).items()}
 
 
 def deck_workbook(deck: Deck) -> bytes:
     """Write the sheets into one Excel workbook that is ready to print, with units in the headings.
 
-    Texts are stored as texts, even if they begin with a formula sign; the date of the workbook is
-    `provenance.moment`.
+    Texts are stored as texts, even if they begin with a symbol that marks a formula. The date of
+    the workbook comes from `provenance.moment`.
     """
     from xlsxwriter import Workbook
 
@@ -62,7 +62,7 @@ def deck_workbook(deck: Deck) -> bytes:
 
 
 def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
-    """Return header and rows of each sheet by name, in SI units; unknown values are None."""
+    """Return the header and rows of each sheet, by name, in SI units; unknown values are None."""
     stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
     lifts = [(stage, one) for stage, each in stages.items() for one in each]
     rows: dict[str, Sequence[Any]] = {
@@ -161,8 +161,8 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
 def deck_report(deck: Deck, page_size: PageSize, notes: tuple[str, ...] = ()) -> Report:
     """Build the printed deck documents of a mooring.
 
-    They contain the diagram, the deployment log, lists, the drop plan and, on a new sheet, the
-    recovery log. `notes` are added to the warnings on the first sheet.
+    The documents contain the diagram, the deployment log, lists, the drop plan and, on a new sheet,
+    the recovery log. `notes` are added to the warnings on the first sheet.
     """
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if warnings := warned((*deck.notes, *notes)):

@@ -29,7 +29,7 @@ _BOX = "☐"
 
 
 def cutting_part(deck: Deck) -> ReportPart:
-    """Build the cutting list, with lengths, marks, and their tolerances."""
+    """Build the cutting list, with cut lengths, positions of marks, and tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
         f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: effect "
@@ -119,7 +119,7 @@ def _length() -> Field:
 
 
 def hardware_part(deck: Deck) -> ReportPart:
-    """Build the hardware bill with spares."""
+    """Build the list of hardware, with spares."""
     rows: list[Any] = []
     for kind, stocks in groupby(deck.hardware, lambda one: one.kind):
         rows += [Cell(kind), *stocks]
@@ -143,7 +143,10 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 
 def shipping_part(deck: Deck) -> ReportPart:
-    """Build the shipping list; each sum is followed by the number of unknown values."""
+    """Build the shipping list; each sum is followed by the number of items not included.
+
+    An item is not included in a sum if its value is unknown.
+    """
 
     def at_least(heading: str, name: str, value: str, missing: str) -> Field:
         shown = QUANTITIES[name]
@@ -228,7 +231,7 @@ def _stages(deck: Deck) -> blocks.Table:
 def instruments_part(deck: Deck) -> ReportPart:
     """Build the instrument sheet, with depths, tilts and further data from the file.
 
-    It lists every release and every instrument, and floats or frames that hold an instrument.
+    The sheet lists all releases and instruments, and floats or frames that hold an instrument.
     """
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
     planned = any(one.item.planned_depth is not None for one in deck.instruments)

@@ -33,7 +33,7 @@ _LEAST = 9.0
 
 
 def deployment_part(deck: Deck) -> ReportPart:
-    """Build the deployment log: preparations, soundings, anchor position, order over the side."""
+    """Build the deployment log: preparations, soundings, anchor position, deployment order."""
     last = deck.order is Order.ANCHOR_LAST
     sentences = (
         ("Anchor-last deployment: the top" if last else "Anchor-first deployment: the lower end")

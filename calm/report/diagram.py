@@ -243,11 +243,11 @@ class _Diagram:
 
 
 def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
-    """Draw the pages of the diagram as SVG pictures in final size; no text is smaller than 8 pt.
+    """Draw the pages of the diagram as SVG pictures at print size; no text is smaller than 8 pt.
 
-    Pages end above a junction if one is near the page end, else between two pieces, else between
-    two clamps. If a line is interrupted, both ends carry the same letter. Long texts wrap and are
-    never cut. The same deck gives the same SVG.
+    A page ends above a junction if there is a junction near the end of the page, otherwise between
+    two pieces or, failing that, between two clamps. Where a line is interrupted, both ends carry
+    the same letter. Long texts wrap and are never cut. The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, page_size)
     pages = [picture(*page_size.size, diagram.title) for _ in range(diagram.count)]
@@ -257,7 +257,7 @@ def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
 
 
 def diagram_svg(deck: Deck, page_size: PageSize) -> str:
-    """Draw all pages of the diagram in one picture, below each other."""
+    """Draw all pages of the diagram in one picture, one below the other."""
     diagram, (width, height) = _Diagram(deck, page_size), page_size.size
     drawn = picture(width, height * diagram.count, diagram.title)
     for number in range(diagram.count):

@@ -40,7 +40,7 @@ _CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """Describe the ascent of a mooring after release, and its mass; each text has a name."""
+    """Return named texts on the ascent of a mooring after release, and on its mass."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -119,7 +119,7 @@ def explanation_part(explanation: Explanation) -> ReportPart:
     """Report the contribution of each drag force, and the effects of changed inputs.
 
     The report fits 80 columns. Drag forces with very small shares are combined in one row; the JSON
-    document lists each.
+    document lists them separately.
     """
     wholes = [
         f"{name} ({_COLUMNS[name].text(explanation.figures)} m)"
@@ -204,7 +204,7 @@ _ROWS = (
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """Report the change that meets a target, and the other effects of this change."""
+    """Report the change by which a target is met, and the other effects of this change."""
     assert sizing.after is not None
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
@@ -221,7 +221,7 @@ def sizing_part(sizing: Sizing) -> ReportPart:
 
 
 def refusal(sizing: Sizing) -> str:
-    """Return one line with the reason why a target is not met, and the advice."""
+    """Return one line that explains why a target is not met, and advises what to change."""
     return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
 
 
@@ -272,7 +272,7 @@ def _place_name(trial: Trial) -> str:
 
 
 def comparison_part(comparison: Comparison) -> ReportPart:
-    """Report the differences between two designs, followed by their values side by side."""
+    """Report the differences between two designs, followed by the values of both, side by side."""
     return ReportPart(" → ".join(comparison.names), tuple(_blocks(comparison)))
 
 

@@ -28,10 +28,10 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 
 
 def check_folder(folder: Path) -> None:
-    """Raise UsageError if a folder cannot be written.
+    """Raise UsageError if files cannot be written to a folder; call this before any computation.
 
-    Call this before any computation. The reasons are that the path, or its nearest existing parent,
-    is not a folder or is not writable, or that a new folder would have the suffix of a file.
+    The error is raised if the path, or the nearest existing parent of the path, is not a folder or
+    is not writable. It is also raised if a new folder would have the suffix of a file.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -57,9 +57,9 @@ def check_folder(folder: Path) -> None:
 def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write the files of a report as a set, creating the folder if needed.
 
-    All files are written under temporary names first, then renamed. If a rename fails or the
-    program is interrupted, the previous report is restored completely. No temporary file remains.
-    Raise UsageError with the file and the reason if the system rejects a file.
+    All files are first written under temporary names, then renamed. If a rename fails or the
+    program is interrupted, the previous report is completely restored. No temporary file remains.
+    Raise UsageError if the system rejects a file; the message gives the file and the reason.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
     kept = {name: folder / f".{name}-{os.getpid()}.old" for name in files}
@@ -92,7 +92,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def write_pages(folder: Path, name: str, report: Report) -> None:
-    """Write a report as NAME.html and NAME.pdf, as a set like `write_report`."""
+    """Write a report as NAME.html and NAME.pdf, together as in `write_report`."""
     files = {f"{name}.html": page(report).encode(), f"{name}.pdf": printed(report)}
     write_report(folder, files)
 
@@ -107,10 +107,10 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 
 
 def check_destination(path: Path) -> None:
-    """Raise UsageError if a file cannot be written.
+    """Raise UsageError if a file cannot be written; call this before any computation.
 
-    Call this before any computation. The reasons are that the path is a folder, that its folder
-    does not exist, or that the file or its folder is not writable.
+    The error is raised if the path is a folder, if the folder of the file does not exist, or if the
+    file or this folder is not writable.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):
@@ -125,7 +125,8 @@ def write_file(path: Path, content: bytes) -> None:
     """Write a file atomically, so that readers see either the old content or the new.
 
     Devices and pipes are written directly, and symbolic links are preserved. Raise UsageError if
-    the system rejects the file, e.g. because the disk is full; the old file is then unchanged.
+    the system rejects the file, for example because the disk is full; the old file is then
+    unchanged.
     """
     try:
         if os.path.exists(path) and not os.path.isfile(path):
@@ -137,10 +138,10 @@ def write_file(path: Path, content: bytes) -> None:
 
 
 def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
-    """Typeset a report as PDF; its texts are passed to the template as data, never as markup.
+    """Typeset a report as PDF; the texts are passed to the template as data, never as markup.
 
-    Equal reports give equal bytes, as the fonts come from the package and the only date is that of
-    SOURCE_DATE_EPOCH. Characters that the fonts lack appear as �.
+    Equal reports give equal bytes, because the fonts come from the package and the only date is
+    that of SOURCE_DATE_EPOCH. Characters that are not in the fonts appear as �.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def grid_report(output: Path, record: GriddedRecord) -> Report:
 
 
 def grid_document(record: GriddedRecord) -> dict[str, Any]:
-    """Return the JSON object with the scales of each quantity [m, s] and the cards of the files."""
+    """Return the JSON object with the scales of each quantity [m, s] and the file cards."""
     return {
         "quantities": {
             name: {

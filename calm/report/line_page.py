@@ -25,7 +25,7 @@ from calm.report.page_one import SignedMooring
 
 
 def line_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the loads on the main line, on hardware by type, and on the anchor."""
+    """Yield tables of the loads on the main line, on each type of hardware, and on the anchor."""
     if not signed.standing:
         return
     loads = piece_loads(signed.assessment, signed.standing)

@@ -41,7 +41,7 @@ def load_text(value: float | None) -> str:
 
 
 def length_text(value: float | None) -> str:
-    """Format a cut length for print, without decimals if it is in whole metres."""
+    """Format a cut length for print; a length in whole metres has no decimals."""
     return QUANTITIES["length"].format(value).removesuffix(".00")
 
 
@@ -51,11 +51,11 @@ class LoadCase:
 
     Attributes
     ----------
-    code : code as in findings, such as 1s
+    code : code of the case in findings, such as 1s
     environment : name of the environment
     situation : name of the situation
-    results : result of each leg; empty without equilibrium
-    failure : reason for having no equilibrium
+    results : result for each leg; empty if there is no equilibrium
+    failure : reason why there is no equilibrium; None if there is one
     """
 
     code: str
@@ -66,7 +66,7 @@ class LoadCase:
 
     @property
     def as_given(self) -> bool:
-        """Whether the case has the environment of the file, without changes."""
+        """Whether the environment is that of the file, without changes."""
         return self.situation == AS_GIVEN
 
     @property
@@ -84,7 +84,7 @@ class LoadCase:
 
     @cached_property
     def rows(self) -> Mapping[str, ComponentRow | ClampRow]:
-        """Results of all pieces and clamps, by label."""
+        """Results for all pieces and clamps, by label."""
         every: list[ComponentRow | ClampRow] = []
         for result in self.results:
             for piece, clamps in rows_down(result):
@@ -93,23 +93,23 @@ class LoadCase:
 
     @property
     def depth(self) -> float:
-        """Minimum depth of the tops of all lines [m]."""
+        """Minimum depth of the top of any line [m]."""
         return min(one.top.depth for one in self.results)
 
     @property
     def knockdown(self) -> float:
-        """Maximum knockdown of the tops of all lines [m]; 0 if none is known."""
+        """Maximum knockdown of the top of any line [m]; 0 if no knockdown is known."""
         known = [one.top.knockdown for one in self.results]
         return max((one for one in known if one is not None and not isnan(one)), default=0.0)
 
     @property
     def offset(self) -> float:
-        """Maximum horizontal distance of a line's top from its anchor [m]."""
+        """Maximum horizontal distance of the top of a line from its anchor [m]."""
         return max(hypot(one.top.x, one.top.y) for one in self.results)
 
     @cached_property
     def tension(self) -> tuple[float, str]:
-        """Maximum tension, and the piece that carries it."""
+        """Maximum tension [N], and the piece that carries this tension."""
         return max((row.tension, row.label) for row in self._pieces())
 
     @cached_property
@@ -143,7 +143,7 @@ class LoadCase:
 
     @cached_property
     def tilt(self) -> tuple[float, str] | None:
-        """Maximum tilt of an instrument, and the instrument with this tilt."""
+        """Maximum tilt of any instrument [degrees], and the instrument with this tilt."""
         tilts = (
             (row.tilt, label)
             for label, row in self.rows.items()
@@ -158,7 +158,8 @@ class LoadCase:
 def load_cases(assessment: Assessment) -> list[LoadCase]:
     """List the load cases of a mooring.
 
-    Each environment comes as given and with its changes; still water comes once, at the end.
+    Each environment is listed as given and then with its changes; still water is listed once, at
+    the end.
     """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}
@@ -177,7 +178,7 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
 
 
 def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
-    """Select the case with the largest knockdown in each environment; still water is kept."""
+    """Select the case with the largest knockdown in each environment, and still water."""
     kept: dict[str, LoadCase] = {}
     for one in cases:
         key = one.code if one.code.startswith("0") else one.environment
@@ -188,15 +189,16 @@ def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
 
 @dataclass(frozen=True)
 class PieceEnvelope:
-    """Extreme loads on a piece over all cases, and its strength.
+    """Extreme loads on a piece over all load cases, and the strength of the piece.
 
     Attributes
     ----------
     number : number in the line, from 1
-    row : results of the piece in the first case
-    tension, case : maximum tension [N], and the code of its case
+    row : results for the piece in the first case
+    tension, case : maximum tension [N], and the code of the load case in which it occurs
     least, tilt : minimum tension [N] and maximum tilt [degrees]
-    standing, launch : strength finding in equilibrium and during launch; None if not judged
+    standing, launch : strength finding in equilibrium, and during launch; None if there was no
+        check
     launch_tension, rise_tension : maximum tension during launch and during ascent [N]; None if
         unknown
     """
@@ -251,7 +253,11 @@ def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
 
 
 def capacity_text(finding: Finding | None) -> str:
-    """Format the allowable load of a piece, ≈ for an estimate, ? if unknown, – if not judged."""
+    """Format the allowable load of a piece.
+
+    An estimate has the prefix ≈, an unknown load is shown as ?, and a load that is not checked as
+    –.
+    """
     if finding is None:
         return "–"
     sign = "≈\u00a0" if finding.state is State.ESTIMATED else ""

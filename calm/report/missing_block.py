@@ -31,7 +31,7 @@ Places = Mapping[str, Sequence[str]]
 
 
 def definition_places(paths: Iterable[Path]) -> Places:
-    """Return the places where mooring files define components, by id.
+    """Return the places in mooring files where components are defined, by component id.
 
     A place is a text such as "line 12 of a.yaml". Raise InputError if a file cannot be read.
     """
@@ -53,15 +53,16 @@ def missing_block(
 ) -> str:
     """Create the `components:` section of a mooring file, with the missing keys of each component.
 
-    For each component, comments name its pieces and locate its definition in the file. For each key
-    they give an example, the meaning, the checks that need it, and the estimate for the class of
-    component if there is one. Optional keys follow as comments. If a file already has a section
-    `components:`, the block has no heading, so that it can be pasted there. If nothing is missing,
-    or nothing can be checked, the text consists of comments only.
+    For each component, comments name the pieces that use it and the place of its definition in the
+    file. For each key, comments give an example, the meaning of the key, the checks that need it,
+    and an estimate if there is one for this class of component. Optional keys follow as comments.
+    If a file already has a section `components:`, the block has no heading and can be pasted into
+    this section. If nothing is missing, or nothing can be checked, the text consists of comments
+    only.
 
     Parameters
     ----------
-    inventory : pieces and clamps whose masses in air are also listed if unknown
+    inventory : pieces and clamps; those of unknown mass in air are also listed
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]

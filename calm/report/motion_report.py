@@ -54,8 +54,8 @@ def motion_report(
 
     Parameters
     ----------
-    series : series of the sensors
-    time : times (n,)
+    series : depths of the sensors and of other instruments over time
+    time : (n,) times of the record
     notes : notes on the input
     cards : summary card of each file read
     """
@@ -167,7 +167,7 @@ _DOUBTED = "“?” marks a diagnosis with an almost equally likely alternative 
 
 
 def health_table(study: MotionEstimate) -> Table:
-    """Tabulate the faults of each sensor, or a dash."""
+    """Tabulate the faults of each sensor; a dash means that there is no such fault."""
     found: dict[str, dict[str, str]] = {label: {} for label in study.sensors}
     faults = [*study.faults(of_line=False)]
     for one in faults:
@@ -188,7 +188,7 @@ def health_table(study: MotionEstimate) -> Table:
 
 
 def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
-    """Return sensor faults as JSON objects.
+    """Return the faults of the sensors as JSON objects.
 
     Clock errors are in s, gains are factors, and all other values are in m.
     """
@@ -208,7 +208,7 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
 
 
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
-    """Tabulate the common factors with their intervals."""
+    """Tabulate the common factors with their 95 % intervals."""
     rows = [
         (TITLES[name] + (": not a plausible drag, see below" if no_drag(name, value) else ""),
          f"{value:.3f}", f"{low:.3f}–{high:.3f}")
@@ -222,7 +222,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 def sensors_table(study: MotionEstimate) -> Table:
     """Tabulate how well the computed line agrees with each sensor.
 
-    The line is computed from the currents alone, and with the estimated factors.
+    There are two computed lines: from the currents alone, and with the estimated factors.
     """
     rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
@@ -265,11 +265,11 @@ def _value_text(value: float, decimals: int = 2) -> str:
 def motion_document(
     study: MotionEstimate, name: str, cards: Sequence[ReadCard] = ()
 ) -> dict[str, Any]:
-    """Return the JSON object: factors with 95 % intervals, and depth errors [m].
+    """Return the JSON object of a study: factors with 95 % intervals, and depth errors [m].
 
-    `sensors` gives for each sensor in use the agreement with the estimate and, as `plain`, with the
-    line computed from currents alone. `held_out` lists withheld sensors, and `read` describes the
-    input files.
+    The key `sensors` gives, for each sensor in use, the agreement with the estimate and, under the
+    key `plain`, the agreement with the line computed from currents alone. The key `held_out` lists
+    withheld sensors, and the key `read` describes the input files.
     """
     sensors = [
         {"label": label, **_agreement(fit), "offset": float(offset)}
@@ -293,7 +293,7 @@ def motion_document(
 
 
 def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[str, Any]:
-    """Return each factor with its estimate and the ends of its interval."""
+    """Return each factor with its estimate and the limits of its 95 % interval."""
     keys = ("value", "low", "high")
     return {name: dict(zip(keys, three, strict=True)) for name, three in factors.items()}
 
@@ -383,7 +383,7 @@ def _draw_depths(
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """Draw for each current level a row of marks at the times when its current appears false.
+    """Draw a row of marks for each current level, at the times when the current appears false.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 def plain(text: str, *, keys: bool = False) -> str:
     """Format a message for print, with keys as words in quotes and no line break before a unit.
 
-    With `keys`, for a terminal, the keys stay as in the file, in backticks.
+    If `keys` is true, as for a terminal, keys are written as in the file, in backticks.
     """
     if not keys:
         text = re.sub(r"`([^`]*)`", _quoted, text)
@@ -51,7 +51,7 @@ def _quoted(key: re.Match[str]) -> str:
 
 
 def without_asides(text: str) -> str:
-    """Remove sources, and other long passages in brackets, from a text."""
+    """Remove sources and other long passages in brackets from a text."""
     return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
 
 
@@ -61,7 +61,7 @@ def short(text: str, most: int) -> str:
 
 
 def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
-    """Format the value or the limit of a finding, in a unit that suits both; "" if missing."""
+    """Format the value or the limit of a finding, in a unit that suits both; "" if unknown."""
     value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
     if value is None or quantity is None:
         return ""
@@ -78,7 +78,7 @@ def limit_text(finding: Finding) -> str:
 
 
 def percent_text(utilisation: float | None) -> str:
-    """Format a utilisation in percent, rounded up, or None as a dash."""
+    """Format a utilisation in percent, rounded up; None is shown as a dash."""
     if utilisation is None:
         return "–"
     percent = percent_used(utilisation)
@@ -103,17 +103,22 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
     Failures, unknowns and warnings share a cause if they differ only in component and values.
-    Estimates share a cause if they concern the same component; they are omitted if a missing value
-    of this component is an item already. Acceptances share a cause if they concern the same
-    component and have the same reason, and findings that are not judged if they belong to the same
-    rule.
+    Estimates share a cause if they concern the same component; such estimates are omitted if a
+    missing value of this component is already listed as an item. Acceptances share a cause if they
+    concern the same component and have the same reason. Findings that are not judged share a cause
+    if they belong to the same rule.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
 
 
 def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
-    """Group open findings by cause; `use` maps labels of pieces and clamps to component ids."""
+    """Group open findings by cause.
+
+    Parameters
+    ----------
+    use : component id of each piece and clamp, by label
+    """
 
     def cause(finding: Finding) -> Hashable:
         if finding.state is State.ACCEPTED and finding.accept is not None:
@@ -176,7 +181,7 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
 
     Parameters
     ----------
-    use : component ids of pieces and clamps by label
+    use : component id of each piece and clamp, by label
     """
     found = [*findings]
     conclusion = conclusion_of(found)
@@ -185,7 +190,7 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
 
 
 def assessment_verdict(assessment: Assessment) -> Span:
-    """Format the verdict on a mooring, with its sign, in one line."""
+    """Format the verdict on a mooring in one line, preceded by the symbol for its state."""
     use = {one.label: one.use for one in assessment.inventory}
     verdict = verdict_of(assessment.every_finding(), use)
     sign = "" if verdict.state is None else f"{verdict.state.sign} "
@@ -193,7 +198,7 @@ def assessment_verdict(assessment: Assessment) -> Span:
 
 
 def open_items(assessment: Assessment, *, keys: bool = False) -> list[OpenItem]:
-    """Create the numbered open items for page one; `keys` is as in `plain`."""
+    """Create the numbered open items for page one; `keys` has the same meaning as in `plain`."""
     groups = open_groups(assessment)
     return [_item(group, number, keys=keys) for number, group in enumerate(groups, 1)]
 
@@ -284,7 +289,7 @@ def _capital(text: str) -> str:
 def draft(assessment: Assessment) -> bool:
     """Return whether a report is a draft, which must not be signed.
 
-    It is a draft if its number, revision or date is missing, or if it relies on an acceptance
+    A report is a draft if its number, revision or date is missing, or if it relies on an acceptance
     copied from an example.
     """
     document = assessment.file.document
@@ -295,8 +300,8 @@ def draft(assessment: Assessment) -> bool:
 def verdict_sentence(assessment: Assessment) -> str:
     """Describe the verdict in sentences.
 
-    They count the open items, with the rules concerned, and list every utilisation over 100 % that
-    is not a failure.
+    The sentences give the number of open items and the rules concerned. They also list every
+    utilisation over 100 % that is not a failure.
     """
     groups = open_groups(assessment)
     counts = Counter(governing(group).state for group in groups)

@@ -68,11 +68,12 @@ _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 @dataclass(frozen=True)
 class SignedMooring:
-    """Mooring with all data for its printed report.
+    """A mooring with all data for its printed report.
 
     Attributes
     ----------
-    assessment, cases : assessment of the mooring, and its load cases
+    assessment : assessment of the mooring
+    cases : load cases of the mooring
     items : numbered open items
     sha256 : hash of the inputs
     """
@@ -84,17 +85,17 @@ class SignedMooring:
 
     @property
     def standing(self) -> list[LoadCase]:
-        """Load cases for which there is an equilibrium."""
+        """Load cases that have an equilibrium."""
         return [one for one in self.cases if one.results]
 
     @cached_property
     def apart(self) -> frozenset[str]:
-        """Labels of connecting hardware that needs a row of its own."""
+        """Labels of those pieces of connecting hardware that need a table row of their own."""
         return standing_out(self.assessment.every_finding())
 
     @property
     def document(self) -> str:
-        """Document number and revision; "" without a number."""
+        """Document number and revision; "" if the document has no number."""
         given = self.assessment.file.document
         if given is None or not given.id:
             return ""
@@ -218,13 +219,13 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Return the columns that have at least one value in the load cases; no cell is bold."""
+    """Return the columns for which at least one load case has a value; no cell is bold."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
 
 def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
-    """Select the load cases that fit a table, and return a note on the omitted ones."""
+    """Select the load cases that fit in a table; also return a note on the omitted cases."""
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
@@ -237,7 +238,10 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
 
 
 def cases_table(signed: SignedMooring) -> Table:
-    """Tabulate the load cases. Governing values are bold; the last row names their components."""
+    """Tabulate the load cases; governing values are bold.
+
+    The last row names the components to which the governing values belong.
+    """
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
@@ -270,9 +274,10 @@ def cases_table(signed: SignedMooring) -> Table:
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
-    """List the governing finding of each rule, by decreasing utilisation.
+    """List the governing finding of each rule, in order of decreasing utilisation.
 
-    Rules without a utilisation are omitted, and so is `release-load` if it repeats `strength`.
+    Rules without a utilisation are omitted. The rule `release-load` is also omitted if its finding
+    repeats that of `strength`.
     """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
@@ -284,7 +289,7 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def governing_table(signed: SignedMooring) -> Table:
-    """Tabulate the checks with the largest utilisation, as bars."""
+    """Tabulate the checks with the largest utilisations, which are drawn as bars."""
     rows = governing_rows(signed.assessment.every_finding())
     over, half = (
         sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, SHOWN_USE)
@@ -310,7 +315,7 @@ def governing_table(signed: SignedMooring) -> Table:
 def check_fields(longest: int) -> tuple[blocks.Field, ...]:
     """Return the columns of a table of findings, with bars.
 
-    The component in the last column is cut to about `longest` characters.
+    The name of the component in the last column is cut to about `longest` characters.
     """
     return (
         words("", lambda one: Cell(state=one.state), 0.0),
@@ -322,7 +327,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
 
 
 def sign_off(signed: SignedMooring) -> SignOff:
-    """Create the table of revisions, latest first, and the boxes for signatures."""
+    """Create the table of revisions, with the latest first, and the boxes for signatures."""
     given = signed.assessment.file.document
 
     def field(name: str) -> str:
@@ -344,7 +349,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
 
 
 def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield the blocks of page one; the figure takes the height that the tables leave free."""
+    """Yield the blocks of page one; the figure has the height that remains below the tables."""
     cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
@@ -437,7 +442,7 @@ def afloat(result: LegResult) -> bool:
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """Return the parts of a leg as drawn; a row of equal items has one short name."""
+    """Return the parts of a leg as drawn; consecutive equal items share one short name."""
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
@@ -449,7 +454,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """Return mark and number of the first open item that concerns each rule and component."""
+    """Return the mark and number of the first open item on each pair of rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

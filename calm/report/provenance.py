@@ -29,7 +29,7 @@ _LIBRARIES = ("numpy", "pydantic", "jinja2", "typst")
 
 
 def made_by() -> str:
-    """List the versions of CALM, Python, and the libraries for computation and drawing."""
+    """List the versions of CALM, of Python, and of the libraries for computation and drawing."""
     there = (name for name in _LIBRARIES if find_spec(name))  # a web page has no typst
     libraries = (f"{name} {version(name)}" for name in there)
     return ", ".join((f"calm {__version__}", f"python {platform.python_version()}", *libraries))
@@ -39,10 +39,10 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 
 
 def moment() -> datetime | None:
-    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if it is unset.
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if the variable is not set.
 
-    Reports contain no other date. Raise UsageError if it is not a number of seconds within the
-    range of the calendar.
+    Reports contain no other date. Raise UsageError if the value of SOURCE_DATE_EPOCH is not a
+    number of seconds, or if it is outside the range of the calendar.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:
@@ -53,18 +53,21 @@ def moment() -> datetime | None:
 
 
 def date() -> str | None:
-    """Return the day of `moment`, such as 2026-11-21, or None."""
+    """Return the date of `moment`, such as 2026-11-21; None if `moment` returns None."""
     when = moment()
     return None if when is None else when.date().isoformat()
 
 
 def report_of(title: str, subtitle: str, *parts: ReportPart, name: str = "") -> Report:
-    """Create a report with a single section, called `name` or else `title`, dated by `date`."""
+    """Create a report with a single section and the date from `date`.
+
+    The section is called `name` or, if `name` is empty, `title`.
+    """
     return Report(title, subtitle, (), (blocks.Section(name or title, parts),), date())
 
 
 def source_text(file: MooringFile) -> str | None:
-    """Read the text of the mooring file; None if it can no longer be read."""
+    """Return the text of the mooring file; None if the file can no longer be read."""
     try:
         return read_text(Path(file.path))
     except InputError:
@@ -77,11 +80,11 @@ def file_name(file: MooringFile) -> str:
 
 
 def input_hash(files: Sequence[MooringFile]) -> str:
-    """Return the SHA-256 of the inputs in hexadecimal digits, over all environments.
+    """Return the SHA-256 hash of the inputs for all environments, in hexadecimal digits.
 
     The hash covers the text of the mooring file. It also covers, as JSON with sorted keys, the
     components with all catalogue values, the settings, and each environment with its currents,
-    including those from a current file. The location of the files has no effect.
+    including currents from a file. The location of the files has no effect.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
     first = canonical(files[0].pieces)
@@ -94,7 +97,7 @@ def input_hash(files: Sequence[MooringFile]) -> str:
 
 
 def canonical(value: Any) -> str:
-    """Serialise a value as JSON with sorted keys and no blanks, and models as objects."""
+    """Serialise a value as JSON with sorted keys and no blanks; a model becomes a JSON object."""
     return json.dumps(
         value, sort_keys=True, separators=(",", ":"),
         default=lambda one: one.model_dump() if isinstance(one, BaseModel) else vars(one),
@@ -134,7 +137,7 @@ _MOST_LEVELS = 40
 
 
 def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
-    """Tabulate depth, density, and the maximum current and its depth, for each environment."""
+    """Tabulate depth, density, and maximum current and its depth, for each environment."""
     rows = []
     for name, water in waters:
         speed = np.hypot(water.u, water.v)
@@ -157,7 +160,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """List the computed current at up to `_MOST_LEVELS` levels, evenly chosen."""
+    """List the current used in the computation, at up to `_MOST_LEVELS` evenly chosen levels."""
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
@@ -187,7 +190,7 @@ def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
-    """Return names and values for the title block: document data, position and water depth."""
+    """Return pairs of name and value for the title block: document, position and water depth."""
     document = file.document
     names = ("revision", "date", "project", "ship", "cruise", "author", "checked", "approved")
     pairs = [("mooring", file.name)]
@@ -208,7 +211,7 @@ def position_text(position: Position) -> str:
 
 
 def degrees_text(degrees: float, sides: str, digits: int) -> str:
-    """Format an angle in whole degrees, and minutes to a thousandth.
+    """Format an angle in whole degrees and in minutes to a thousandth.
 
     Parameters
     ----------
@@ -225,8 +228,8 @@ def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
 
     Parameters
     ----------
-    inputs : name of the environment, file as read, and water, for every environment of a mooring or
-        tow, or of each leg of a net
+    inputs : name of the environment, file as read, and water; one entry for every environment of a
+        mooring, of a tow, or of each leg of a net
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

@@ -8,7 +8,7 @@ from calm.report.blocks import Block, Heading, Pairs
 
 
 def card_blocks(cards: Iterable[Mapping[str, Any]]) -> tuple[Block, ...]:
-    """Convert cards, given as the dictionaries of `ReadCard.to_dict`, to blocks."""
+    """Convert summary cards, given as the dictionaries from `ReadCard.to_dict`, to blocks."""
     return tuple(
         block for card in cards for block in (Heading(str(card["file"])), Pairs(card_rows(card)))
     )

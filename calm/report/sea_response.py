@@ -50,7 +50,8 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     """Build the tables of the response to waves.
 
-    They list the pieces in the highest sea state and, for several sea states, one line for each.
+    The tables list the pieces in the highest sea state. If there are several sea states, another
+    table has a row for each sea state.
     """
     states, highest = analysis.states, _highest(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"

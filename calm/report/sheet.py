@@ -50,8 +50,8 @@ def result_part(
 
     Parameters
     ----------
-    facts : further facts on the line, after its summary
-    verbose : include the accuracy and convergence of the solution
+    facts : further facts about the line, which follow the summary
+    verbose : whether to include the accuracy and convergence of the solution
     """
     if result.several:
         return net_part(result, verbose=verbose)
@@ -77,12 +77,12 @@ def summary_of(result: LegResult) -> tuple[Pairs | Prose, ...]:
 
 
 def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:
-    """Describe the line and its ends; each description has a name."""
+    """Return named texts that describe the line and its ends."""
     return tuple(_tow_summary(result) if result.towed else _mooring_summary(result))
 
 
 def quality_of(result: LegResult) -> Prose:
-    """Describe the numerical error of the solution, and the effort of the solver."""
+    """Describe the numerical error of the solution, and the convergence of the solver."""
     good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
     if result.towed:
         end = "tow point"
@@ -98,7 +98,7 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def accuracy_text(results: Sequence[LegResult]) -> str:
-    """Describe the numerical error of several results, and the larger error of their inputs."""
+    """Describe the numerical error of several results, and the larger error due to their inputs."""
     depth = max(one.accuracy.depth for one in results)
     share = max(
         100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
@@ -236,10 +236,10 @@ def _level(result: LegResult, depth: float) -> str:
 
 
 def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -> Table:
-    """Tabulate the line in its listed order; clamps are indented below their piece.
+    """Tabulate the line in file order; clamps are indented below their piece.
 
-    Each leg of a net has a heading. With `places`, a clamp shows its position on its piece instead
-    of a length.
+    Each leg of a net has a heading. If `places` is true, the position of a clamp on its piece is
+    shown in place of a length.
     """
     output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
     if result.towed:
@@ -292,7 +292,7 @@ def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     """Return FAIL if the safety factor is too small or the working load is exceeded, else None.
 
     The required factor on the breaking load depends on `checks.safety_factor`, on the material, and
-    on whether it is a surface mooring. Unknown factors (NaN) are not marked.
+    on whether the mooring is a surface mooring. An unknown safety factor (NaN) is not a failure.
     """
     # the intended purpose of a single leg is irrelevant if the whole net is shown
     alone = not (result.several or result.towed)
@@ -322,7 +322,7 @@ def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
 
     Parameters
     ----------
-    verbose : include the accuracy and convergence of the solution
+    verbose : whether to include the accuracy and convergence of the solution
     """
     depth = say("depth", result.file.environment.depth)
     count = len(result.legs)
@@ -345,9 +345,9 @@ def leg_titles(result: Result) -> dict[str, str]:
 
 
 def end_descriptions(line: LegResult) -> tuple[str | None, str | None]:
-    """Describe the upper and the lower connection of a leg.
+    """Describe the connections of the upper and the lower end of a leg.
 
-    A free upper end and an anchor are None.
+    The description is None for a free upper end and for a lower end with an anchor.
     """
     top, bottom = line.leg.top, line.leg.bottom
     return (

@@ -39,7 +39,7 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """Result of a tow at one ship speed over the ground [m/s], or the failure at this speed."""
+    """Result of a tow at one ship speed over the ground [m/s], or the reason why there is none."""
 
     speed: float
     outcome: Result | NoEquilibrium
@@ -51,7 +51,7 @@ class TabulationRow:
 
     @property
     def figures(self) -> dict[str, float | None]:
-        """Values by their names in `FIGURES`; None if unknown."""
+        """Values of the result, by their names in `FIGURES`; None if unknown."""
         result = self.result
         if result is None:
             return dict.fromkeys(FIGURES)
@@ -67,7 +67,7 @@ class TabulationRow:
 
 @dataclass(frozen=True)
 class Tabulation:
-    """Results of a tow, with its name and a row for each speed."""
+    """Results of a tow at several speeds: the name of the tow and a row for each speed."""
 
     name: str
     rows: tuple[TabulationRow, ...]
@@ -85,7 +85,7 @@ class Tabulation:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings that all rows with an equilibrium have in common."""
+        """Warnings that are common to all rows with an equilibrium."""
         warnings = [row.result.warnings for row in self.rows if row.result is not None]
         first = warnings[0] if warnings else ()
         return tuple(text for text in first if all(text in each for each in warnings))
@@ -94,7 +94,7 @@ class Tabulation:
 def by_speed(
     tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
-    """Combine the solver's outcomes at ship speeds over the ground [m/s] into a tabulation."""
+    """Combine the outcomes of the solver at ship speeds over the ground [m/s] into a tabulation."""
     rows = map(TabulationRow, speeds, outcomes)
     return Tabulation(tow.file.name, tuple(rows))
 
@@ -103,8 +103,9 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
     """Return the JSON object of a table.
 
     The keys are `calm`, `name`, `type` and `speeds`, a list with one object per speed. Such an
-    object has `speed`, `status` and the keys of `FIGURES` (SI and degrees; `frequency` only if the
-    cable strums). Its `warnings` follow or, without an equilibrium, `message` and `advice`.
+    object has the keys `speed` and `status`, and the keys of `FIGURES` (SI and degrees), but
+    `frequency` only if the cable strums. The keys `warnings` or, without an equilibrium, `message`
+    and `advice` follow.
     """
     return {
         "calm": __version__,
@@ -139,10 +140,10 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 
 
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
-    """Build the table with one line per speed, within 80 columns.
+    """Build the table with one row per speed, within 80 columns.
 
-    A row without equilibrium shows its status. A row with warnings of its own carries a mark;
-    warnings common to all rows follow the table.
+    A row without an equilibrium shows the status of the solver. A row with warnings that are not
+    common to all rows has a mark; common warnings follow the table.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
@@ -196,9 +197,10 @@ _CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0)
 
 
 def sweep_drawing(tabulation: Tabulation) -> str:
-    """Draw depth of the body, its layback, and tensions against the ship speed, as SVG.
+    """Draw depth and layback of the towed body, and tensions, against the ship speed, as SVG.
 
-    Tension is drawn at the tow point and at the body. A speed without equilibrium is a gap.
+    The tensions are those at the tow point and at the body. A speed without an equilibrium leaves a
+    gap in the curves.
     """
     page = Graph(_WIDTH, _HEIGHT, tabulation.name, _SIZE)
     title = shortened(tabulation.name, _WIDTH - 12.0, 11.0, bold=True)

@@ -28,9 +28,9 @@ _WARNED = _STYLES[State.FAIL]
 
 
 def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
-    """Convert a part for a rich console, without its figures.
+    """Convert a part to an object for a rich console, without its figures.
 
-    If `plain`, all signs are ASCII.
+    If `plain` is true, all symbols are ASCII.
     """
     return Group(*_Printer(plain).part(part))
 
@@ -156,8 +156,8 @@ _BAR, _BEYOND = 10, 3  # characters of a bar up to the limit, and beyond it
 def bar_text(share: float, state: State | None) -> str:
     """Draw a fraction of a limit as a bar of text, with a mark at the limit.
 
-    A character stands for a tenth, rounded up. A bar that exceeds the limit is hatched, unless the
-    finding fails.
+    Each character stands for a tenth of the limit, rounded up. A bar that exceeds the limit is
+    hatched, unless the state is a failure.
     """
     tenths = min(ceil(_BAR * share - 1e-9), _BAR + _BEYOND)
     sign = "▒" if tenths > _BAR and state is not State.FAIL else "█"
@@ -190,7 +190,7 @@ Row = tuple[Sequence[Text], str]
 
 
 class PlainTable:
-    """Table without rules, printed as plain lines, many times faster than by rich.
+    """Table without ruled lines, printed as plain text many times faster than by rich.
 
     Parameters
     ----------

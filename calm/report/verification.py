@@ -23,11 +23,11 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """Return the JSON object of a verification.
 
-    The keys are `calm`, the number of values `checked`, and the number of values `out` of
-    tolerance. `kinds` counts the values of each kind; values that agree by construction are not
-    counted in `checked`. `cases` has one object per value: `source`, `name`, `kind`, `expected`,
-    `got`, `difference`, `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and
-    `reason` if no value was computed.
+    The keys are `calm`; `checked`, the number of checked values; `out`, the number of values out of
+    tolerance; `kinds`, the number of values of each kind; and `cases`. Values that agree by
+    construction are not counted in `checked`. `cases` has one object per value, with the keys
+    `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`, `unit`, `why` (the
+    reason for the tolerance), `within`, and `reason` if no value was computed.
     """
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
@@ -41,7 +41,10 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
 
 def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
-    """Count the cases of each kind, in the order of `Kind`; kinds without cases are omitted."""
+    """Count the cases of each kind, in the order of the members of `Kind`.
+
+    Kinds without cases are omitted.
+    """
     number = Counter(case.kind for case in cases)
     return {kind: number[kind] for kind in Kind if number[kind]}
 
@@ -55,8 +58,8 @@ def verification_part(findings: Findings) -> ReportPart:
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """Format the outcome of a case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference have one digit more than the tolerance, or two if the
-    expected value has that many. Further digits are rounding errors that differ between machines.
+    The computed value and the difference have one more digit than the tolerance, or two more digits
+    if the expected value has them. Further digits are rounding errors that differ between machines.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """Access to batch results of a part of the line, by its label in the mooring file.
+    """Access to the batch results for a part of the line, by its label in the mooring file.
 
-    ``top`` is the first component, even if another part has that label. Data are loaded lazily. All
-    methods raise UsageError if the line has no part with the label.
+    The label ``top`` means the first component, even if another part has that label. Data are
+    loaded lazily. All methods raise UsageError if the line has no part with the given label.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """
@@ -32,7 +32,7 @@ class BatchAccessor:
         self._dataset = dataset
 
     def depth(self, label: str) -> xr.DataArray:
-        """Return the depth of a clamp, or of a component's upper end, over time [m]."""
+        """Return the depth of a clamp, or of the upper end of a component, over time [m]."""
         return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
@@ -46,7 +46,7 @@ class BatchAccessor:
     def tension(self, label: str) -> xr.DataArray:
         """Return the tension over time [N].
 
-        It is the tension at a clamp, or the larger tension at the two ends of a component.
+        For a component, the larger of the tensions at its two ends is returned.
         """
         upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)
@@ -55,8 +55,8 @@ class BatchAccessor:
     def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
         """Draw the line from the side, in the profile nearest to a given time, on matplotlib axes.
 
-        Without `ax`, a new figure is created. Raise UsageError if the profile has no equilibrium,
-        or if matplotlib is not installed.
+        If `ax` is None, a new figure is created. Raise UsageError if the profile has no
+        equilibrium, or if matplotlib is not installed.
         """
         axes = plot_elevation(shape_picture(self._dataset, time), ax)
         moment = when(_nearest(self._dataset, time)["time"].values)
@@ -81,8 +81,9 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
     """Draw the line from the side, in the profile nearest to a given time.
 
-    The picture is in the vertical plane of the anchor and the top. The line is straight between the
-    upper ends of successive components. Raise UsageError if the profile has no equilibrium.
+    The picture is in the vertical plane through the anchor and the top of the line. The line is
+    drawn straight between the upper ends of successive components. Raise UsageError if the profile
+    has no equilibrium.
     """
     row = _nearest(dataset, time)
     names = ("depth_top", "x_top", "y_top")

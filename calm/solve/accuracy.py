@@ -23,7 +23,8 @@ class Errors(NamedTuple):
     depth : largest error of any depth or offset [m]
     tension : largest error of any tension [N]
     relative : largest relative error of any tension [-]
-    lift, pull : errors of the upward and of the horizontal force at the end of the line [N]
+    lift, pull : errors of the upward and horizontal components of the force at the end of the line
+        [N]
     """
 
     depth: float
@@ -34,7 +35,7 @@ class Errors(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Numbers of nodes and of suspended elements of a shape, and whether it has a touchdown."""
+    """Number of nodes and of suspended elements in a shape, and whether it has a touchdown."""
 
     nodes: int
     hanging: int
@@ -63,17 +64,17 @@ def next_node(record: Record, node: int, last: int) -> int:
 
 
 def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, near: float) -> Errors:
-    """Extrapolate a shape to vanishing segment length, and return the estimated errors.
+    """Extrapolate a shape to zero segment length, and return the estimated errors.
 
-    Only nodes that both shapes have are compared: the ends of hanging segments, the touchdowns, and
-    the nodes below the touchdowns.
+    Only nodes that occur in both shapes are compared. They are the ends of suspended segments, the
+    touchdowns, and the nodes on the seabed.
 
     Parameters
     ----------
-    before, coarse : record of the shape on coarse segments, and its extent
-    after, fine : record of the shape on halved segments, and its extent
-    near : as in `calm.physics.passing.MarchSettings`; if not 0, the line belongs to a batch, and
-        only the ends of pieces and the clamps are extrapolated
+    before, coarse : record and extent of the shape on coarse segments
+    after, fine : record and extent of the shape on halved segments
+    near : as in `calm.physics.passing.MarchSettings`; if it is not 0, the line belongs to a batch,
+        and only the ends of pieces and the clamps are extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0
@@ -145,8 +146,8 @@ def thirds_at(
 ) -> tuple[float, float, float]:
     """Compare a node of the coarse shape with the same node of the fine shape.
 
-    Return one third of the change of its position relative to the end of the line [m], one third of
-    the change of its tension [N], and its tension in the fine shape [N].
+    Return one third of the change in the node's position relative to the end of the line [m], one
+    third of the change in tension [N], and the tension in the fine shape [N].
     """
     x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
     y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])
@@ -168,9 +169,9 @@ def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int
 
 
 def fill_between(record: Record, first: int, last: int) -> None:
-    """Correct the nodes between two extrapolated nodes.
+    """Correct the positions and forces at the nodes between two extrapolated nodes.
 
-    The correction is interpolated along the line.
+    The correction is interpolated linearly along the line.
     """
     length = distance = 0.0
     for m in range(first + 1, last + 1):
@@ -185,7 +186,7 @@ def fill_between(record: Record, first: int, last: int) -> None:
 
 
 def take_as_marched(record: Record, nodes: int) -> None:
-    """Copy positions and forces to the columns of the extrapolated shape, without extrapolation."""
+    """Copy the marched positions and forces unchanged to the columns of the extrapolated shape."""
     for column in range(6):
         for m in range(nodes):
             record[BETTER + column][m] = record[column][m]

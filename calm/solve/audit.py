@@ -21,7 +21,7 @@ from calm.solve.solution import Solution, sizes
 
 
 def loads_of(solution: Solution) -> Floats:
-    """Return the sum of buoyancy and drag of every element (k, 3) [N].
+    """Return the sum of the buoyancy and drag forces on every element (k, 3) [N].
 
     The drag of a rigid piece is computed at its midpoint.
     """
@@ -32,7 +32,7 @@ def loads_of(solution: Solution) -> Floats:
 
 
 def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moored:
-    """Convert a line and its water to the array form of the audit."""
+    """Convert a line and its water to the data structure used by the audit."""
     bodies, knots = bodies_of(line)
     law = line.strumming
 
@@ -60,7 +60,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 
 
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
-    """Prepare the audit of a line, including the work arrays."""
+    """Prepare the inputs and work arrays for the audit of a line."""
     moored = moored_of(line, water, frequency, compiled)
     nodes: Any = np.zeros((2, len(line.length)), np.intp)
     first, last = nodes if compiled else nodes.tolist()
@@ -71,7 +71,8 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
     """Return the bodies of a line for the audit, and the knots of its elongation curves.
 
-    The bodies are its pieces followed by its clamps, as an array of `RefereeBody` records.
+    The bodies are the pieces of the line followed by its clamps, as an array of `RefereeBody`
+    records.
     """
     pieces = len(line.length)
     bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(RefereeBody))
@@ -106,9 +107,9 @@ _OF_CLAMP = {
 
 
 def shape_of(solution: Solution) -> RefereeShape:
-    """Convert the shape of a solution to the array form of the audit.
+    """Convert the shape of a solution to the data structure used by the audit.
 
-    The shape is the one on fine segments, before extrapolation.
+    The shape on fine segments is used, before extrapolation.
     """
     nodes = len(solution.position)
     none = np.zeros(1)
@@ -138,9 +139,9 @@ def amplification(solution: Solution) -> Floats:
 
 
 def flow_across(solution: Solution) -> Floats:
-    """Return the speed (k,) of the current normal to every element [m/s].
+    """Return the speed (k,) of the current component normal to every element [m/s].
 
-    It is 0 for an element without length.
+    The speed is 0 for an element without length.
     """
     chord = np.diff(solution.position, axis=0)
     size = sizes(chord)

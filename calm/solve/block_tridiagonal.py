@@ -27,14 +27,14 @@ def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbe
     Parameters
     ----------
     diagonal : (..., n, b, b) blocks of the main diagonal, real or complex
-    upper : (..., n-1, b, b) coupling of block i with block i + 1
-    lower : (..., n-1, b, b) coupling of block i + 1 with block i
+    upper : (..., n-1, b, b) blocks that couple block row i to the unknowns of row i + 1
+    lower : (..., n-1, b, b) blocks that couple block row i + 1 to the unknowns of row i
     right : (..., n, b, k) right-hand sides
 
     Returns
     -------
     Numbers
-        (..., n, b, k) solution; NaN throughout if a matrix is singular.
+        (..., n, b, k) solution; all values are NaN if a matrix is singular.
     """
     try:
         return _solved(diagonal, upper, lower, right)

@@ -17,17 +17,20 @@ Triple = tuple[Complex, Complex, Complex]
 
 
 class MassChain(NamedTuple):
-    """A chain of n nodes, each above a spring, at f frequencies. The last spring ends at a fixed
-    point.
+    """A chain of n nodes, each above a spring, at f frequencies.
+
+    The last spring ends at a fixed point.
 
     Attributes
     ----------
-    springs : (n, 5) stiffness across the spring; stiffness along it less that across; its axis
-    mass, damping : (n, 6) mass and damping of the nodes
+    springs : (n, 5) transverse stiffness of the spring; axial minus transverse stiffness; unit
+        vector along the spring
+    mass, damping : (n, 6) symmetric mass and damping matrices of the nodes (upper triangles)
     omega : (f,) angular frequencies
-    top : (f, 12) complex stiffness that is added to the first node
-    push : (f, n, 6) three complex forces on each node, which the motions replace
-    work : (n, 26) see `Link`
+    top : (f, 12) complex stiffness matrix that is added at the first node
+    push : (f, n, 6) complex force on each node in three directions; `sweep_chain` overwrites the
+        forces with the motions
+    work : (n, 26) work array with one `Link` per node
     """
 
     springs: Sequence[Sequence[float]]
@@ -40,11 +43,11 @@ class MassChain(NamedTuple):
 
 
 class Link(NamedTuple):
-    """A spring of stiffness K = s + c t tᵀ below a part of a chain of dynamic stiffness A.
+    """A spring with stiffness K = s + c t tᵀ, below a part of a chain with dynamic stiffness A.
 
-    With N = A + s: the inverse of N, w = N⁻¹ t, q = A w and g = c / (1 + c t·w). Then (A + K)⁻¹ is
-    N⁻¹ - g w wᵀ, K (A + K)⁻¹ is s N⁻¹ + g q wᵀ, and K (A + K)⁻¹ A is s N⁻¹ A + g q qᵀ. No
-    difference of large numbers is left, however stiff the spring is.
+    The link holds the inverse of N = A + s, w = N⁻¹ t, q = A w and g = c / (1 + c t·w). Then (A +
+    K)⁻¹ is N⁻¹ - g w wᵀ, K (A + K)⁻¹ is s N⁻¹ + g q wᵀ, and K (A + K)⁻¹ A is s N⁻¹ A + g q qᵀ.
+    These forms never subtract large numbers, however stiff the spring is.
     """
 
     inverse: Symmetric
@@ -54,7 +57,7 @@ class Link(NamedTuple):
 
 
 def sweep_chain(chain: MassChain) -> None:
-    """Replace the forces on a chain by its motions."""
+    """Solve for the motions of a chain, and overwrite `push` with these motions."""
     last, work = len(chain.springs) - 1, chain.work
     for f in range(len(chain.omega)):
         omega, push = chain.omega[f], chain.push[f]
@@ -84,7 +87,7 @@ def sweep_chain(chain: MassChain) -> None:
 
 @within
 def link_of(spring: Sequence[float], above: Symmetric) -> Link:
-    """Return the link of a spring below a part of a chain."""
+    """Return the `Link` for a spring below a part of a chain."""
     a, b, c, d, e, f = above
     across, x, y, z = spring[0], spring[2], spring[3], spring[4]
     inverse = inverse_of(
@@ -100,7 +103,7 @@ def link_of(spring: Sequence[float], above: Symmetric) -> Link:
 
 @within
 def through(across: float, link: Link, above: Symmetric) -> Symmetric:
-    """Return the stiffness of a part of a chain, seen through the spring below it."""
+    """Return the dynamic stiffness of a part of a chain in series with the spring below it."""
     n, (x, y, z) = link.inverse, link.q
     a, b, c, d, e, f = above
     gx, gy, gz = product(link.g, x), product(link.g, y), product(link.g, z)
@@ -116,13 +119,13 @@ def through(across: float, link: Link, above: Symmetric) -> Symmetric:
 
 @within
 def scaled_sum(r: float, x: Complex, a: Complex, b: Complex) -> Complex:
-    """Return r x + a b."""
+    """Return r x + a b for real r and complex x, a and b."""
     return r * x[0] + a[0] * b[0] - a[1] * b[1], r * x[1] + a[0] * b[1] + a[1] * b[0]
 
 
 @within
 def total(u: Triple, r: float, v: Triple, a: Complex, w: Triple) -> Triple:
-    """Return u + r v + a w."""
+    """Return the vector u + r v + a w for real r and complex a."""
     x, y, z = (
         scaled_sum(r, v[0], a, w[0]), scaled_sum(r, v[1], a, w[1]), scaled_sum(r, v[2], a, w[2])
     )  # fmt: skip
@@ -135,7 +138,7 @@ def total(u: Triple, r: float, v: Triple, a: Complex, w: Triple) -> Triple:
 
 @within
 def dot(v: Triple, w: Triple) -> Complex:
-    """Return the sum of the products of two vectors."""
+    """Return the dot product of two vectors, without complex conjugation."""
     return sum_of_products(v[0], w[0], v[1], w[1], v[2], w[2])
 
 
@@ -147,7 +150,7 @@ def product(a: Complex, b: Complex) -> Complex:
 
 @within
 def minor(a: Complex, b: Complex, c: Complex, d: Complex) -> Complex:
-    """Return a b - c d."""
+    """Return a b - c d for complex numbers."""
     return (
         a[0] * b[0] - a[1] * b[1] - c[0] * d[0] + c[1] * d[1],
         a[0] * b[1] + a[1] * b[0] - c[0] * d[1] - c[1] * d[0],
@@ -158,7 +161,7 @@ def minor(a: Complex, b: Complex, c: Complex, d: Complex) -> Complex:
 def sum_of_products(
     a: Complex, x: Complex, b: Complex, y: Complex, c: Complex, z: Complex
 ) -> Complex:
-    """Return a x + b y + c z."""
+    """Return a x + b y + c z for complex numbers."""
     return (
         a[0] * x[0] - a[1] * x[1] + b[0] * y[0] - b[1] * y[1] + c[0] * z[0] - c[1] * z[1],
         a[0] * x[1] + a[1] * x[0] + b[0] * y[1] + b[1] * y[0] + c[0] * z[1] + c[1] * z[0],
@@ -167,7 +170,7 @@ def sum_of_products(
 
 @within
 def combined(r: float, x: Complex, s: float, y: Complex, t: float, z: Complex) -> Complex:
-    """Return r x + s y + t z for real r, s and t."""
+    """Return r x + s y + t z for real r, s and t and complex x, y and z."""
     return r * x[0] + s * y[0] + t * z[0], r * x[1] + s * y[1] + t * z[1]
 
 
@@ -188,7 +191,7 @@ def inverse_of(m: Symmetric) -> Symmetric:
 
 @within
 def times(m: Symmetric, v: Triple) -> Triple:
-    """Return the product of a matrix and a vector."""
+    """Return the product of a symmetric matrix and a vector."""
     a, b, c, d, e, f = m
     x, y, z = v
     return (
@@ -200,7 +203,7 @@ def times(m: Symmetric, v: Triple) -> Triple:
 
 @within
 def sum_of(m: Symmetric, n: Symmetric) -> Symmetric:
-    """Return the sum of two matrices."""
+    """Return the sum of two symmetric matrices."""
     return (
         (m[0][0] + n[0][0], m[0][1] + n[0][1]), (m[1][0] + n[1][0], m[1][1] + n[1][1]),
         (m[2][0] + n[2][0], m[2][1] + n[2][1]), (m[3][0] + n[3][0], m[3][1] + n[3][1]),
@@ -210,7 +213,7 @@ def sum_of(m: Symmetric, n: Symmetric) -> Symmetric:
 
 @within
 def matrix_at(mass: Sequence[float], damping: Sequence[float], omega: float) -> Symmetric:
-    """Return the dynamic stiffness of the mass and the damping of a node at a frequency."""
+    """Return the dynamic stiffness -ω² m + iω c due to the mass and damping of a node."""
     square = -omega * omega
     return (
         (square * mass[0], omega * damping[0]), (square * mass[1], omega * damping[1]),
@@ -221,7 +224,7 @@ def matrix_at(mass: Sequence[float], damping: Sequence[float], omega: float) -> 
 
 @within
 def symmetric_in(row: Sequence[float], at: int) -> Symmetric:
-    """Return the matrix in twelve numbers of a row."""
+    """Read a symmetric matrix from twelve numbers in a row, starting at index `at`."""
     return (
         (row[at], row[at + 1]), (row[at + 2], row[at + 3]), (row[at + 4], row[at + 5]),
         (row[at + 6], row[at + 7]), (row[at + 8], row[at + 9]), (row[at + 10], row[at + 11]),
@@ -230,26 +233,26 @@ def symmetric_in(row: Sequence[float], at: int) -> Symmetric:
 
 @within
 def triple_in(row: Sequence[float], at: int) -> Triple:
-    """Return the vector in six numbers of a row."""
+    """Read a complex vector from six numbers in a row, starting at index `at`."""
     return (row[at], row[at + 1]), (row[at + 2], row[at + 3]), (row[at + 4], row[at + 5])
 
 
 @within
 def link_in(row: Sequence[float]) -> Link:
-    """Return the link in a row."""
+    """Read a link from a row of the work array."""
     return Link(symmetric_in(row, 0), triple_in(row, 12), triple_in(row, 18), (row[24], row[25]))
 
 
 @within
 def write_triple(row: MutableSequence[float], at: int, v: Triple) -> None:
-    """Write a vector to six numbers of a row."""
+    """Write a complex vector to six numbers in a row, starting at index `at`."""
     row[at], row[at + 1], row[at + 2] = v[0][0], v[0][1], v[1][0]
     row[at + 3], row[at + 4], row[at + 5] = v[1][1], v[2][0], v[2][1]
 
 
 @within
 def write_link(row: MutableSequence[float], link: Link) -> None:
-    """Write a link to a row."""
+    """Write a link to a row of the work array."""
     a, b, c, d, e, f = link.inverse
     write_triple(row, 0, (a, b, c))
     write_triple(row, 6, (d, e, f))

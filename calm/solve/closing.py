@@ -64,7 +64,7 @@ fixed segments.
 
 
 class Root(NamedTuple):
-    """Root of the miss: the unknown with its value x, and the miss and its slope there.
+    """Value x of the unknown at which the miss is zero, with the remaining miss and its slope at x.
 
     `found` is false if the miss does not change sign. A miss of NaN means that a march stopped.
     """
@@ -77,16 +77,16 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """A closed line, or the reason why the line cannot be closed.
+    """Outcome of closing a line, with the reason if the line cannot be closed.
 
     Attributes
     ----------
-    ending : FOUND, or the code of the reason, see `calm.solve.solution`
-    value, piece : value that belongs to the reason, and index of the piece concerned
-    root : the unknown and the remaining miss [m]
-    nodes, hanging : number of nodes, and of elements above the touchdown (if any)
+    ending : FOUND, or the code of the reason (defined in `calm.solve.solution`)
+    value, piece : number quoted with the reason, and index of the piece concerned
+    root : value of the unknown, and the remaining miss [m]
+    nodes, hanging : number of nodes, and number of elements above the seabed
     landed : whether there is a touchdown
-    grounded : unstretched length on the seabed below the touchdown [m]
+    grounded : unstretched length on the seabed [m]
     segments : number of segments
     """
 
@@ -102,10 +102,10 @@ class Closed(NamedTuple):
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
-    """Return the unknown of a whole line whose free end is below the surface.
+    """Return the unknown for a whole line whose free end is below the surface.
 
-    If the line may lie on the seabed (`lands`), its target is the seabed instead of the top of the
-    anchor.
+    If the line may lie on the seabed (`lands`), the march must end on the seabed instead of at the
+    top of the anchor.
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -113,18 +113,21 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """Return the unknown for the part of a line above a float, whose target is the surface."""
+    """Return the unknown for the part of a line above the float `lower`.
+
+    The target of this part is the surface.
+    """
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
 
 def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
-    """Return a copy of an unknown that refers to the buoyancy of another float."""
+    """Return a copy of an unknown, with `sought` and `rides` replaced."""
     return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
 
 def miss_at(about: About, x: float) -> float:
-    """March a line for a value of the unknown and return the miss [m]; NaN if the march stops.
+    """March a line with the unknown set to x, and return the miss [m]; NaN if the march fails.
 
     The other results of the march stay in the work arrays of the problem.
     """
@@ -153,12 +156,11 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces at the surface for a value of the unknown.
+    """Set the loads of the pieces at the surface, with the unknown set to x.
 
     Returns
     -------
-    Depth of the free end [m], and the length [m] of the pieces that are above the surface at the
-    free end; 0 without such pieces.
+    Depth of the free end [m], and the length of line above the surface at the free end [m], or 0.
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -206,7 +208,8 @@ def as_riding(load: Load, riding: Riding) -> Load:
 def lifted_out(load: Load, share: float, gravity: float) -> Load:
     """Return the load of a piece that is partly out of the water.
 
-    The given fraction of the piece has no drag and displaces no water.
+    The fraction `share` of the piece is out of the water. This fraction has no drag and displaces
+    no water.
     """
     wet = 1.0 - share
     buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
@@ -224,7 +227,7 @@ def changed(
     push_east: float,
     push_north: float,
 ) -> Load:
-    """Return a load with other forces, and with its drag coefficients multiplied by `drag`."""
+    """Return a copy of a load with new forces, and with the drag factors multiplied by `drag`."""
     return Load(
         load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume,
         drag * load.normal_drag, drag * load.tangential_drag, load.directional, lift, push_east,
@@ -233,20 +236,20 @@ def changed(
 
 
 def coarse_about(search: Search, unknown: Unknown) -> About:
-    """Return the settings for marches with the coarse angle step, which bracket a root."""
+    """Return the settings for marches with the coarse angle step, used to bracket a root."""
     step = search.problem.limits.coarse_step
     return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
 
 def coarse_miss(search: Search, unknown: Unknown, x: float) -> float:
-    """Return the miss of a march with the coarse step [m]."""
+    """Return the miss [m] of a march with the coarse angle step."""
     return search.miss(coarse_about(search, unknown), x)
 
 
 def coarse_root(
     search: Search, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
 ) -> Root:
-    """Find the root of the coarse miss between a and b, to about 1e-4 of the span."""
+    """Find a root of the coarse miss between a and b, to within about 1e-4 of the span."""
     span = search.problem.limits.span
     small, linear = 1e-4 * span, unknown.sought == BELOW
     if linear:  # below the surface the miss is almost linear, so the last step needs no march
@@ -261,11 +264,11 @@ def coarse_root(
 
 
 def planned(search: Search, root: Root, step: float) -> Root:
-    """Choose the segments at a given angle step, and find the root of the miss near a coarser root.
+    """Choose the segments at an angle step, and find the root of the miss near a coarse root.
 
     If the march chooses its segments freely, the miss is not quite continuous, so this root is
-    approximate. On the segments chosen last, the miss is continuous. Its root there is one secant
-    step away; the caller marches at this root.
+    approximate. With the last segments held fixed, the miss is continuous. The result is the root
+    of this continuous miss, estimated by one secant step; the caller marches at this root.
     """
     limits = search.problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
@@ -280,7 +283,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
 
 
 def segments_of(problem: LineProblem, cuts: int) -> int:
-    """Return the number of segments in a segment list: chosen, or halved and thus twice as many."""
+    """Return the number of segments in a segment list (HALVED has twice as many as CHOSEN)."""
     chosen = 0
     for k in range(len(problem.course.cables)):
         chosen += problem.work.counts[k]
@@ -332,7 +335,7 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:
-    """Return the outcome for a line that cannot be closed."""
+    """Return the `Closed` record for a line that cannot be closed."""
     return Closed(ending, value, -1, root, 0, 0, False, 0.0, 0)
 
 
@@ -348,14 +351,15 @@ def near_root(
 ) -> Root:
     """Find the root of the miss near a known root.
 
-    If there is none and the free end reaches the surface, the search continues with the buoyancy of
-    the top float as unknown, and vice versa. The last march is the march at the root.
+    If no root is found because the free end reaches the surface, the search continues with the used
+    fraction of the top float's buoyancy as the unknown. If the top float submerges, the search
+    continues with the depth of the free end. The last march is the march at the root.
 
     Parameters
     ----------
     step, cuts, given, record : as in `About`
-    small : the search ends if the miss is at most this [m]
-    narrow : width of the last bracket as a share of the whole range
+    small : miss at which the search ends [m]
+    narrow : bracket width at which the search ends, as a fraction of the whole range
     """
     problem = search.problem
     unknown, x, slope = root.unknown, root.x, root.slope

@@ -19,7 +19,7 @@ COMPILED = Settings(compiled=True)
 
 
 def small_line(buoyancy: float) -> Line:
-    """Return a test line: 50 m of cable below a float, or a weight, of given net buoyancy [N]."""
+    """Return a test line: 50 m of cable below a float or weight with the given buoyancy [N]."""
     zero, none = np.zeros(2), np.zeros(0)
     return Line(
         length=np.array([0.0, 50.0]),
@@ -40,7 +40,7 @@ def small_line(buoyancy: float) -> Line:
 
 
 def compile_part(solver: CompiledPart) -> None:
-    """Compile a part of the solver into the cache."""
+    """Compile a part of the solver and store it in the cache."""
     speed, rest, density = np.array([0.2]), np.zeros(1), np.array([1025.0])
     water = Water(100.0, rest, speed, rest, rest, density)
     if solver is CompiledPart.LEGS:

@@ -21,12 +21,12 @@ MOST_SEGMENTS = 20_000
 
 
 def finer(errors: Errors, span: float, requested: float, step: float, segments: int) -> float:
-    """Return the angle step of the next round [rad], or 0 if the shape is fine enough.
+    """Return the angle step for the next round [rad], or 0 if the segments are short enough.
 
     Parameters
     ----------
-    span : length to which errors of depth are relative [m]
-    requested, step : angle step in the settings, and in this round [rad]
+    span : reference length for errors of depth [m]
+    requested, step : angle step requested in the settings, and angle step of this round [rad]
     segments : number of segments in the fine shape
     """
     target = degrees(requested)

@@ -68,7 +68,7 @@ def solution_of(
 
     Parameters
     ----------
-    problem : problem of the line, in its state after the search
+    problem : problem of the line, as left by the search
     frequency : strumming frequency of the cables [Hz]
     """
     closed, errors = found.closed, found.errors
@@ -129,7 +129,7 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 def carried_by(line: Line, problem: LineProblem) -> Line:
     """Return the line with the buoyancy and drag that its pieces have in the solution.
 
-    Only the submerged part of a piece at the surface has buoyancy and drag.
+    Only the submerged part of a piece at the surface contributes.
     """
     if not problem.work.left[CHANGED]:
         return line
@@ -197,7 +197,7 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
 
 
 def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
-    """Return the exception for a march that stopped, with the reason that its number stands for."""
+    """Return the exception for a march that failed; `failure` is the number of the reason."""
     return Status.NOT_CONVERGED.because(
         f"The integration along the line stopped: {FAILURES[int(failure)]}.", piece
     )
@@ -253,7 +253,9 @@ def _longer_than_deep(line: Line, water: Water) -> str:
 
 
 def watch_circle_radius(length: float, height: float) -> float:
-    """Return the largest distance of a surface float from its anchor, √(length² − height²) [m].
+    """Return the largest horizontal distance of a surface float from its anchor [m].
+
+    The distance is √(length² − height²).
 
     Parameters
     ----------
@@ -264,7 +266,7 @@ def watch_circle_radius(length: float, height: float) -> float:
 
 
 def doubted_depth(depth: float) -> str:
-    """Return a sentence that advises to check the water depth."""
+    """Return a sentence that advises the user to check the water depth."""
     return f" The water is {depth:.1f} m deep: check `depth` and its unit (m, ft)."
 
 

@@ -27,21 +27,22 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
-    """Find the unstretched length [m] of a piece for a wanted depth of the free end.
+    """Find the unstretched length [m] of a piece that puts the free end at a given depth.
 
-    The line is in still water.
+    The depth refers to still water.
 
     Parameters
     ----------
-    line : the line; the present length of its piece is ignored
+    line : the line; the present length of the piece is ignored
     piece : index of the piece, a cable or chain
-    top_depth : wanted depth of the free end [m]
+    top_depth : required depth of the free end [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length fits: the other pieces alone are too long, the items clamped
-        on the piece sit too low, or there is too little buoyancy; ``slack`` if the line would fold.
+        ``no-equilibrium`` if no length fits, because the other pieces alone are too long, because
+        the items clamped on the piece sit too low, or because there is too little buoyancy.
+        ``slack`` if the line would fold.
     """
     still_water = water.still()
     refuse_unsupported(line, still_water, standing_lift(line, still_water))
@@ -129,15 +130,15 @@ def fit_tow_length(
 
     Parameters
     ----------
-    line : line from the ship to the towed body; the present length of its piece is ignored
+    line : line from the ship to the towed body; the present length of the piece is ignored
     piece : index of the piece, a cable or chain
-    depth : wanted depth of the lower end of the piece at the speed of the tow [m]
+    depth : required depth of the lower end of the piece at the towing speed [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length up to a thousand times the depth fits, and the exceptions of
-        `solve_tow` except for the surface and the seabed.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits. The status may also
+        be one of `solve_tow`, except ``above-surface`` and ``grounded``.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece

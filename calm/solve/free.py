@@ -38,8 +38,8 @@ class FreeMotion:
     ----------
     velocity : (3,) velocity over the ground: east, north, up [m/s]
     solution : shape and forces in the flow relative to the line, with x and y relative to the lower
-        end; its error estimates are NaN and its number of marches is 0
-    tangles : pieces that have overtaken, wholly or in part, the line above them
+        end; the error estimates are NaN and the number of marches is 0
+    tangles : indices of pieces that have overtaken, wholly or in part, the line above them
     """
 
     velocity: Floats
@@ -57,16 +57,17 @@ def solve_rise(
     line, water : see `calm.physics.line`; the seabed is ignored, and parts above the surface are
         treated as submerged
     depth : depth of the line's upper end [m]
-    settings : angle step; 1° by default
+    settings : solver settings; by default, the angle step is 1°
 
     Returns
     -------
-    FreeMotion : at 1°, the error of the velocity is at most 1e-4 of the vertical speed
+    FreeMotion : at an angle step of 1°, the error of the velocity is at most 1e-4 of the vertical
+        speed
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no drag limits the speed, ``not-converged`` if no motion passes the
+        ``no-equilibrium`` if no drag limits the speed; ``not-converged`` if no motion passes the
         checks.
     """
     settings = settings or Settings()
@@ -138,12 +139,15 @@ shackle that touches the float below.
 def looped(
     line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
 ) -> tuple[int, ...]:
-    """Find the pieces that form loops in a line, unless the loops are shorter than `SHORTEST_LOOP`.
+    """Return the indices of the pieces that form loops, or an empty tuple if the loops are short.
+
+    Loops are short if their total height is less than `SHORTEST_LOOP`.
 
     Parameters
     ----------
-    piece, rise : (k,) piece of every element, and height of its lower end above its upper end [m]
-    pushed : (n,) pieces without length that are compressed and therefore belong to a loop
+    piece, rise : (k,) index of the piece of every element, and height of the element's lower end
+        (in the order of the line) above the upper end [m]
+    pushed : (n,) whether a piece has no length and is compressed, and therefore belongs to a loop
     """
     up = np.zeros(len(line.length))
     np.add.at(up, piece, np.maximum(rise, 0.0))

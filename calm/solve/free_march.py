@@ -20,7 +20,7 @@ from calm.solve.problem import REACH
 
 @dataclass(frozen=True)
 class Meeting:
-    """Imbalance at the point at which the marches from the two ends of a line meet.
+    """Mismatch at the point where the marches from the two ends of a line meet.
 
     Attributes
     ----------
@@ -59,10 +59,10 @@ class Rising:
 
     @cached_property
     def weight(self) -> float:
-        """Total net buoyancy as a scale of forces [N].
+        """Absolute total net buoyancy of the line, used as a scale of forces [N].
 
-        It is at least a thousandth of the sum of the absolute net buoyancies, so that it is never
-        zero.
+        The scale is at least a thousandth of the sum of the absolute net buoyancies of the pieces,
+        so that it is never zero.
         """
         return max(abs(float(self.lifts.sum())), 1e-3 * float(np.abs(self.lifts).sum()), 1e-300)
 
@@ -72,7 +72,7 @@ class Rising:
         return not (np.ptp(self.water.u) or np.ptp(self.water.v))
 
     def flow(self, velocity: Floats) -> Water:
-        """Return the water as seen from a line that moves over the ground.
+        """Return the water with the current relative to a line that moves over the ground.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class Rising:
 
     @property
     def guessed_depth(self) -> float:
-        """Approximate depth of the lower end [m]."""
+        """First estimate of the depth of the lower end, for a vertical unstretched line [m]."""
         return self.top + float(self.line.length.sum())
 
     @cached_property
@@ -138,11 +138,11 @@ class Rising:
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
-        """March the line from both ends in the flow relative to the line, and return the imbalance.
+        """March the line from both ends in the flow relative to the line, and return the mismatch.
 
         Parameters
         ----------
-        flow : water as seen from the line
+        flow : water with the current relative to the line
         depth : depth of the lower end [m]
         angle_step, cuts, record : as in `calm.physics.march`
         """

@@ -32,7 +32,7 @@ if this fails, in steps.
 
 @dataclass(frozen=True)
 class FreePlace:
-    """Velocity over the ground (3,) [m/s] and depth of the lower end [m] of a `Rising` line."""
+    """Velocity over the ground (3,) [m/s] of a `Rising` line, and depth of its lower end [m]."""
 
     velocity: Floats
     depth: float
@@ -41,7 +41,7 @@ class FreePlace:
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
     """Find the terminal velocity of a free line and the depth of its lower end.
 
-    The segments of the last march are returned, too.
+    The segments of the last march are also returned.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if nothing limits the speed, ``not-converged`` if no root is found.
+        ``no-equilibrium`` if nothing limits the speed; ``not-converged`` if no root is found.
     MarchError
-        The march of the vertical line stopped.
+        The march of the vertical line failed.
     """
     plumb = _plumb(rising, angle_step)
     for shares in SHEARS:
@@ -78,10 +78,10 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 def plumb_speed(line: Line, water: Water, top: float) -> float:
     """Return the terminal speed of a vertical line in still water [m/s], positive up.
 
-    At this speed the sum of weight, buoyancy and drag is zero; the forces between the parts do not
-    matter. Drag is almost proportional to the square of the speed, so secants in the squared speed
-    converge at once. Smooth pieces in the drag crisis may allow several speeds; the search finds
-    one.
+    At this speed the sum of weight, buoyancy and drag is zero; the forces between the parts have no
+    effect. Drag is almost proportional to the square of the speed, so a secant search in the
+    squared speed converges in a few steps. Smooth pieces in the drag crisis may allow several
+    speeds; the search finds one of these speeds.
 
     Parameters
     ----------
@@ -219,21 +219,22 @@ System = Callable[[Floats], Floats]
 def system_root(
     system: System, start: Floats, small: float, slopes: Floats | None = None
 ) -> tuple[Floats, Floats | None] | None:
-    """Find the root of a system of equations near a start; None if no root is found.
+    """Find the root of a system of equations near a start value, or return None.
 
-    The derivatives are computed once by finite differences, then updated by Broyden's rule. They
-    are computed anew if a step with updated derivatives does not halve the residual. A step is
-    halved until the residual decreases.
+    The derivatives are computed once by finite differences, then updated by Broyden's rule. The
+    derivatives are recomputed if a step with updated derivatives does not halve the residual. A
+    step is halved until the residual decreases.
 
     Parameters
     ----------
-    system : function from k unknowns to k values, scaled so that 1 is large; may raise `MarchError`
-    small : stop when no absolute value exceeds this
-    slopes : (k, k) derivatives of nearly the same system, if known
+    system : function of k unknowns that returns k residuals, scaled so that 1 is large; it may
+        raise `MarchError`
+    small : the search stops when no residual exceeds this absolute value
+    slopes : (k, k) derivatives of a nearly identical system, if known
 
     Returns
     -------
-    The unknowns at the root, and the derivatives there.
+    The unknowns at the root, and the derivatives at the root.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """

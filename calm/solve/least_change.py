@@ -22,13 +22,14 @@ class LeastChange:
     """Search for the smallest change of a value that reduces an excess to zero.
 
     The search goes outward from the start in both directions, in doubling steps, until the excess
-    is at most zero. If it stays positive, the search continues around its minimum. `bracketed_root`
-    then refines the answer (bisection for whole numbers). The excess is assumed to change sign at
-    most once between two steps.
+    is at most zero. If the excess stays positive, the search continues around the smallest excess.
+    `bracketed_root` then refines the answer (bisection for whole numbers). The excess is assumed to
+    change sign at most once between two steps.
 
     Parameters
     ----------
-    excess : function of the value; at most 0 if the condition holds, None if it cannot be computed
+    excess : function of the value that returns the excess, which is at most 0 if the condition
+        holds; None if the excess cannot be computed
     low, high : range of the value
     whole : whether only whole numbers are allowed
     exact : whether the excess must be 0 instead of at most 0
@@ -36,7 +37,7 @@ class LeastChange:
 
     Attributes
     ----------
-    tried : excess at every value tried; inf if it cannot be computed
+    tried : excess at every value tried; inf if the excess cannot be computed
     """
 
     excess: Callable[[float], float | None]
@@ -48,14 +49,14 @@ class LeastChange:
     tried: dict[float, float] = field(default_factory=dict)
 
     def at(self, x: float) -> float:
-        """Return the excess at a value, which is computed only once."""
+        """Return the excess at a value; each excess is computed only once."""
         if x not in self.tried:
             excess = self.excess(x)
             self.tried[x] = inf if excess is None else excess
         return self.tried[x]
 
     def find(self, start: float) -> float | None:
-        """Return the value nearest to the start that meets the condition, or None."""
+        """Return the value nearest to the start that meets the condition, if there is one."""
         start = min(max(start, self.low), self.high)
         first = self.at(start)
         if first <= 0.0 or (self.exact and abs(first) <= self.small):
@@ -80,14 +81,14 @@ class LeastChange:
 
     @property
     def steady(self) -> bool:
-        """Whether the excess is monotonic over the tried values."""
+        """Whether the excess only rises, or only falls, over the tried values."""
         excesses = [self.tried[x] for x in sorted(self.tried) if isfinite(self.tried[x])]
         noise = 1e-6 * max(map(abs, excesses), default=0.0)
         steps = [b - a for a, b in pairwise(excesses)]
         return not (any(step > noise for step in steps) and any(step < -noise for step in steps))
 
     def neighbours(self, x: float) -> tuple[float, float]:
-        """Return the tried values next below and next above x, or x itself if there is none."""
+        """Return the nearest tried values below and above x; x itself replaces a missing value."""
         below = max((t for t in self.tried if t < x), default=x)
         above = min((t for t in self.tried if t > x), default=x)
         return below, above
@@ -190,22 +191,23 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function between a and b, where its signs differ.
+    """Find the root of a continuous function between a and b, where it has opposite signs.
 
-    Chandrupatla's method takes inverse quadratic steps if the last three values lie on a suitable
-    curve, and bisects otherwise. The first step is a secant.
+    Chandrupatla's method takes an inverse quadratic step if the last three points lie on a suitable
+    curve, and otherwise bisects the bracket. The first step is a secant step.
 
     Parameters
     ----------
-    function, about : called as `function(about, number)`; NaN ends the search
+    function, about : the function is called as `function(about, number)`; a result of NaN ends the
+        search
     a, fa, b, fb : two numbers and the values of the function there
-    small : stop when |function| is at most this
-    narrow : stop when the bracket is at most this wide
+    small : the search stops when |function| is at most this value
+    narrow : the search stops when the bracket is at most this wide
 
     Returns
     -------
-    Root, value of the function there, and slope of the secant across the last bracket. The function
-    was last evaluated at this root, unless an end of the bracket was good enough.
+    Root, value of the function at the root, and slope of the secant across the last bracket. The
+    function was last evaluated at this root, unless the given a or b was already good enough.
 
     Source: Chandrupatla, Advances in Engineering Software 28 (1997), 145-149.
     """
@@ -247,18 +249,19 @@ def root_near(
 ) -> tuple[bool, float, float, float]:
     """Find the root of a decreasing function near x, between two limits.
 
-    The search takes secant steps from x as long as they halve the value. Then it takes ever longer
-    steps until the sign changes, and calls `bracketed_root`.
+    The search takes secant steps from x as long as each step halves the function value. Then it
+    takes longer and longer steps until the sign changes, and calls `bracketed_root`.
 
     Parameters
     ----------
     function, about, small, narrow : as in `bracketed_root`
-    x, slope : approximate root, and the slope there
-    low, high : the limits
+    x, slope : approximate root, and slope of the function at x
+    low, high : limits between which the root is sought
 
     Returns
     -------
-    Whether a root was found; the root, the value there, and the slope of the last secant.
+    Whether a root was found, the root, the function value at the root, and the slope of the last
+    secant.
     """
     x = min(max(x, low), high)
     fx = function(about, x)

@@ -72,7 +72,7 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step, and return the size of the step.
 
-    The step is written to `net.update`, as shares of the scales of the unknowns. The method is
+    The step is written to `net.update`, in units of the scales of the unknowns. The method is
     Gaussian elimination with partial pivoting; an unknown without a pivot keeps its value.
     """
     size, matrix, row = len(found), net.matrix, 0
@@ -118,9 +118,10 @@ def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
 
 
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
-    """Close a net with one unknown, whose residual falls as the unknown grows (see `close_net`).
+    """Close a net that has only one unknown, and return the outcome (see `close_net`).
 
-    Secant steps are used, and bisection if a secant step does not halve the residual.
+    The residual decreases as the unknown grows. The search uses secant steps, and bisection if a
+    secant step does not halve the residual.
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
@@ -156,9 +157,9 @@ def close_net(
 
     Parameters
     ----------
-    x : approximate unknowns, replaced by those found
-    enough : residual at which the net counts as closed, in shares
-    known : whether the slopes are known already
+    x : approximate unknowns, overwritten with the solution
+    enough : scaled residual at which the net counts as closed
+    known : whether the Jacobian `net.slopes` is already known
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
@@ -171,7 +172,7 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net on the segments of its last march (see `close_net`).
+    """Close a net on the segments of its last march; the parameters are as in `close_net`.
 
     The first step starts from the residual of that march.
     """
@@ -226,7 +227,7 @@ def close_on(
 def drifts(net: NetProblem) -> bool:
     """Return whether a net is free to drift.
 
-    This is so if no end is held and every anchored leg lies slack on the seabed.
+    A net drifts if no end is held and every anchored leg lies slack on the seabed.
     """
     anchored = False
     for i in range(len(net.legs)):
@@ -246,7 +247,7 @@ def drifts(net: NetProblem) -> bool:
 
 
 def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
-    """Convert the records of legs that were marched upwards to downward order."""
+    """Reverse the records of legs that were marched upwards, so that all records run downwards."""
     for i in range(len(net.legs)):
         if net.legs[i].kind == ANCHORED:
             record_down(net, i, x, how)
@@ -265,7 +266,7 @@ def close_coarsely(
 
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
-    """Close a net to full precision from approximate unknowns, on segments fine enough."""
+    """Close a net to full precision from approximate unknowns, on sufficiently short segments."""
     # segments depend on the unknowns for which they are chosen, so choose them again in the closed
     # shape, unless a single unknown is precise enough at once
     if len(x) > 1 and net.lines.limits.near == 0.0:
@@ -304,7 +305,7 @@ def close_both(
 
 
 def segments_of(net: NetProblem) -> int:
-    """Return the number of halved segments in all legs."""
+    """Return the total number of halved segments in all legs."""
     segments = 0
     for i in range(len(net.legs)):
         for k in range(net.legs[i].cables):
@@ -313,7 +314,7 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate all legs and nodes to vanishing segment length.
+    """Extrapolate all legs and nodes to zero segment length.
 
     Return the estimated errors.
     """
@@ -343,13 +344,13 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
 
 
 class NetTask(NamedTuple):
-    """Arguments of `do_task`, the single entry point to the compiled laws of a net.
+    """Arguments of `do_task`, which is the only entry point to the compiled code for a net.
 
     Attributes
     ----------
-    task : MARCH marches the net; SLOPES also computes its slopes; CLOSE calls `close_net`; SETTLE
-        calls `settle`; DRIFTS calls `drifts` for the net settled last
-    x : the unknowns, which CLOSE and SETTLE replace
+    task : MARCH marches the net; SLOPES also computes the Jacobian; CLOSE calls `close_net`; SETTLE
+        calls `settle`; DRIFTS calls `drifts` for the net as settled last
+    x : the unknowns, which CLOSE and SETTLE overwrite with the solution
     enough, known : as in `close_net`
     """
 
@@ -365,7 +366,10 @@ MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def do_task(job: NetTask, _: float) -> float:
-    """Perform a task and return its outcome; DRIFTS returns 1 if the net drifts, else 0."""
+    """Perform a task and return its outcome.
+
+    The outcome of DRIFTS is 1 if the net drifts, otherwise 0.
+    """
     net, x, how = job.net, job.x, job.how
     if job.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0

@@ -70,7 +70,7 @@ NO_PULL = 1e-9
 
 
 def course_from_below(course: Course) -> Course:
-    """Reverse a leg for the march upwards.
+    """Return the course of a leg in reverse order, for an upward march.
 
     The new course begins with a point load, which stands for the force at the lower end. The point
     load at the upper end is omitted. Pieces keep their numbers.
@@ -91,12 +91,11 @@ def course_from_below(course: Course) -> Course:
 
 
 def weight_of(course: Course, stage: Stage, excess: float) -> float:
-    """Return the weight [N] in water of a cable, or of successive rigid pieces, near the seabed.
+    """Return the weight in water at the seabed [N] of a stage (a cable or a rigid body).
 
     Parameters
     ----------
-    excess : weight of a cubic metre of water at the seabed, minus that of water of the reference
-        density [N/m³]
+    excess : specific weight of the water at the seabed, minus that at the reference density [N/m³]
     """
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
@@ -109,7 +108,7 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
 
 @within
 def pull_of(up: float, east: float, north: float) -> Load:
-    """Return the load that applies a given force [N] and has no drag."""
+    """Return a load that exerts the given force [N] and has no drag."""
     return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
 
 
@@ -123,9 +122,10 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 
 
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March an anchored leg up from its touchdown, or from its anchor, and return the outcome.
+    """March an anchored leg upwards, and return the outcome.
 
-    The shape is recorded from the lower end up; `record_down` reverses it.
+    The march starts at the touchdown or, without touchdown, at the anchor. The shape is recorded
+    from the lower end up; `record_down` reverses the record.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -167,8 +167,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
                     first, up, hanging = stage + 1, left - weight, 0.0
         up += along
     set_row(loads, 0, pull_of(up, east, north))
-    replaced = stages[first - 1]
-    kept = Stage(replaced.kind, replaced.first, replaced.size, replaced.length)
+    kept = stages[first - 1]
     set_row(stages, first - 1, Stage(ROD, 0, 1, 0.0))
     course = Course(stages[first - 1 : leg.stages], loads, cables, knots, vibration, 0)
     failure = march_suspended(net, i, course, how, work, -height)
@@ -204,9 +203,9 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
 def lay(
     net: NetProblem, i: int, sea: Sea, height: float, record: int, recording: bool
 ) -> tuple[State, int, float]:
-    """Lay the lower part of an anchored leg on the seabed, from its touchdown on (see `lay_line`).
+    """Lay the part of an anchored leg beyond its touchdown on the seabed (see `lay_line`).
 
-    The leg must be the one that `march_up` marched last in its work arrays.
+    The work arrays of the leg must still hold its last `march_up`.
 
     Parameters
     ----------
@@ -247,8 +246,8 @@ def march_suspended(
     """March the suspended part of an anchored leg, and return the outcome.
 
     The list of segments covers whole cables, counted from below. If the segments are given, those
-    of the cable at the touchdown are scaled to its hanging length. This makes the march a smooth
-    function of this length.
+    of the cable at the touchdown are scaled to the suspended length of this cable. This makes the
+    march a smooth function of the suspended length.
     """
     leg, cuts = net.legs[i], net.cuts
     of_step, counts = work.chosen, work.counts
@@ -304,7 +303,7 @@ def march_suspended(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Reverse the record of an upward march, so that it begins with the pull at the upper end."""
+    """Reverse the record of an upward march. It then begins with the pull at the upper end."""
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]
@@ -334,10 +333,11 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
     """Write the horizontal miss of an anchored leg, and the error of the height of its lower end.
 
     A part on the seabed under tension leads straight to the anchor. A slack part may be longer than
-    this distance. One condition covers both. Let d be the vector from the touchdown to the anchor,
-    r the length of line on the seabed, and h the pull. Either d has the length r and the direction
-    of h, or d is shorter than r and h is zero. Hence d is the projection of d + ρh on the disc of
-    radius r, for any ρ > 0 (the form of contact conditions by Alart and Curnier).
+    the distance to the anchor. One condition covers both cases. Let d be the vector from the
+    touchdown to the anchor, r the length of line on the seabed, and h the pull. Either d has the
+    length r and the direction of h, or d is shorter than r and h is zero. Hence d is the projection
+    of d + ρh on the disc of radius r, for any ρ > 0 (the form of contact conditions by Alart and
+    Curnier).
 
     `loose` is as in `Marching`.
     """

@@ -48,12 +48,12 @@ class LegEnd:
 
     Attributes
     ----------
-    node : number of the node; -1 for none
-    place : position east, north and up [m] of an end that is held, else None
+    node : number of the node; -1 if the end is not at a node
+    place : position east, north and up [m] of a held end, else None
     seabed : height of the seabed below an anchor [m]; -inf without an anchor
-    deeper : slope of the seabed there: increase in depth per metre to the east and to the north [-]
-    past : current at an end that is held [m/s], which sets the strumming frequency of the leg's
-        cables
+    deeper : slope of the seabed below an anchor, as the increase in depth per metre to the east and
+        to the north [-]
+    past : current at a held end [m/s], which sets the strumming frequency of the leg's cables
     """
 
     node: int = -1
@@ -70,7 +70,7 @@ class LegEnd:
 
 @dataclass(frozen=True)
 class NetLeg:
-    """A leg of a net, with its line listed from the upper to the lower end, without an anchor."""
+    """A leg of a net. Its line is listed from the upper to the lower end, without an anchor."""
 
     line: Line
     upper: LegEnd
@@ -79,9 +79,9 @@ class NetLeg:
 
 @dataclass(frozen=True)
 class LaidLeg:
-    """A leg prepared for the march, with the problem of its line.
+    """A leg prepared for the march, with the `LineProblem` of its line.
 
-    The line of a leg with a free lower end is listed from that end.
+    If the lower end of a leg is free, the line is listed from the lower end.
     """
 
     leg: NetLeg
@@ -99,7 +99,7 @@ class LaidLeg:
     def unknowns(self) -> int:
         """Number of unknowns of the leg.
 
-        On a sloping seabed, the height of its touchdown is also unknown.
+        The height of the touchdown is one of the unknowns on a sloping seabed.
         """
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
@@ -107,12 +107,12 @@ class LaidLeg:
 
     @property
     def below_a_point(self) -> bool:
-        """Whether the line of the leg begins with a point load."""
+        """Whether the line of the leg begins with a point load for the pull on its end."""
         return self.kind in (leg_numbers.PULLED, leg_numbers.ANCHORED)
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number over diameter [1/m], and the current, at the leg's end (see `LegRow`)."""
+        """Strouhal number over diameter [1/m], and current [m/s], at the end of the march."""
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -120,7 +120,7 @@ class LaidLeg:
 
     @staticmethod
     def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
-        """Prepare a leg for the march; `rough` is as in `problem_of`."""
+        """Prepare a leg for the march. The parameter `rough` is as in `problem_of`."""
         line = leg.line
         if leg.upper.free:
             kind = leg_numbers.STANDING
@@ -133,7 +133,7 @@ class LaidLeg:
         return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int, span: float) -> LegRow:
-        """Return the numbers of the leg for compiled code.
+        """Return the data of the leg in the form that compiled code uses.
 
         Parameters
         ----------
@@ -156,28 +156,29 @@ class LaidLeg:
 
     @property
     def surface_range(self) -> float:
-        """Range of the unknown over which a surface float rises out of the water [m].
+        """Range of the unknown [m] that corresponds to the whole buoyancy of a surface float.
 
-        The range equals the leg's length, so that a Newton step does not skip it.
+        The range equals the leg's length (at least 0.5 m), so that a Newton step does not skip the
+        range.
         """
         return max(float(self.line.length.sum()), 0.5)
 
     @property
     def bed(self) -> Bed:
-        """The seabed below the leg."""
+        """The seabed below the leg, with its slope and friction."""
         lower, bed = self.leg.lower, self.problem.limits.bed
         own = lower.deeper if isfinite(lower.seabed) else bed[:2]
         return bed._replace(east=own[0], north=own[1])
 
     @property
     def weight(self) -> float:
-        """Sum of the absolute net forces of all pieces, at least 1 mN [N]."""
+        """Sum of the absolute net forces of all pieces [N], but at least 1 mN."""
         line = self.leg.line
         return max(float(np.abs(line.net_force(np.zeros(len(line.length)))).sum()), 1e-3)
 
     @property
     def may_lie(self) -> tuple[float, float]:
-        """Length [m] and weight [N] of the part of the leg that is allowed on the seabed."""
+        """Length [m] and weight in water [N] of the part of the leg that may lie on the seabed."""
         course = self.problem.course
         stages = course.stages[max(course.landing, 1) :] if isfinite(self.leg.lower.seabed) else []
         weights = [weight_of(course, stage, self.bed.excess) for stage in stages]
@@ -186,7 +187,7 @@ class LaidLeg:
     def most_lying(self, height: float) -> float:
         """Return the largest weight of line that can lie on the seabed [N].
 
-        It is inf if no part of the leg may touch the seabed.
+        The result is inf if no part of the leg may touch the seabed.
 
         Parameters
         ----------
@@ -207,7 +208,7 @@ class LaidLeg:
     def highest(self) -> float:
         """Largest allowed height of any part of the leg [m].
 
-        This is the surface, or an end that is held above the surface.
+        The limit is the surface, or a held end if this end is above the surface.
         """
         return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
@@ -299,7 +300,7 @@ def leg_found(
     Parameters
     ----------
     i : number of the leg
-    ends : position (3,) of the end of the leg in the fine shape, and the same extrapolated [m]
+    ends : position (3,) of the end of the leg in the fine shape and in the extrapolated shape [m]
     errors : errors of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
@@ -392,7 +393,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
 
 def unsettled(why: str) -> NoEquilibrium:
-    """Return the exception for a net without equilibrium, with advice."""
+    """Return the exception, with advice, for a net without equilibrium."""
     return Status.NOT_CONVERGED.because(
         f"No equilibrium of the net was found: {why}.",
         advice="Check the lengths of its legs against the distances between their ends. Solve the "

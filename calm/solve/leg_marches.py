@@ -54,12 +54,12 @@ fixed segments; largest number of marches of a leg; smallest slope of the secant
 def load_leg(
     net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]
 ) -> tuple[float, float]:
-    """Set the loads of a leg from its unknowns.
+    """Set the loads of a leg according to the unknowns x.
 
     Returns
     -------
-    Depth of the start of the leg [m], and the length of its part above the surface [m], as in
-    `place`.
+    Depth at which the march of the leg starts [m], and length of the part above the surface [m], as
+    in `place`.
     """
     leg, state = net.legs[i], net.state[i]
     if leg.kind == PULLED:
@@ -75,11 +75,12 @@ def load_leg(
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from its unknowns, and return an outcome defined in `calm.physics.line`.
+    """March a leg for the unknowns x, and return an outcome defined in `calm.physics.line`.
 
-    A strumming leg is marched until its frequency equals the vortex shedding frequency at its end.
-    The shedding frequency falls as the assumed frequency rises, since more drag raises the line.
-    The solution is found by secants, and by bisection of a bracket if these do not converge.
+    A strumming leg is marched repeatedly until its frequency equals the vortex shedding frequency
+    at its end. The shedding frequency falls as the assumed frequency rises, since more drag raises
+    the line. The solution is found by secant steps, or by bisection if the secant steps do not
+    converge.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
@@ -114,7 +115,7 @@ def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
 
 
 def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from its upper end, or from a free lower end."""
+    """March a leg from its upper end, or from its lower end if this end is free."""
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = load_leg(net, problem, i, x)
@@ -145,7 +146,7 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
 def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
     """Return the vortex shedding frequency F = St |V| sin φ/D at the end of a leg [Hz].
 
-    φ is the angle between the current and the force there, see `calm.physics.strumming`.
+    φ is the angle between the current and the force at this end, see `calm.physics.strumming`.
     """
     fx, fy, fz = passed[3], passed[4], passed[5]
     u, v, w = leg.past_east, leg.past_north, leg.past_up
@@ -157,9 +158,9 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Return the row of the residual to which result k of a leg's march belongs, or -1.
+    """Return the row of the residual that result k of a leg's march contributes to, or -1.
 
-    The results are listed at `OUT`.
+    The results are listed at `calm.solve.leg_numbers.OUT`.
     """
     leg = net.legs[i]
     pulled = leg.own > 1
@@ -174,9 +175,9 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add results of a leg's march, times `share`, to the residual or to a column of the slopes.
+    """Add the results of a leg's march, times `share`, to the residual or the Jacobian.
 
-    The residual is changed if `column` is negative.
+    The results are added to a column of the Jacobian or, if `column` is negative, to the residual.
     """
     for k in range(OUT):
         row = row_of(net, i, k)
@@ -190,9 +191,9 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """March all legs, write the residual to `found`, and return the outcome of the marches.
+    """March all legs, write the residual to `net.found`, and return the outcome of the marches.
 
-    If `slopes`, also compute the Jacobian and update the force scales.
+    If `slopes` is true, the Jacobian is also computed and the force scales are updated.
     """
     size, nodes = len(net.found), net.nodes_at
     for k in range(size):
@@ -275,9 +276,9 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
 def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Scale the unknown forces of a leg by the pull in its last march.
 
-    The pull of a slack leg may be a thousandth of other pulls. Finite differences with steps for
-    such large pulls would not reveal its slopes. No scale exceeds the weight of the heaviest leg;
-    otherwise legs that are too short would be stretched until they meet.
+    The pull of a slack leg may be a thousandth of other pulls. Finite differences with steps suited
+    to such large pulls would miss the derivatives of a slack leg. No scale exceeds the weight of
+    the heaviest leg; otherwise legs that are too short would be stretched until they meet.
     """
     leg, out = net.legs[i], net.passed[i]
     if leg.own == 1:

@@ -44,28 +44,27 @@ above the seabed at which an anchored leg begins.
 
 
 class LegRow(NamedTuple):
-    """Numbers that compiled code needs for a leg.
+    """Data of a leg in the form that compiled code uses.
 
     Attributes
     ----------
-    kind, first, own : kind of march; index of the first unknown of the leg, and number of its
-        unknowns
-    start, end : numbers of the nodes at its upper and at its lower end (reversed for a leg with a
-        free lower end); -1 for none
-    seabed : height of the seabed below its anchor [m]; -inf without an anchor
-    rise : height of its anchor's top above the seabed [m]
-    lifts : vertical pull above which its end is at the top of the anchor [N], see `end_height`
-    deeper_east, deeper_north : as in `Water`, below the leg
+    kind, first, own : kind of march; index of the leg's first unknown; number of the leg's unknowns
+    start, end : numbers of the nodes at the upper and lower ends (reversed for a leg with a free
+        lower end); -1 if there is no node
+    seabed : height of the seabed below the leg's anchor [m]; -inf without an anchor
+    rise : height of the anchor's top above the seabed [m]
+    lifts : vertical pull [N] above which the leg ends at the top of the anchor, see `end_height`
+    deeper_east, deeper_north : slope of the seabed below the leg, as in `Water`
     longest : longest segment at an angle step of 1° [m]
-    surface_range : range of its unknown for a float at the surface [m], see `LaidLeg`
-    highest : largest allowed height [m]
+    surface_range : range of the unknown of a float at the surface [m], see `LaidLeg`
+    highest : largest allowed height of any part of the leg [m]
     rides : as in `Limits`
-    sheds : Strouhal number over diameter at its end [1/m], if vortices set the strumming frequency
-        of the leg there; 0 for a leg that does not strum
-    past_east, past_north, past_up : current there [m/s]
-    weight : sum of the absolute net forces of its pieces [N], the scale of forces on a slack leg
-    stages, cables, surfacing, rows, pieces : numbers of stages, cables, buoyant pieces, rows of the
-        hull table, and pieces
+    sheds : Strouhal number over diameter [1/m] at the end where vortices set the strumming
+        frequency; 0 for a leg that does not strum
+    past_east, past_north, past_up : current at this end [m/s]
+    weight : sum of the absolute net forces of the pieces [N], the scale of forces on a slack leg
+    stages, cables, surfacing, rows, pieces : numbers of stages, of cables, of buoyant pieces, of
+        rows in the hull table, and of pieces
     landing : first stage that may lie on the seabed, see `Course`
     """
 
@@ -101,23 +100,25 @@ class NetProblem(NamedTuple):
 
     Attributes
     ----------
-    legs : numbers of each leg
+    legs : data of each leg
     lines : a `LineProblem` whose arrays have a row for each leg, sized for the longest leg
     up : courses of the anchored legs in upward order, see `calm.solve.leg_from_below`
     cuts : work array for the segments of an anchored leg
-    held : (·, 6) positions of held ends of each leg, at the start and the end of its march [m]
-    state : state of each leg, with the indices `STAGE` to `COARSE_GROUNDED`
-    passed : (·, `OUT`) results of each march
+    held : (·, 6) positions of each leg's held ends, at the start and the end of the march [m]
+    state : state of each leg; its entries are indexed by `STAGE` to `COARSE_GROUNDED`
+    passed : (·, `OUT`) results of the last march of each leg
     first, last : nodes at the ends of each piece
-    found, kept : residual of the last march, and of the best unknowns so far, as shares of `rows`
-    slopes, update : Jacobian of `found` by shares of `scale`, and the Newton step
-    trial, matrix, order : work arrays for the step
+    found, kept : residual of the last march, and residual of the best unknowns so far, both divided
+        by `rows`
+    slopes, update : Jacobian of `found` with respect to the unknowns divided by `scale`, and the
+        Newton step
+    trial, matrix, order : work arrays for the Newton step
     coarse, better : unknowns on coarse segments, and extrapolated unknowns
     scale, rows : scales of the unknowns and of the residual; every leg has its own scale of forces
-    errors : errors of depths [m] and tensions [N]
+    errors : largest errors of depths [m] and of tensions [N]
     nodes_at : index of the first unknown that belongs to a node
     length, force : length of the longest leg [m]; a typical force [N]
-    span : length to which errors of depth are relative [m]
+    span : reference length for errors of depth [m]
     """
 
     legs: Sequence[LegRow]
@@ -154,15 +155,15 @@ class Marching(NamedTuple):
     ----------
     sea : the water
     step : angle step [rad]
-    cuts, given : index of the segment list, and whether its segments are given or chosen by the
-        march
-    exact : whether segments are split at every level. Marches for slopes must be split like the
-        march that they belong to: the effect of a different split exceeds the effect of the small
-        step
-    record : index of the record for the shapes
-    loose : pull of a slack leg towards its anchor, as a share of its scale. The true value is zero;
-        a search may start with a larger value, so that slack legs determine the direction in which
-        a net drifts
+    cuts, given : index of the segment list, and whether the march uses the listed segments;
+        otherwise it chooses segments and writes them to the list
+    exact : whether segments are split at every level. The marches for the Jacobian must be split
+        like the march at the unperturbed unknowns, since a different split has more effect than the
+        small step
+    record : index of the record to which shapes are written
+    loose : pull of a slack leg towards its anchor, as a fraction of the leg's force scale. The true
+        value is zero; a search may start with a larger value, so that slack legs determine the
+        direction in which a net drifts
     """
 
     sea: Sea
@@ -176,7 +177,7 @@ class Marching(NamedTuple):
 
 @within
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
-    """Convert a leg to the form of a single-line problem."""
+    """Return a leg in the form of a `LineProblem`, like a single line."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
     courses, works = lines.course, lines.work
     course = Course(
@@ -207,7 +208,8 @@ def bed_of(net: NetProblem, i: int) -> Bed:
 def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
     """Return the height of a node of a leg above the seabed [m].
 
-    The seabed is a plane through the anchor of the leg, or below the origin if it has no anchor.
+    The seabed is a plane through the foot of the leg's anchor. If the leg has no anchor, the plane
+    is at the water depth below the origin.
     """
     end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
     east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -219,7 +221,7 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
 
 @within
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Return the position at which the record of a leg begins (`end` 0) or ends (`end` 1) [m]."""
+    """Return the position [m] of the first node (`end` is 0) or last node (`end` is 1) of a leg."""
     leg, held = net.legs[i], net.held[i]
     node = leg.end if end else leg.start
     if node >= 0:
@@ -233,8 +235,8 @@ def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Return the height of the lower end of an anchored leg [m].
 
     A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
-    The height changes gradually while the pull is less than the weight of a piece of line as long
-    as the anchor is high. This avoids a jump, so that neither state has to be guessed.
+    The height changes gradually while the pull is less than the weight of a line whose length is
+    the height of the anchor. This avoids a jump, so that neither state has to be guessed.
 
     Parameters
     ----------

@@ -40,14 +40,14 @@ coarse segments.
 
 
 class FoundShape(NamedTuple):
-    """A shape of a line, or the reason why there is none.
+    """A shape of a line, or the reason why no shape was found.
 
     Attributes
     ----------
-    closed : outcome, and size of the shape in the record `FINE`; the record holds the marched shape
-        and, from column `BETTER` on, the extrapolated one
-    errors : see `calm.solve.accuracy`
-    share, grounded : extrapolated unknown, and extrapolated length on the seabed [m]
+    closed : outcome, and size of the shape in the record `FINE`; this record holds the marched
+        shape and, from column `BETTER` on, the extrapolated shape
+    errors : estimated errors, see `calm.solve.accuracy`
+    share, grounded : extrapolated value of the unknown, and extrapolated length on the seabed [m]
     closure, moment : residuals found by the audit
     other : another equilibrium found by the search
     """
@@ -65,24 +65,25 @@ NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
-    """Return a shape before its audit."""
+    """Return a `FoundShape` that has not been audited yet."""
     return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
 
 
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
-    """Return the outcome for a line without a shape."""
+    """Return the `FoundShape` for a line without a shape; `ending` and `value` give the reason."""
     closed = Closed(ending, value, piece, root, 0, 0, False, 0.0, 0)
     return not_audited(closed, UNKNOWN_ERRORS, root.x, 0.0)
 
 
 def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
-    """Close a line near a coarse root, on segments that are fine enough.
+    """Close a line near a coarse root, on sufficiently short segments.
 
     The shape is written to the record `FINE` and is not yet audited.
 
     Parameters
     ----------
-    hangs : whether the line must stay clear of the seabed; it is rejected if far below the seabed
+    hangs : whether the line must stay clear of the seabed; if so, a shape far below the seabed is
+        rejected
     """
     problem, limits = search.problem, search.problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
@@ -128,13 +129,16 @@ def extent_of(closed: Closed) -> Extent:
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
     """Close a line by `polish`.
 
-    If it must hang clear of the seabed (`hangs`), reject it if it is far below the seabed.
+    If the line must stay clear of the seabed (`hangs`), a shape far below the seabed is rejected.
     """
     return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
-    """Return a closed line, or its rejection if it is far below a seabed that it must not touch."""
+    """Return a closed line, but reject a line that is far below the seabed.
+
+    A line is rejected only if it must stay clear of the seabed (`hangs`).
+    """
     if not hangs or closed.ending != FOUND:
         return closed
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
@@ -145,7 +149,7 @@ def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: 
 
 
 def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, float]:
-    """Find the node nearest to the seabed and its height above the seabed [m]."""
+    """Find the node with the smallest height above the seabed, and this height [m]."""
     lowest, least, end = 0, inf, nodes - 1
     for n in range(nodes):
         x, y = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -161,7 +165,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
     Two shapes on the chosen segments, in the records `OTHER` and `COARSE`, show how every node
     moves with the unknown. Both closed shapes follow from this movement and from one march on the
     halved segments. The outcome is not `FOUND` if the closed shapes are too far from the marched
-    ones, or if the line may lie on the seabed.
+    shapes, or if the line may lie on the seabed.
     """
     problem, unknown = search.problem, root.unknown
     limits, work = problem.limits, problem.work
@@ -205,7 +209,9 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
 
 
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
-    """Move the shapes `COARSE` and `FINE` by fractions of the change from `OTHER` to `COARSE`.
+    """Move the shapes `COARSE` and `FINE` by multiples of the change from `OTHER` to `COARSE`.
+
+    The multiples are `closing` for `COARSE` and `halved` for `FINE`.
 
     Returns
     -------

@@ -72,11 +72,11 @@ class CoarseRoots(NamedTuple):
 
     Attributes
     ----------
-    ending, value : FOUND, or the reason why there is none (see `calm.solve.solution`), and its
-        value
+    ending, value : FOUND, or the reason why there is no root (see `calm.solve.solution`), and the
+        number quoted with this reason
     root : root of the highest equilibrium
-    other : another root: the deepest of the scan, or a root with another share of the float's
-        buoyancy in use; not `found` if there is none
+    other : another root, which is the deepest root of the scan or a root with another used fraction
+        of the float's buoyancy; `found` is false if there is no other root
     """
 
     ending: int
@@ -92,7 +92,7 @@ def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
 
     Parameters
     ----------
-    first : whether the highest root is enough
+    first : whether to stop at the highest root
     """
     problem = search.problem
     unknown = whole_line(problem, lands)
@@ -152,12 +152,12 @@ def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
 
 
 def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
-    """Return the outcome of a march that stopped."""
+    """Return the outcome of the search if a march has failed."""
     return CoarseRoots(MARCH_STOPPED, problem.work.left[FAILURE], none, none)
 
 
 def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
-    """Add the miss at a depth to the samples, and return the new number of samples."""
+    """Add the miss for a depth of the free end to the samples, and return the number of samples."""
     miss = coarse_miss(search, unknown, depth)
     samples = search.problem.work.samples
     samples[0][count], samples[1][count] = depth, miss
@@ -165,13 +165,13 @@ def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
 
 
 def samples_below(search: Search, unknown: Unknown, count: int) -> int:
-    """Sample the miss at increasing depths that separate its roots.
+    """Sample the miss at increasing depths of the free end, so that its roots are separated.
 
-    Return the number of samples, or 0 if a march stops.
+    Return the number of samples, or 0 if a march fails.
 
-    If the current neither grows nor turns with depth, the miss falls by more than the increase in
-    depth. Then there is at most one root, which the first increase brackets. If the current grows
-    or turns significantly, depths are scanned.
+    If the current neither grows nor turns with depth, the miss falls by more than the depth
+    increases. There is then at most one root, and an increase in depth by the miss brackets this
+    root. If the current grows or turns significantly, the depths are scanned in equal steps.
     """
     problem, limits = search.problem, search.problem.limits
     samples, deepest = problem.work.samples, limits.depth
@@ -206,9 +206,10 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
 
 
 def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
-    """Find a sample of opposite sign near the middle one of three samples, if the miss dips there.
+    """Search near the middle one of three samples for a sample of opposite sign, if the miss dips.
 
-    A golden-section search is used; if it finds no such sample, the middle sample is returned.
+    The miss dips if its absolute value is smallest at the middle sample. The golden-section method
+    is used. The middle sample is returned if no sample of opposite sign is found.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
@@ -230,14 +231,15 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
 
 
 def growth_below(sea: Sea, depth: float) -> float:
-    """Return the largest growth of the current with depth below a level [1/m].
+    """Return the largest growth rate of the current with depth, below a given depth [1/m].
 
-    The growth is relative to the maximum speed, and 0 for a current that only weakens. For a
-    current that turns, the part that is not parallel to the current above counts as growth.
+    The growth rate is relative to the maximum speed. The rate is 0 for a current that only weakens.
+    In a current that turns, the component that is not parallel to the current above counts as
+    growth.
 
     Parameters
     ----------
-    depth : depth of the level [m]
+    depth : depth below which the current is considered [m]
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1
@@ -259,9 +261,9 @@ def growth_below(sea: Sea, depth: float) -> float:
 
 
 def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
-    """Return an upper bound of the knockdown [m].
+    """Return an upper bound on the knockdown [m].
 
-    It assumes that the strongest current acts at all levels.
+    The bound assumes that the strongest current acts at all depths.
     """
     problem, sea = search.problem, search.problem.sea
     greatest, fastest = 1, -1.0
@@ -289,7 +291,7 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
 
 
 def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
-    """Return a copy of the problem with the current multiplied by a fraction."""
+    """Return a copy of the problem with the current multiplied by the factor `share`."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -312,14 +314,15 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest root with a float at the surface, if the line also closes below it.
+    """Find the highest root with a float at the surface, for a line that also closes submerged.
 
-    Both are possible if the float has less drag at the surface, or if the wind acts against the
-    current. If a march stops, the root is `found` but its miss is NaN.
+    Both equilibria are possible if the float has less drag at the surface, or if the wind acts
+    against the current. If a march fails, the root is `found` but its miss is NaN.
 
     Parameters
     ----------
-    immersed : miss with the free end at the surface and all buoyancy in use, at least 0 [m]
+    immersed : miss with the free end at the surface and all buoyancy in use [m]; it must be at
+        least 0
     """
     problem = search.problem
     none = Root(False, unknown, nan, nan, nan)
@@ -351,13 +354,14 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
 
     The root is the fraction of the lowest float's buoyancy that is in use. The top float is tried
     first. If the line closes only with the next float out of the water, or not at all, the next
-    float is at the surface too. The used fraction of the upper float then follows from the part of
-    the line between them, and that of the next float closes the line. A single float rides at its
-    draft; several floats are assumed just below the surface.
+    float is also at the surface. The part of the line between the two floats then determines the
+    used fraction of the upper float's buoyancy, and the used fraction of the next float's buoyancy
+    closes the line. A single float rides at its draft; several floats are assumed just below the
+    surface.
 
     Parameters
     ----------
-    deep : miss with the free end at the surface and all buoyancy in use, below 0 [m]
+    deep : miss with the free end at the surface and all buoyancy in use [m]; it must be below 0
     """
     problem, limits = search.problem, search.problem.limits
     none = Root(False, unknown, nan, nan, nan)
@@ -404,9 +408,10 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
 
 
 def turns_back(sea: Sea) -> bool:
-    """Return whether the current turns by more than 90° over depth; weak currents are ignored.
+    """Return whether the current at two depths differs in direction by more than 90°.
 
-    In such a current, a line at the surface may have several equilibria.
+    Weak currents are ignored. If the current turns so far, a line at the surface may have several
+    equilibria.
     """
     last = len(sea.intervals)
     greatest = 0.0
@@ -429,8 +434,8 @@ def turns_back(sea: Sea) -> bool:
 def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
     """Find two stable roots for the used fraction of the top float's buoyancy.
 
-    If there are several, the first root is the one that is reached as the current rises from zero.
-    The second is not `found` if there is only one root.
+    If there are several roots, the first result is the root that is reached as the current rises
+    from zero. If there is only one root, the second result is not `found`.
     """
     lowest, highest = outer_roots(search, unknown)
     if isnan(lowest.miss) or lowest.x == highest.x:
@@ -456,8 +461,8 @@ def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
     """Find the stable roots with the smallest and the largest used fraction of buoyancy.
 
-    An equilibrium is stable if more buoyancy in use draws the line down. The roots are not `found`
-    if no root is stable; their miss is NaN if a march stopped.
+    A root is stable if the miss falls as more buoyancy is used. The roots are not `found` if no
+    root is stable; their miss is NaN if a march failed.
     """
     lowest = highest = Root(False, unknown, nan, nan, nan)
     share, high = 0.0, coarse_miss(search, unknown, 0.0)
@@ -472,7 +477,7 @@ def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:
-    """Return the height above the surface of the top of the float `lower` [m], at a root."""
+    """Return the height of the top of the float `lower` above the surface, at a root [m]."""
     miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
     return nan if isnan(miss) else search.problem.work.left[Z]
 
@@ -491,7 +496,10 @@ def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """Return whether the line is too long for still water even with the least buoyancy in use."""
+    """Return whether the line is slack in still water at the smallest used buoyancy fraction.
+
+    This fraction just holds the line upright, see `BuoyantPiece.least`.
+    """
     assert unknown.sought != BELOW
     least = search.problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)

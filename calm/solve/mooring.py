@@ -59,10 +59,10 @@ SLACK_LINE_CURRENT = 1e-3
 
 
 def stirred(water: Water) -> Water | None:
-    """Return the water with a weak current added at its still levels, or None if no level is still.
+    """Return the water with a weak current at all still levels, or None if no level is still.
 
-    A slack line that ends in a still layer hangs there in a vertical fold, in the limit of a weak
-    current.
+    In a still layer, the end of a slack line hangs in a vertical fold. The shape in a weak current
+    approaches this fold.
     """
     still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
     return replace(water, u=np.where(still, SLACK_LINE_CURRENT, water.u)) if still.any() else None
@@ -74,17 +74,17 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     Parameters
     ----------
     line, water : see `calm.physics.line`
-    settings : angle step and tolerance; 1° and 1e-7 of the depth by default
+    settings : angle step (1° by default) and tolerance (1e-7 of the water depth by default)
 
     Returns
     -------
-    Solution : the highest equilibrium found. At 1°, errors of depths and offsets are at most 5e-5
-        of the water depth, and relative errors of tensions at most 2e-4.
+    Solution : the highest equilibrium found. At an angle step of 1°, errors of depths and offsets
+        are at most 5e-5 of the water depth, and relative errors of tensions are at most 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        No shape passed every check; the status is one of `Status`.
+        No shape passed every check; the status of the exception is one of `Status`.
     """
     settings = settings or Settings()
     refuse_endless(line, water)
@@ -114,7 +114,7 @@ def find_compiled(search: Search, referee: Referee) -> FoundShape:
 
 
 def search_of(problem: LineProblem, compiled: bool) -> Search:
-    """Return a problem with its march, compiled or interpreted."""
+    """Return a search that computes the miss by compiled or by interpreted code."""
     if not compiled:
         return Search(miss_at, problem)
     whole = whole_line(problem, False)
@@ -123,7 +123,7 @@ def search_of(problem: LineProblem, compiled: bool) -> Search:
 
 
 def lacks_room(problem: LineProblem) -> bool:
-    """Return whether a search ended because the work arrays hold too few segments."""
+    """Return whether a search ended because the work arrays are too small for the segments."""
     return bool(problem.work.left[FAILURE] == NO_ROOM)
 
 
@@ -139,7 +139,7 @@ def refuse_endless(line: Line, water: Water) -> None:
 
 
 class SearchTask(NamedTuple):
-    """Arguments of `run_search`."""
+    """Arguments of `run_search`, which are a search and the inputs of its audit."""
 
     search: Search
     referee: Referee
@@ -148,7 +148,8 @@ class SearchTask(NamedTuple):
 def run_search(task: SearchTask, first: float) -> float:
     """Run a search, write its result to the work arrays of the problem, and return the outcome.
 
-    If `first` is above 0, compute the starts of a batch instead, as before its first profile.
+    If `first` is above 0, solve the line in uniform currents instead (see `fill_starts`), which a
+    batch needs before its first profile.
     """
     if first > 0.0:
         return float(fill_starts(task.search))
@@ -166,7 +167,7 @@ at `FIRST_OTHER`.
 
 
 def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
-    """Write a shape, or the reason why there is none, to the result array."""
+    """Write a shape, or the reason why no shape was found, to the result array."""
     closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
@@ -189,7 +190,7 @@ def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
 
 
 def read_found(values: Sequence[float]) -> FoundShape:
-    """Read a shape, or the reason why there is none, from the result array."""
+    """Read a shape, or the reason why no shape was found, from the result array."""
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = (
         int(values[i]) for i in WHOLE
     )
@@ -246,24 +247,24 @@ class Nearby:
     def node(self, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece, or at a clamp.
 
-        The number holds for all slightly different lines.
+        The number is the same in all slightly different lines.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
         return int(np.argmax(self._trace.piece == piece))
 
     def shape(self, line: Line) -> tuple[Floats, float]:
-        """Return the nodes of a slightly different line, and the used fraction of its buoyancy.
+        """Return the node positions and the used buoyancy fraction of a slightly different line.
 
         Returns
         -------
         Positions (k+1, 3) east and north of the anchor and up from the surface [m]. The second
-        result is the used fraction of the surface floats' buoyancy, 1 without such floats.
+        result is the used fraction of the surface floats' buoyancy; it is 1 without such floats.
 
         Raises
         ------
         NoEquilibrium
-            ``not-converged`` or ``slack``.
+            The status is ``not-converged`` or ``slack``.
         """
         search, closed = self._closed(line, self._water)
         trace = Trace.of(search.problem.work.records[FINE], closed.nodes)
@@ -278,7 +279,8 @@ class Nearby:
 
         Parameters
         ----------
-        line, water : a line of the same pieces, with all cables scaled by one factor, and its water
+        line, water : a line of the same pieces, with all cable lengths scaled by the same factor,
+            and its water
 
         Raises
         ------
@@ -326,7 +328,7 @@ class Nearby:
 
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line on segments chosen at its angle step.
+    """Close a line once, on segments chosen at the angle step of its settings.
 
     The shape is written to the record `FINE`.
     """

@@ -48,12 +48,13 @@ class NetSolution:
 
     Attributes
     ----------
-    legs : each leg as a single line, in the common frame; a leg that hangs from its upper end is
-        listed from its lower end
-    nodes : (n, 3) positions [m]
+    legs : solution of each leg as a single line, in the coordinates of the net; a leg that hangs
+        from its upper end is listed from its lower end
+    nodes : (n, 3) positions of the nodes [m]
     imbalance : (n,) size of the resultant force at each node [N]
     miss : largest distance between the end of a leg and its held position or node [m]
-    depth_error, tension_error : estimates of the largest error of depths [m] and tensions [N]
+    depth_error, tension_error : estimates of the largest error of any depth [m] and of any tension
+        [N]
     marches : number of marches
     unknowns : unknowns of the solution, used to start the search for similar nets
     """
@@ -75,7 +76,7 @@ class LacksRoom(Exception):
 class NetSearch:
     """Search for the equilibrium of a net.
 
-    The unknowns are those of each leg, followed by the positions of the nodes.
+    The unknowns of all legs come first, followed by the positions of the nodes.
     """
 
     def __init__(
@@ -141,7 +142,7 @@ class NetSearch:
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """Return the unknowns to full precision, on segments that are fine enough.
+        """Return the unknowns to full precision, on sufficiently short segments.
 
         Raise NoEquilibrium if Newton's method does not converge.
         """
@@ -154,7 +155,7 @@ class NetSearch:
         raise unsettled("its legs do not meet to full precision")
 
     def end(self, i: int, x: Floats) -> Floats:
-        """Return the position at which the march of a leg must end [m]."""
+        """Return the position [m] at which the march of a leg must end."""
         end, first = self.laid[i].ends[1], self.net.nodes_at
         return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
 
@@ -216,15 +217,15 @@ def solve_net(
 
     Parameters
     ----------
-    legs : the legs, with ends that are at nodes, held, or free
+    legs : the legs, whose ends are at nodes, held, or free
     nodes : number of nodes
     water, settings : as in `solve_mooring`
-    near : solution of the same net in other water, tried first as a start
+    near : solution of the same net in other water, from which the first search starts
 
     Raises
     ------
     NoEquilibrium
-        No equilibrium was found, or the one found fails a check.
+        No equilibrium was found, or the equilibrium found fails a check.
     """
     settings = settings or Settings()
     count_lines(4.0 * len(legs), CompiledPart.LEGS)
@@ -250,7 +251,7 @@ def with_room(
     solve: Callable[[NetSearch], Answer],
     legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
 ) -> Answer:  # fmt: skip
-    """Run a search, and repeat it with larger work arrays until these hold all segments."""
+    """Run a search, and repeat it with larger work arrays until the arrays hold all segments."""
     room = ROOM
     while True:
         try:
@@ -264,8 +265,8 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 
     If a net in still water is held by slack legs alone, no force determines the direction in which
     it drifts. Newton's method then begins with slack legs that pull slightly towards their anchors.
-    This pull is reduced by a factor of ten at a time, or by less if that does not converge. Raise
-    NoEquilibrium if no equilibrium is found.
+    This pull is reduced by a factor of ten at a time, or by a smaller factor if the method does not
+    converge. Raise NoEquilibrium if no equilibrium is found.
     """
     try:
         return net.settled(roughly_closed(net, near))
@@ -285,10 +286,10 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
     """Return approximate unknowns of a net in equilibrium.
 
-    If another solution is given, the search starts near it. Otherwise the current is raised from
-    still water in steps, which leads to the highest equilibrium. If that fails, the search starts
-    from the rest positions of lumped masses released in the current (`calm.solve.net_start`).
-    `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
+    If another solution is given, the search starts near that solution. Otherwise the current is
+    raised from still water in steps, which leads to the highest equilibrium. If that fails, the
+    search starts from the rest positions of lumped masses released in the current
+    (`calm.solve.net_start`). `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
@@ -316,7 +317,9 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 
 
 class NearbyNet:
-    """A solved net, whose segments are used to solve nets with one slightly different leg.
+    """A solved net, from which nets with one slightly different leg are solved.
+
+    The segments of the solved net are used for all these nets.
 
     Parameters
     ----------
@@ -347,7 +350,7 @@ class NearbyNet:
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece of a leg, or at a clamp.
 
-        The number holds for all slightly different lines.
+        The number is the same in all slightly different lines.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
@@ -358,14 +361,14 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Return the nodes and the used fraction of buoyancy of a leg, if one leg has another line.
+        """Return the node positions and used buoyancy fraction of a leg, after a change of one leg.
 
-        Two Newton steps with the slopes of the original net leave an error of third order in the
-        change. Raise NoEquilibrium if a march stops.
+        Two Newton steps with the Jacobian of the original net leave an error of third order in the
+        change. Raise NoEquilibrium if a march fails.
 
         Parameters
         ----------
-        number, line : number of the leg that is changed, and its line
+        number, line : number of the leg that is changed, and its new line
         leg : number of the leg to return
         """
         net, x = self._net, self._x

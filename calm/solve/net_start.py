@@ -34,7 +34,7 @@ class NetStart(NamedTuple):
     first : (k, 3) position of each leg's upper end [m]
     pull : (k, 3) force on each leg's upper end [N]
     lower : (k, 3) position of each leg's lower end [m]
-    held : (k, 3) force on each leg's lower end, without support by the seabed [N]
+    held : (k, 3) force on each leg's lower end [N], computed without support by the seabed
     """
 
     nodes: Floats

@@ -70,12 +70,13 @@ class BuoyantPiece(NamedTuple):
     Attributes
     ----------
     piece : index of the piece in the line
-    load, stage : index of its load and of its stage in the course
+    load, stage : index of the piece's load in the course, and index of its stage
     length : length of the piece [m]
-    rigid_above : length of the rigid pieces connected to it above [m]
-    upto : length of the line from its top to the lower end of the piece [m]
-    surface_lift : net force of the piece in surface water [N]
-    least : smallest share of its buoyancy that holds the line below it upright in still water [-]
+    rigid_above : length of the rigid pieces directly above this piece [m]
+    upto : length of the line from the top of the line to the lower end of the piece [m]
+    surface_lift : net buoyancy of the piece in water with the density at the surface [N]
+    least : smallest fraction of the piece's buoyancy that holds the line below it upright in still
+        water [-]
     """
 
     piece: int
@@ -93,22 +94,23 @@ class Limits(NamedTuple):
 
     Attributes
     ----------
-    span : scale of lengths [m]: the water depth, or for a tow the length of line paid out
+    span : reference length [m], which is the water depth or, for a tow, the length of the line
     depth : water depth [m]
     anchor_height : height of the top of the anchor above the seabed [m]
-    angle_step, coarse_step : largest rotation of a segment, in the final shape and in the search
+    angle_step, coarse_step : largest rotation of a segment in the final shape, and in the search
         [rad]
-    allowed : the largest miss of a solution [m]
-    share_allowed : tolerance of the share of a float's buoyancy in use [-]
+    allowed : largest allowed miss of a solution [m]
+    share_allowed : tolerance for the used fraction of a float's buoyancy [-]
     bed : the seabed
-    near : as in `MarchSettings`; if not 0, the line is solved in a batch, without an audit
-    length, standing : length of the line, unstretched, and upright in still water [m]
+    near : as in `MarchSettings`; if it is not 0, the line is solved in a batch, without an audit
+    length, standing : unstretched length of the line, and length of the upright line in still water
+        [m]
     lift : net buoyancy of the whole line [N]
-    rides : whether the draft of the first float can be computed
+    rides : whether the draft of the top float can be computed
     at_rest : whether there is neither current nor wind
     blown : whether there is wind
-    refused, refused_at_rest : reasons to reject the line without a search, in moving and in still
-        water
+    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest; the
+        line is rejected without a search unless this is `SUPPORTED`
     """
 
     span: float
@@ -135,16 +137,18 @@ class SearchArrays(NamedTuple):
 
     Attributes
     ----------
-    left : results of the last march, see `calm.physics.passing`, followed by `MARCHES` to `LAST`
-    chosen : segments chosen by the march [m]
-    counts : number of segments of each cable
-    records : records of shapes, COARSE to OTHER
-    shares : four rows with a value for each float at the surface: share of buoyancy in use, slope
-        of its miss, and the shares in the records KEPT and OTHER
-    samples : sampled unknowns and misses
-    even : intervals of a uniform current
-    elements : (3, n) values for every element of a shape
-    found : see `calm.solve.mooring.write_found`
+    left : results of the last march (see `calm.physics.passing`), followed by the values with
+        indices `MARCHES` to `LAST`
+    chosen : unstretched lengths of the segments chosen by the march [m]
+    counts : number of segments in each cable
+    records : records of shapes, indexed by `COARSE` to `OTHER`
+    shares : four rows with a value for each float at the surface. The rows hold the used fraction
+        of buoyancy, the slope of the miss with respect to this fraction, and the used fractions for
+        the records `KEPT` and `OTHER`
+    samples : sampled values of the unknown, and the misses at these values
+    even : work array for the intervals of a uniform or weaker current
+    elements : (3, n) work array for the loads of every element of a shape
+    found : results of the search, see `calm.solve.mooring.write_found`
     """
 
     left: MutableSequence[float]
@@ -159,16 +163,16 @@ class SearchArrays(NamedTuple):
 
 
 class LineProblem(NamedTuple):
-    """A line and its water, with limits and work arrays.
+    """A line and its water, with limits and work arrays for the search.
 
     Attributes
     ----------
     course : the line, with its loads reduced for floats at the surface
     sea : the water
-    loads : the loads without this reduction
-    flexible : whether a piece is a cable or chain
+    loads : the same loads without this reduction
+    flexible : whether each piece is a cable or chain
     surfacing : the rigid buoyant pieces, from the top down
-    afloat, hull : the first float at the surface, and the rows of its hull
+    afloat, hull : the float that may ride at the surface, and the rows of its hull table
     limits, work : limits and work arrays of the search
     starts : solutions in uniform currents of increasing speed, see `calm.solve.starts`
     """
@@ -186,14 +190,14 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """Unknown that closes a line: depth of its free end, or used share of a float's buoyancy.
+    """Unknown used to close a line: depth of the free end, or used fraction of a float's buoyancy.
 
     Attributes
     ----------
     goal : height above the surface at which the line must end [m]
-    sought : the float whose share is unknown; floats above it are also at the surface. `BELOW` if
-        the free end is below the surface
-    rides : whether the float rides at its draft; else it is just below the surface
+    sought : the float whose used fraction is unknown; all floats above this float are also at the
+        surface. `BELOW` if the depth of the free end is unknown
+    rides : whether the float rides at its draft; otherwise the float is just below the surface
     lands : whether the line may have a touchdown before its end
     stages : number of stages to march
     """
@@ -209,14 +213,15 @@ BELOW = -1
 
 
 class About(NamedTuple):
-    """Arguments of a march, except the value of the unknown.
+    """Arguments of a march, without the value of the unknown.
 
     Attributes
     ----------
     step : angle step [rad]
     cuts : index of the segment list, CHOSEN or HALVED
-    given : whether the march uses the listed segments; otherwise it chooses segments and lists them
-    record : index of the record for the shape, or `NOT_RECORDED`
+    given : whether the march uses the segments in this list; otherwise it chooses segments and
+        writes them to the list
+    record : index of the record to which the shape is written, or `NOT_RECORDED`
     """
 
     problem: LineProblem
@@ -249,10 +254,11 @@ def problem_of(
 
     Parameters
     ----------
-    compiled : whether the problem is for compiled code; its sequences are then arrays
+    compiled : whether the problem is for compiled code; all sequences are then arrays
     rough : whether the line is solved in a batch, without an audit
     room : number of segments that the work arrays hold
-    intervals : largest number of intervals of other water in which the line will be solved
+    intervals : largest number of depth intervals in any other water in which the line will be
+        solved
     lift : the `standing_lift` of the line, if known
     """
     track = Track.of(line)
@@ -314,7 +320,7 @@ def problem_of(
 
 
 def work_for(course: Course, intervals: int, room: int, compiled: bool) -> SearchArrays:
-    """Create work arrays for given numbers of water intervals and of segments (`room`)."""
+    """Create work arrays for given numbers of depth intervals and of segments (`room`)."""
     cables = len(course.cables)
     nodes = 2 * room + 3 * len(course.loads) + 2 * len(course.stages) + 2
     if compiled:
@@ -348,7 +354,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
 
 
 def reach_of(limits: Limits, step: float) -> float:
-    """Return the largest length of a segment at an angle step [m]."""
+    """Return the largest allowed length of a segment at a given angle step [m]."""
     reach = ROUGH_REACH if limits.near > 0.0 else REACH
     return reach * degrees(step) * limits.span
 

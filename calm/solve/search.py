@@ -73,12 +73,12 @@ The second equilibrium is then reported.
 
 
 class Referee(NamedTuple):
-    """Arguments of the audit of a line.
+    """Inputs and work arrays for the audit of a line.
 
     Attributes
     ----------
-    moored : the line with its loads in use, and its water
-    bodies : the bodies of the line, without the reduction for floats at the surface
+    moored : the line with the loads of the solution, and its water
+    bodies : the bodies of the line, with full loads even for floats at the surface
     first, last : work arrays for the nodes of every piece
     """
 
@@ -89,7 +89,7 @@ class Referee(NamedTuple):
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
-    """Find a shape clear of the seabed or with a touchdown, trying the likelier kind first."""
+    """Find a shape clear of the seabed or with a touchdown. The likelier kind is tried first."""
     problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
@@ -140,7 +140,7 @@ def is_slack(found: FoundShape) -> bool:
 
 
 def with_other(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
-    """Return a shape with another equilibrium attached."""
+    """Return a copy of a shape that also reports another equilibrium."""
     return FoundShape(
         found.closed, found.errors, found.share, found.grounded, found.closure, found.moment, other
     )
@@ -157,9 +157,9 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 
 
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
-    """Find the highest shape of one kind, and attach the deepest shape if the two differ.
+    """Find the highest shape of one kind, and attach the deepest shape if it differs.
 
-    The kind is a shape with a touchdown (`lands`), or one clear of the seabed.
+    If `lands` is true, the shapes have a touchdown; otherwise they are clear of the seabed.
     """
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
@@ -200,7 +200,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
-    """Copy a shape and the used buoyancy of its surface floats to another record."""
+    """Copy a shape and the used buoyancy of its surface floats from record `of` to record `to`."""
     source, kept = problem.work.records[of], problem.work.records[to]
     shares = problem.work.shares
     for k in range(found.closed.root.unknown.sought):
@@ -214,15 +214,15 @@ def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
 
 
 def load_again(problem: LineProblem, found: FoundShape) -> None:
-    """Set the loads of the pieces at the surface to the loads that they have in a shape."""
+    """Set the loads of the pieces at the surface to their values in a given shape."""
     root = found.closed.root
     place(problem, root.unknown, root.x)
 
 
 def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
-    """Return the audited shape near an approximate root, with a touchdown (`lands`) or without.
+    """Return the audited shape near an approximate root, with or without a touchdown (`lands`).
 
-    If only little of the line lies on the seabed, a shape clear of the seabed is sought as well.
+    If only little of the line lies on the seabed, a shape clear of the seabed is also sought.
     """
     problem, limits = search.problem, search.problem.limits
     if not lands:
@@ -259,7 +259,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """Return the approximate root of the same line if it hangs clear of the seabed."""
+    """Return a copy of an approximate root, for the same line without touchdown."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
@@ -267,7 +267,7 @@ def hanging_clear(problem: LineProblem, root: Root) -> Root:
 
 
 def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundShape:
-    """Complete the error estimates of a shape, check it, and reject it if a check fails."""
+    """Complete the error estimates of a shape, check the shape, and reject it if a check fails."""
     closed, off, moment = found.closed, 0.0, 0.0
     if closed.ending != FOUND:
         return found
@@ -302,7 +302,7 @@ def residuals(
     landed: bool,
     limits: Limits,
 ) -> tuple[float, float]:
-    """Compute the relative force imbalance and the moment residual of a shape from its coordinates.
+    """Recompute the relative force imbalance and the moment residual from the nodes of a shape.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return the outcome of the audit, and the residual that exceeds its limit, else 0."""
+    """Return the outcome of the audit, and the residual that exceeds its limit, if any (else 0)."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
@@ -325,7 +325,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """Add to the error estimates the errors that the comparison of two step sizes cannot reveal."""
+    """Return error estimates that include errors which comparing two step sizes cannot reveal."""
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0
@@ -346,9 +346,9 @@ def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
 def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
     """Find a piece out of the water or below the seabed.
 
-    Return its index and its height [m]: positive above the surface, or negative below the seabed.
-    The index is -1 if there is none. A float at the surface may extend above the surface by its
-    length, whatever its inclination.
+    Return the index of the piece and its height [m], which is positive above the surface and
+    negative below the seabed. The index is -1 if there is no such piece. A float at the surface may
+    extend above the surface by its length, whatever its inclination.
     """
     record = problem.work.records[FINE]
     margin = max(depth_error, 1e-6 * problem.limits.depth)
@@ -370,7 +370,10 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Give the bodies of the audit the loads that pieces at the surface have in this solution."""
+    """Set the loads of the audit bodies to the loads in this solution.
+
+    These differ from the full loads if floats are at the surface.
+    """
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
         set_row(bodies, k, referee.bodies[k])
@@ -381,7 +384,7 @@ def take_loads(problem: LineProblem, referee: Referee) -> None:
 
 
 def loaded(body: RefereeBody, load: Load) -> RefereeBody:
-    """Return a body of the audit with the forces of a load."""
+    """Return a copy of an audit body with the forces and drag factors of a load."""
     return RefereeBody(
         body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
         load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,

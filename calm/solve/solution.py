@@ -20,15 +20,16 @@ LOOSEST_TOLERANCE = 2e-4
 
 @dataclass(frozen=True)
 class Settings:
-    """Step size of the march, tolerance of its end, and other settings of the solver.
+    """Step size of the march, tolerance for the position of its end, and other solver settings.
 
     Attributes
     ----------
     angle_step : largest rotation of a segment [rad]
-    tolerance : allowed miss of the anchor, as a share of the water depth
+    tolerance : allowed vertical distance between the end of the line and the anchor, as a fraction
+        of the water depth
     seabed_friction : friction coefficient of a line on the seabed [-]
-    compiled : whether the solver is compiled or interpreted, with identical results; None leaves
-        the choice to `calm.solve.two_speeds`
+    compiled : whether to use the compiled solver (true) or the interpreted solver (false); the
+        results are identical. None leaves the choice to `calm.solve.two_speeds`
     """
 
     angle_step: float = radians(1.0)
@@ -52,8 +53,10 @@ class OtherEquilibrium(NamedTuple):
     ----------
     depth : depth of the free end [m]; negative if there is no other equilibrium
     grounded_length : length on the seabed [m]
-    used_buoyancy : share in use of the buoyancy of the float at the surface; 1 below it
-    anchor_vertical, anchor_horizontal : upward and horizontal force at the line's end [N]
+    used_buoyancy : used fraction of the buoyancy of the float at the surface; 1 if the float is
+        submerged
+    anchor_vertical, anchor_horizontal : upward and horizontal components of the force at the line's
+        end [N]
     """
 
     depth: float
@@ -65,39 +68,45 @@ class OtherEquilibrium(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """A line in equilibrium: k elements between k + 1 nodes, free end first.
+    """A line in equilibrium, as k elements between k + 1 nodes; the free end comes first.
 
     Attributes
     ----------
-    line, water, settings : the solved problem; for a tow, the line from its free end, and the water
-        as seen from the ship
-    position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m];
-        extrapolated from two shapes, as are the forces and tensions
+    line, water, settings : the solved problem; for a tow, the line is listed from its free end, and
+        the current is relative to the ship
+    position : (k+1, 3) position of each node, east and north of the anchor or tow point, and up
+        from the surface [m]; positions, forces and tensions are extrapolated from two shapes
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
     element_piece : (k,) index of the piece that each element belongs to
-    element_clamp : (k,) index of the clamp that the element represents (without length), or -1
-    landed : whether the line has a touchdown before its end
-    hanging : number of hanging elements; the others lie on the seabed
+    element_clamp : (k,) index of the clamp if the element represents a clamp and has no length,
+        otherwise -1
+    landed : whether part of the line lies on the seabed
+    hanging : number of suspended elements; the other elements lie on the seabed
     grounded_length : unstretched length on the seabed [m]
     cut : (k,) unstretched length of each element [m]
-    strain : (k,) strain of cables and chains
-    afloat : the pieces that float at the surface; empty for a subsurface line
-    buoyancy_used : share of the buoyancy of the floats at the surface that the line needs
-    reserve : unused buoyancy of these floats [N]
-    carried : the line with the buoyancies and drags in use (floats at the surface reduced)
-    riding : draft and forces of the float at the surface; None if it is immersed
-    marches, segments : numbers of marches and of segments for this solution
-    miss : height of the line's end above the anchor's top, or the tow point [m]
-    closure : |recomputed sum of the loads - force at the line's end| / |force at the line's end|
+    strain : (k,) strain of each element; 0 for rigid pieces and clamps
+    afloat : indices of the pieces that float at the surface; empty for a subsurface line
+    buoyancy_used : fraction of the surface floats' buoyancy that the line uses
+    reserve : unused buoyancy of the surface floats [N]
+    carried : the line with the buoyancy and drag in effect, which are reduced for floats at the
+        surface
+    riding : draft of the float at the surface, and the forces on this float; None if it is immersed
+    marches, segments : number of marches and number of segments used for this solution
+    miss : height of the line's end above the top of the anchor or, for a tow, above the tow point
+        [m]
+    closure : relative force imbalance, |recomputed sum of the loads - force at the line's end| /
+        |force at the line's end|
     moment_residual : largest deviation of an element's axis from its moment balance [rad]
     depth_error, tension_error : estimates of the largest error of any depth or offset [m] and of
         any tension [N]
-    lift_error, pull_error : errors of the upward and of the horizontal force at the line's end [N]
-    other : another equilibrium that the solver found; None if it found none
+    lift_error, pull_error : estimated errors of the upward and horizontal components of the force
+        at the line's end [N]
+    other : another equilibrium that the solver found, or None
     frequency : strumming frequency of the cables [Hz]; 0 without strumming
-    pulled : whether a force acts on its first end, as on a leg of a net
-    marched : the finer of the two shapes, which passed the audit; None if nothing was extrapolated
-    slack : excess of the length on the seabed over the distance to the anchor, for a slack leg [m]
+    pulled : whether a force acts on the first end of the line, as on a leg of a net
+    marched : solution with the finer of the two shapes, which passed the audit; None if nothing was
+        extrapolated
+    slack : length on the seabed minus the distance to the anchor, for a slack leg [m]
     """
 
     line: Line
@@ -134,7 +143,7 @@ class Solution:
 
     @property
     def as_marched(self) -> "Solution":
-        """The solution before extrapolation: the shape on fine segments, which passed the audit."""
+        """The solution with the shape on fine segments, as it was audited before extrapolation."""
         closed = self.marched
         if closed is None:
             return self
@@ -153,7 +162,7 @@ class Solution:
 
     @cached_property
     def piece_nodes(self) -> Integers:
-        """First and last node of every piece (n, 2)."""
+        """Numbers of the first and last node of every piece (n, 2)."""
         pieces = self.element_piece
         n = len(self.line.length)
         first = np.searchsorted(pieces, np.arange(n), side="left")
@@ -166,20 +175,20 @@ class Solution:
         return 0 if self.line.flexible[0] else int(self.piece_nodes[0, 1])
 
     def piece_at(self, node: int) -> int:
-        """Return the piece that ends at a node, or contains this node."""
+        """Return the index of the piece that ends at a node or contains it."""
         return int(self.element_piece[max(node - 1, 0)])
 
 
 def sizes(vectors: Floats) -> Floats:
-    """Return the lengths (n,) of vectors (n, 3)."""
+    """Return the lengths (n,) of an array of vectors (n, 3)."""
     lengths: Floats = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
     return lengths
 
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
-    """Return positions and forces (k+1, 3) at the nodes of a recorded shape.
+    """Return the positions and forces, each (k+1, 3), at the nodes of a recorded shape.
 
-    Positions are relative to the end of the line, with heights above the surface [m].
+    Horizontal positions are relative to the end of the line; heights are above the surface [m].
     """
     position = trace.position.copy()
     position[:, :2] -= position[-1, :2]
@@ -187,7 +196,7 @@ def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
 
 
 class Status(Enum):
-    """Outcome of a solve, with its name in files and the advice to the user."""
+    """Outcome of a solve, with its name in files and the advice shown if the solve failed."""
 
     CONVERGED = ("converged", "")
     NO_EQUILIBRIUM = (
@@ -219,13 +228,13 @@ class Status(Enum):
     def because(
         self, message: str, piece: int | None = None, advice: str | None = None
     ) -> NoEquilibrium:
-        """Build the exception for this outcome.
+        """Build the exception for a solve with this outcome.
 
         Parameters
         ----------
-        message : reason; `{piece}` in it stands for the piece concerned
-        piece : index of this piece, if any
-        advice : replaces the advice of the outcome, which applies to moorings
+        message : reason, in which `{piece}` stands for the piece concerned
+        piece : index of the piece concerned, if any
+        advice : advice that replaces the default advice of this status, which applies to moorings
         """
         return NoEquilibrium(self.label, message, self.advice if advice is None else advice, piece)
 
@@ -251,10 +260,10 @@ class Status(Enum):
 
 
 def standing_lift(line: Line, water: Water) -> Floats:
-    """Return the net force (n,) of every piece with its clamps in an upright line [N], positive up.
+    """Return the net buoyancy (n,) of every piece of an upright line, with its clamps [N].
 
-    The line is upright and unstretched, from the anchor up; parts that would be out of the water
-    are assumed just below the surface.
+    Net buoyancy is positive up. The line stands upright and unstretched on its anchor. Parts that
+    would be out of the water are assumed just below the surface.
     """
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
@@ -263,7 +272,7 @@ def standing_lift(line: Line, water: Water) -> Floats:
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
-    """Return the net force (n,) of every piece in surface water [N], positive up.
+    """Return the net buoyancy (n,) of every piece in water at the surface [N], positive up.
 
     The clamps of the pieces are not included.
     """
@@ -295,14 +304,14 @@ SUPPORTED, TOO_HEAVY, FOLDS = range(3)
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
     """Check whether a line has enough buoyancy.
 
-    Return `SUPPORTED`, `TOO_HEAVY` or `FOLDS`, the piece below which the line folds (or -1), and
-    the missing buoyancy [N].
+    Return `SUPPORTED`, `TOO_HEAVY` or `FOLDS`, the index of the piece below which the line folds
+    (or -1), and the missing buoyancy [N].
 
     Parameters
     ----------
-    lift : the `standing_lift`
-    at_rest : whether there is no current or wind; then each part down to the lowest float must be
-        held up
+    lift : result of `standing_lift`
+    at_rest : whether there is neither current nor wind; if so, each part down to the lowest float
+        must be held up
     """
     lifts = lift.tolist()
     above = list(accumulate(lifts))
@@ -319,18 +328,18 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
 
 def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
-    """Raise an exception if a line has too little buoyancy, or folds in still water.
+    """Raise NoEquilibrium if a line has too little buoyancy, or folds in still water.
 
     In still water, the line must be held up from its first buoyant part down to its lowest float.
 
     Parameters
     ----------
-    lift : the `standing_lift`
+    lift : result of `standing_lift`
 
     Raises
     ------
     NoEquilibrium
-        ``slack``, or ``no-equilibrium`` for too little buoyancy.
+        ``slack`` if the line folds; ``no-equilibrium`` if it has too little buoyancy.
     """
     blown = line.floating is not None and line.floating.blown
     support, piece, lacking = support_of(lift, not (water.moving or blown))
@@ -349,7 +358,7 @@ def too_heavy(lift: Floats) -> NoEquilibrium:
 
     Parameters
     ----------
-    lift : (n,) net force of each piece [N]
+    lift : (n,) net buoyancy of each piece [N]
     """
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(

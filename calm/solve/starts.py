@@ -33,9 +33,10 @@ LEAST_CURRENT_GROWTH = 0.25
 def fill_starts(search: Search) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
-    `LineProblem.starts` has three rows for a line clear of the seabed, and three for a line with a
-    touchdown: the unknown, the slope of the miss, and the knockdown [m]. The unknown is the depth
-    of the free end [m] or, if negative, the share of buoyancy in use minus one. The last row is
+    The solutions are written to `LineProblem.starts`. Three rows are for a line clear of the
+    seabed, and three for a line with a touchdown. In each of these two groups, the rows hold the
+    unknown, the slope of the miss, and the knockdown [m]. The unknown is the depth of the free end
+    [m] or, if negative, the used fraction of buoyancy minus one. The last row holds the results of
     `lean_of`.
     """
     problem, found = search.problem, 0
@@ -68,7 +69,7 @@ def fill_starts(search: Search) -> int:
 def start_of(search: Search, lands: bool) -> Root:
     """Return the approximate root from which a search starts.
 
-    It is not `found` if the line needs the complete search.
+    The root is not `found` if the line needs the complete search.
     """
     problem, limits = search.problem, search.problem.limits
     unknown = whole_line(problem, lands)
@@ -96,10 +97,10 @@ def start_of(search: Search, lands: bool) -> Root:
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Return whether an equilibrium found from its start is certainly the highest.
+    """Return whether an equilibrium near its start value is surely the highest equilibrium.
 
     This is certain if the current does not grow significantly with depth. Otherwise the knockdown
-    in the currents at shallower depths is estimated by `lean_of`, relative to the knockdown found.
+    with the free end at shallower depths is estimated, and compared with the knockdown found.
     """
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:
@@ -125,14 +126,15 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
 
 
 def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
-    """Interpolate the unknown of a line and the slope of its miss between uniform currents.
+    """Interpolate the unknown of a line and the slope of the miss between uniform currents.
 
-    The uniform current is the one that inclines the line equally.
+    The uniform current is chosen to incline the line as much as the actual current does.
 
     Parameters
     ----------
     row : index in `starts` of the first row for this kind of line
-    upright, top : depth of the free end in still water, and after knockdown [m]
+    upright, top : depth of the free end in still water, and depth of the free end after knockdown
+        [m]
     """
     starts = problem.starts
     lean = lean_of(problem.course, problem.sea, top, problem.limits.depth, upright > 0.0)
@@ -152,22 +154,22 @@ def greatest_speed(sea: Sea) -> float:
 
 
 def between(row: Sequence[float], k: int, share: float) -> float:
-    """Interpolate a row of `starts` between the uniform currents k and k + 1."""
+    """Interpolate linearly in a row of `starts`, between the uniform currents k and k + 1."""
     return row[k] + share * (row[k + 1] - row[k])
 
 
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
     """Return the approximate knockdown [m] of a line that the current inclines slightly.
 
-    The inclination is the drag on the part above divided by its tension, and the knockdown grows
-    with the square of the inclination. In a uniform current it is thus proportional to the fourth
-    power of the speed.
+    The inclination at a point is the drag on the part above, divided by the tension at the point.
+    The knockdown is proportional to the square of the inclination. In a uniform current the
+    knockdown is thus proportional to the fourth power of the speed.
 
     Parameters
     ----------
-    top, depth : depth of the top of the line, and of the water [m]
-    taut : whether all its buoyancy is in use; otherwise the result is for the cables alone, up to a
-        factor
+    top, depth : depth of the top of the line, and water depth [m]
+    taut : whether all the buoyancy is in use; otherwise the result is for the drag on the cables
+        alone, and correct only up to a constant factor
     """
     length = 0.0
     for i in range(len(course.stages)):

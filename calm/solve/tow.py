@@ -68,7 +68,7 @@ class Towing:
     east, north : velocity of the ship over the ground, to the east and north [m/s]
     height : height of the tow point above the surface [m]
     wind : wind velocity to the east and north [m/s], for the part of the line above water
-    in_air : whether the whole line is in air; the `Water` then describes the air
+    in_air : whether the whole line is in air; the object of class `Water` then describes the air
     """
 
     east: float
@@ -88,21 +88,22 @@ def solve_tow(
     line : the line from the ship to the towed body
     water : water with the current over the ground; its depth is inf if the seabed is ignored
     towing : motion of the ship and height of the tow point
-    settings : angle step, and tolerance as a fraction of the paid-out length; 1° and 1e-7 by
-        default
+    settings : angle step (1° by default), and tolerance as a fraction of the paid-out length (1e-7
+        by default)
 
     Returns
     -------
-    Solution : lists the line from its free end, so that its piece 0 is the last of `line`; x and y
-        are relative to the tow point. Of several equilibria, it is the deepest, which an
-        accelerating ship reaches first. At 1°, errors of positions are at most 5e-5 of the paid-out
-        length, and relative errors of tensions at most 2e-4.
+    Solution : the line is listed from its free end, so that piece 0 of the solution is the last
+        piece of `line`; x and y are relative to the tow point. If there are several equilibria, the
+        result is the deepest, which an accelerating ship reaches first. At an angle step of 1°,
+        errors of positions are at most 5e-5 of the paid-out length, and relative errors of tensions
+        are at most 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        ``above-surface`` if a part would leave the water, ``grounded`` if a part would touch the
-        seabed, ``not-converged`` if no shape passes every check.
+        ``above-surface`` if a part would leave the water; ``grounded`` if a part would touch the
+        seabed; ``not-converged`` if no shape passes every check.
     """
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)

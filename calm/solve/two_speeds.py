@@ -34,7 +34,7 @@ TYPICAL_PARTS = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled separately.
 
-    Its value is the name of the function that is compiled last.
+    The value of a member is the name of the function of this part that is compiled last.
     """
 
     LINE = "run_search"
@@ -77,7 +77,7 @@ _paces = {solver: _Pace(solver) for solver in CompiledPart}
 
 
 def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
-    """Announce the number of lines that are about to be solved."""
+    """Announce a number of lines to be solved, so that compilation can start if it pays."""
     pace = _paces[solver]
     pace.announced = pace.solved + lines
     if _may_choose():
@@ -87,7 +87,7 @@ def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
 def runs_compiled(
     settings: Settings, line: Line | None = None, solver: CompiledPart = CompiledPart.LINE
 ) -> bool:
-    """Return whether the next line is solved by compiled code, and count the line."""
+    """Return whether to solve the next line with compiled code, and count this line."""
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
@@ -99,11 +99,12 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are about to be solved.
+    """Count lines that are about to be solved, which may start compilation of the solver.
 
     Parameters
     ----------
-    work : computing time for these lines, in typical lines; by default their number
+    work : computing time for these lines, in units of the time for a typical line; by default the
+        number of lines
     """
     pace = _paces[solver]
     pace.solved += lines
@@ -113,7 +114,7 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
 
 
 def may_compile() -> bool:
-    """Return whether a function that is compiled at once, for all its uses, may be compiled."""
+    """Return whether a function that belongs to no `CompiledPart` may be compiled on first use."""
     return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
 
 

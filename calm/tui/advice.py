@@ -33,10 +33,10 @@ class Offer:
 
     Attributes
     ----------
-    title : purpose and effect
-    label : name in the history
-    make : function that returns the changed file; it may solve for a value, and raise `CalmError`
-        if the change does not help
+    title : purpose and effect of the change
+    label : name of the change in the history
+    make : function that applies the change to a draft and returns the new draft. The function may
+        solve for a value, and raises `CalmError` if the change does not help.
     """
 
     title: str
@@ -54,14 +54,14 @@ def single(view: View) -> LegResult | None:
 
 
 def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
-    """Suggest changes for the failures and warnings of a line, the most severe first.
+    """Suggest changes that remove failures and warnings of a line, the most severe of them first.
 
-    If the line lacks an anchor or needs a heavier one, it is solved in every situation.
+    If the line has no anchor or needs a heavier anchor, the line is solved in every situation.
 
     Parameters
     ----------
     catalogue : components from which an anchor is chosen
-    catalogs : catalogue files of the user, to read the line in its other environments
+    catalogs : catalogue files of the user, needed to read the line in its other environments
     """
     anchors = [*_anchors(view, catalogue, catalogs)] if _needs_an_anchor(view) else []
     grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
@@ -94,11 +94,12 @@ def _is_of_anchor(finding: Finding) -> bool:
 
 
 def sized(mooring: Design, target: str, change: str) -> Offer:
-    """Suggest the smallest change of a quantity that meets a target.
+    """Return an offer to change a quantity by the smallest amount that meets a target.
 
     Parameters
     ----------
-    target, change : target and quantity, in the syntax of `calm size`
+    target : condition to meet, in the syntax of `calm size`
+    change : quantity to change, in the syntax of `calm size`
 
     Raises
     ------
@@ -253,7 +254,7 @@ def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
 
 
 def differences(before: View, after: View) -> list[str]:
-    """Describe the effects of a change on values and numbers of findings, each as ``from → to``."""
+    """Describe how a change affects values and the number of findings, each as ``from → to``."""
     effects = []
     one, other = single(before), single(after)
     if one is not None and other is not None:

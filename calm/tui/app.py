@@ -38,24 +38,24 @@ class BuildApp(App[int]):
     """The line builder.
 
     Keys, pastes and mouse presses are handled one after the other, so that a screen opened by a key
-    is there before the next key is handled. Otherwise keys typed ahead, or arriving together over a
+    is open before the next key is handled. Otherwise keys typed ahead, or arriving together over a
     slow connection, would go to the widget that has the focus on arrival, such as the line instead
     of the field that the first key opens.
 
-    A key is handled once all message queues that it may have filled are empty. Each widget handles
-    messages in the order of its queue, so a call posted after the key returns when the key is
-    handled. A second round waits for messages that the widgets sent to each other. Rounds are
-    repeated until all queues are empty.
+    A key counts as handled once all message queues that it may have filled are empty. Each widget
+    handles messages in the order of its queue, so a call that is posted after the key is made once
+    the key is handled. A second round waits for messages that the widgets sent to each other.
+    Rounds are repeated until all queues are empty.
 
     Parameters
     ----------
     session : editing session of the file
-    kept : unsaved work of an earlier session, which the user is offered at the start
+    kept : unsaved work of an earlier session; at the start, the user is asked whether to recover it
     environ : environment variables that describe the terminal
 
     Attributes
     ----------
-    not_kept : reason if unsaved work could not be kept at the end, else empty
+    not_kept : reason why unsaved work could not be kept at the end; empty if there was no failure
     has_keys_waiting : whether any key has not been handled yet
     """
 
@@ -149,9 +149,9 @@ class BuildApp(App[int]):
     # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
-        """Return the line screen as the lowest screen.
+        """Return the line screen as the bottom screen of the stack.
 
-        Any screen below it would be painted, too.
+        Textual would also paint any screen below the line screen.
         """
         return self.builder
 
@@ -187,7 +187,11 @@ class BuildApp(App[int]):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return a filter that removes colours, or Textual's filters and one for legibility."""
+        """Return the filters for the lines of the screen.
+
+        If colours are off, a single filter removes them. Otherwise, the filters are those of
+        Textual, followed by a filter that makes text legible.
+        """
         if self.no_color:
             return [_COLOURLESS]
         theme = self.current_theme
@@ -195,12 +199,12 @@ class BuildApp(App[int]):
         return [*super().get_line_filters(), own]
 
     def get_driver_class(self) -> type[Driver]:
-        """Return a driver for this terminal that sends only changed cells."""
+        """Return a driver class for this terminal; the driver sends only changed cells."""
         return self.output.driver_class(super().get_driver_class())
 
     @cached_property
     def output(self) -> TerminalOutput:
-        """What the driver writes to the terminal."""
+        """Output through which the driver writes to the terminal."""
         return TerminalOutput()
 
     def on_cursor_position(self) -> None:
@@ -208,7 +212,7 @@ class BuildApp(App[int]):
         self.output.answered()
 
     def on_resize(self) -> None:
-        """Send the whole screen, since the terminal may have moved its text."""
+        """Send the whole screen, since the terminal may have moved the displayed text."""
         self.output.clear()
 
     def action_repaint(self) -> None:
@@ -229,7 +233,7 @@ class BuildApp(App[int]):
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Accept the value being typed; if it is invalid, show a message and return False."""
+        """Accept the value being typed; if this fails, show a message and return False."""
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def show_replaced_draft(self, message: str) -> None:
@@ -255,7 +259,7 @@ class BuildApp(App[int]):
             self.saving.quit()
 
     def action_command_palette(self) -> None:
-        """Find a command by its name."""
+        """Open the command palette, in which commands are found by name."""
         if not isinstance(self.screen, CommandPalette):
             self.push_screen(palette.Commands(id="--command-palette"))
 
@@ -296,7 +300,7 @@ class BuildApp(App[int]):
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
         """Open the text editor if the draft cannot be parsed.
 
-        With `as_judged`, also open it if the last view has mistakes.
+        With `as_judged`, the editor also opens if the last view has mistakes.
         """
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
@@ -332,7 +336,7 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save unsaved work to its backup copy, and return the reason for a failure, else ""."""
+        """Save unsaved work to its backup copy; return the reason if this fails, otherwise ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -363,7 +367,7 @@ class BuildApp(App[int]):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Save a backup copy unless the user has quit; set `not_kept` if this fails."""
+        """Save a backup copy unless the user has quit; if this fails, `not_kept` is the reason."""
         if not self._is_left:
             self.not_kept = self.keep()
 

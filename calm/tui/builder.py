@@ -62,7 +62,10 @@ class BuilderScreen(ComparingScreen):
         self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
-        """Suspend to the shell; undo instead if a value is being typed or if there is no shell."""
+        """Suspend the builder to the shell.
+
+        If a value is being typed or if there is no shell, undo the last change instead.
+        """
         if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
@@ -80,7 +83,7 @@ class BuilderScreen(ComparingScreen):
         (self.query_one(Picture) if is_zoomed else self.line.table).focus()
 
     def action_next_environment(self) -> None:
-        """Show the line in its next environment."""
+        """Show the line in the next environment of the file."""
         standing = self.session.standing
         if len(standing.environments) == 1:
             self.tell("The file has one environment; add others on the screen of the water (w)")
@@ -98,7 +101,7 @@ class BuilderScreen(ComparingScreen):
         self.verdict.focus()
 
     def action_figures(self) -> None:
-        """Ask for all missing values of components, and write the answers to the file."""
+        """Ask the user for all missing component values, and write the answers to the file."""
         session = self.session
         if not self.settle():
             return
@@ -127,7 +130,7 @@ class BuilderScreen(ComparingScreen):
             self.tell(f"All component values are present so far. {PENDING}")
 
     def action_begin(self) -> None:
-        """Start a mooring from an empty line."""
+        """Start a mooring from a template; the line must be empty."""
         session = self.session
         if session.draft.items:
             self.tell("The line is not empty; templates are for new files")
@@ -232,7 +235,7 @@ class BuilderScreen(ComparingScreen):
         self.workspace.edited()
 
     def action_sheet(self, name: str) -> None:
-        """Edit a group of file-level keys on a sheet."""
+        """Edit a group of top-level keys of the file on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         part = part_of_row(None if view is None else view.file, self.line.table.spot)
         sheet, label, changed = sheet_of(name, session.draft, part)

@@ -68,11 +68,11 @@ class ComponentList(TableCells, can_focus=False):
         by: str | None = None,
         favourites: frozenset[str] = frozenset(),
     ) -> None:
-        """List components, and move the cursor to the first.
+        """List components, and move the cursor to the first component.
 
         Parameters
         ----------
-        found : components in their order
+        found : components to list, in display order
         index : search index of the catalogue
         by : quantity whose column must be visible
         favourites : ids of favourites
@@ -106,7 +106,7 @@ class ComponentList(TableCells, can_focus=False):
         return [*columns, TableColumn("name", "", start, max(width - start, 0))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell: id, value or name.
+        """Return the text of a cell, which is an id, a value or a name.
 
         A name that is too long for the column appears only on the card.
         """
@@ -120,20 +120,23 @@ class ComponentList(TableCells, can_focus=False):
         return figure.shown(figures.get(column.name))
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the signs before a row: cursor, star of a favourite, and role."""
+        """Return the symbols in front of a row for the cursor, a favourite and the role."""
         each: Listed = self.rows[number]
         cursor = theme.CURSOR if number == self.cursor else " "
         star = theme.FAVOURITE if each.id in self._favourites else " "
         return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
-        """Return the style of a row; the row under the cursor is marked even without the focus."""
+        """Return the style of a row; the row under the cursor is always marked."""
         if number != self.cursor:
             return self.rich_style
         return self.rich_style + self.look("component-list--cursor")
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Return the style of a cell; ids and names have their own, values that of the row."""
+        """Return the style of a cell.
+
+        Ids and names have styles of their own; values have the style of the row.
+        """
         look = {"id": "own" if self.rows[number].own else "id", "name": "name"}.get(column.name)
         if look is None:
             return style
@@ -152,15 +155,16 @@ _TITLES = {
 
 
 class CataloguePane(Vertical):
-    """Pane with search field, list and card.
+    """Pane with a search field, the list of components found, and the card of one component.
 
-    It asks for the length of a cable or the position of a clamp.
+    When a cable is added, the pane asks for the length; when a clamp is added, for the position.
 
     Parameters
     ----------
-    workspace : provides the catalogue
-    take : receives the purpose and the keys of the row: `use`, `length`, `at`, `label`
-    close : returns to the line
+    workspace : workspace that provides the catalogue
+    take : function that receives the purpose of the search, and the keys of the row: `use`,
+        `length`, `at` and `label`
+    close : function that returns to the line
     """
 
     BINDINGS = key_table.bindings("catalogue")
@@ -226,13 +230,13 @@ class CataloguePane(Vertical):
     ) -> None:
         """Open the search for a component.
 
-        Favourites come first. Until words are typed, components with the given role, recent
-        components, and components of the line follow.
+        Favourites are listed first. Until the user types words, the favourites are followed by
+        components with the given role, recent components, and components of the line.
 
         Parameters
         ----------
         target : name of the row next to which the component is added; "" in an empty line
-        clampable : whether only components for clamps are listed
+        clampable : whether to list only components that can be clamped on
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)
@@ -282,14 +286,14 @@ class CataloguePane(Vertical):
             card.show(Text(str(error)))
 
     def action_sort(self) -> None:
-        """Sort by the next quantity, or by relevance."""
+        """Sort by the next quantity; after the last quantity, sort by relevance again."""
         keys = [None, *(column.key for column in COLUMNS)]
         self._by = keys[(keys.index(self._by) + 1) % len(keys)]
         self.retitle(self._target)
         self._search()
 
     def action_mark(self) -> None:
-        """Toggle the favourite mark of the component."""
+        """Mark the component under the cursor as a favourite, or remove the mark."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:
@@ -302,13 +306,13 @@ class CataloguePane(Vertical):
             self._search_again()
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor of the list."""
+        """Move the cursor of the list by `by` rows."""
         self.listing.cursor += by
 
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
-        """Add the component to the line, after asking for required values."""
+        """Put the component under the cursor into the line, after asking for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return

@@ -31,7 +31,7 @@ class EditableTable(Vertical):
         self.tell, self.table, self.editor = tell, table, CellEditor(self)
 
     def compose(self) -> ComposeResult:
-        """Yield the rows, and the editor above them."""
+        """Yield the table, and the editor that is drawn over the edited cell."""
         yield self.table
         yield self.editor
 
@@ -44,11 +44,11 @@ class EditableTable(Vertical):
         self.tell(reading.feedback(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Move the cursor after a text was accepted; `text` is None if the value is unchanged."""
+        """Move the cursor after a text is accepted; `text` is None if the value is unchanged."""
         raise NotImplementedError
 
     def abandoned(self) -> None:
-        """React to the cancellation of editing; does nothing by default."""
+        """React when the user cancels editing; by default, do nothing."""
 
     def action_move_column(self, by: int) -> None:
         """Move the cursor to the left or the right."""
@@ -66,9 +66,10 @@ class EditableTable(Vertical):
 
         Parameters
         ----------
-        text, check : initial text, and check of the typed text
+        text : initial text
+        check : function that checks the typed text
         least_width : minimum width of the editor [cells]
-        begun : whether the user has typed the initial text
+        begun : whether the initial text was just typed by the user
         """
         region, editor = self.table.cell_region(), self.editor
         editor.styles.offset = region.offset
@@ -76,7 +77,7 @@ class EditableTable(Vertical):
         editor.open(text, check, begun=begun)
 
     def settle(self) -> bool:
-        """Write the typed text to its cell; return whether it is valid.
+        """Write the typed text to its cell; return whether the text is valid.
 
         An invalid text stays in the editor, with a message.
         """
@@ -105,14 +106,14 @@ class EditableTable(Vertical):
             self.tell("")
 
     def done(self, then: Then) -> None:
-        """Write the typed text, and move the cursor unless the focus is elsewhere."""
+        """Write the typed text, and move the cursor if the editor has the focus."""
         is_here = self.editor.is_here
         text = self._take_typed()
         if is_here:
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Cancel editing, and show why an invalid text was discarded, if a `reason` is given."""
+        """Cancel editing; show the `reason` why an invalid text was discarded, if there is one."""
         self.leave_cell()
         self.abandoned()
         if reason:
@@ -120,7 +121,7 @@ class EditableTable(Vertical):
 
 
 class CellEditor(field.ScrolledEntry):
-    """Input line over a cell, which interprets its text at each key press."""
+    """Input line over a table cell; the typed text is interpreted at each key press."""
 
     BINDINGS = key_table.bindings("cell")
     DEFAULT_CSS = """
@@ -145,13 +146,13 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_here(self) -> bool:
-        """Whether the editor has the focus; `has_focus` is updated too late for this."""
+        """Whether the editor has the focus now; Textual updates `has_focus` with a delay."""
         return self.screen.focused is self
 
     def open(self, text: str, check: Check, *, begun: bool = False) -> None:
         """Open the editor with a text.
 
-        The first key replaces the text; if the user has typed the text (`begun`), it is appended.
+        The first key replaces the text. If the user typed the text (`begun`), the key is appended.
         """
         self._check, self._before = check, "" if begun else text
         self.select_on_focus = not begun
@@ -165,12 +166,12 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_typing(self) -> bool:
-        """Whether the text differs from the previous value."""
+        """Whether the text differs from the previous value of the cell."""
         return self.is_open and self.value != self._before
 
     @property
     def text(self) -> str | None:
-        """Text to write; None if it is unchanged or invalid."""
+        """Text to write to the cell; None if the text is unchanged or invalid."""
         reading = self._check(self.value)
         # an untouched value only gets its unit, no tidying
         is_completed = reading.text.startswith(f"{self.value.strip()} ")
@@ -202,7 +203,7 @@ class CellEditor(field.ScrolledEntry):
             self.correct(reading)
 
     def action_right(self) -> None:
-        """Accept typed text if the cursor is at its end, as in a spreadsheet.
+        """Accept typed text if the cursor is at the end of the text, as in a spreadsheet.
 
         Otherwise move the cursor to the right.
         """
@@ -216,7 +217,7 @@ class CellEditor(field.ScrolledEntry):
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:
-        """Accept a valid value, since the mouse was pressed elsewhere."""
+        """Accept a valid value when the focus moves elsewhere, such as after a mouse press."""
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:

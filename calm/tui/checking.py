@@ -21,9 +21,9 @@ class Reading:
     Attributes
     ----------
     text : text to write, with a missing unit added
-    complaint : reason why the text is invalid; empty if valid
+    complaint : reason why the text is invalid; empty if the text is valid
     offer : corrected text, if known
-    explained : meaning of a valid text, if it is not obvious
+    explained : meaning of a valid text, unless the meaning is obvious
     """
 
     text: str
@@ -38,13 +38,16 @@ class Reading:
 
     @property
     def note(self) -> str:
-        """Error, and the correction if known."""
+        """Reason why the text is invalid, followed by the corrected text if known."""
         if self.offer:
             return f"{self.complaint}: {self.offer}?"
         return self.complaint
 
     def feedback(self, typed: str) -> str:
-        """Return the error in an invalid text, or the meaning of a valid text if not obvious."""
+        """Return the error in an invalid text, or the meaning of a valid text.
+
+        The result is empty if the meaning is obvious.
+        """
         is_completed = self.text and self.text != " ".join(typed.split())
         return self.note or self.explained or (f"= {self.text}" if is_completed else "")
 
@@ -92,7 +95,7 @@ def quantity(
 ) -> Check:
     """Return a check that accepts a quantity.
 
-    A bare number gets the unit `usual_unit`, by default the SI unit.
+    A bare number gets the unit `usual_unit`; the default is the SI unit.
     """
 
     def check(text: str) -> Reading:
@@ -124,7 +127,7 @@ def _refused(
 
 
 def unit_of(text: str) -> str | None:
-    """Return the unit in a text, or None."""
+    """Return the unit in a text, or None if the text has no unit."""
     found = _UNIT.search(text)
     return found[1].strip() if found else None
 
@@ -134,7 +137,7 @@ number = quantity(QuantityField("number"))
 
 
 def count(text: str) -> Reading:
-    """Accept a whole number of pieces, or an empty text for 1."""
+    """Check a number of pieces, which must be whole; an empty text means 1."""
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")
@@ -148,7 +151,7 @@ def count(text: str) -> Reading:
 def distance(before: str = "") -> Check:
     """Return a check for the distance of a clamp from the upper end of its piece.
 
-    The unit of the previous text is added to a bare number.
+    A bare number gets the unit of the previous text, `before`.
     """
     return quantity(LENGTH, usual_unit=unit_of(before))
 
@@ -157,8 +160,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
     The text is a length, a length with the load at which it was measured (``98 m at 2 kN``), or
-    ``fit`` with the depth to reach. `before` is the previous text, whose unit is added to a bare
-    number.
+    ``fit`` with the depth to reach. A bare number gets the unit of the previous text, `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
@@ -189,7 +191,7 @@ def _joined(long: Reading, load: Reading) -> Reading:
 
 
 def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Value | None]:
-    """Convert a text accepted by `length` to keys of an item; None deletes a key."""
+    """Convert a text accepted by `length` to new values of item keys; None deletes a key."""
     key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
     fit, measured = _FIT.fullmatch(text), _AT_LOAD.fullmatch(text)
     if fit is not None:

@@ -32,7 +32,7 @@ _DOCUMENTS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 class ComparingScreen(line_screen.LineScreen):
     """Part of the main screen that compares the line with the saved file and with proposed changes.
 
-    Lines are judged in a thread; a question or a message shows the outcome.
+    The lines are solved and checked in a thread; a question or a message shows the outcome.
     """
 
     def action_compare(self) -> None:
@@ -227,7 +227,10 @@ class ComparingScreen(line_screen.LineScreen):
 
 
 def changed_lines(before: str, after: str) -> list[str]:
-    """Return the first lines that differ between two texts, ``-`` removed and ``+`` added."""
+    """Return the first lines that differ between two texts.
+
+    Removed lines begin with ``-``, added lines with ``+``.
+    """
     diff = unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
     lines = [line for line in diff if not line.startswith(("---", "+++", "@@"))]
     more = len(lines) - _MOST_LINES

@@ -25,13 +25,16 @@ Defined = tuple[str, dict[str, str]]
 
 
 class ComponentScreen(dialogs.Form[Defined]):
-    """Screen that returns the id and the values of a component, or None if cancelled.
+    """Screen to define or change a component.
+
+    The screen returns the id and the values of the component, or None if the user cancels.
 
     Parameters
     ----------
-    listed : ids of the catalogue, which a component of the same id overrides
-    own : ids that the file defines already, which cannot be used again
-    begun : id and all keys of a component to be changed
+    listed : ids in the catalogue; a component defined in the file overrides the catalogue component
+        with the same id
+    own : ids that the file already defines, which cannot be used again
+    begun : id and all keys of the component to change; None for a new component
     """
 
     BINDINGS = key_table.bindings("form")

@@ -42,7 +42,7 @@ Then = Callable[[], object]
 def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
     """Open a screen on top of other screens.
 
-    Call `take` with its result, unless it is cancelled.
+    `take` is called with the result of the screen, unless the screen is cancelled.
     """
 
     def taken(given: T | None) -> None:
@@ -78,7 +78,7 @@ class Answer:
 
 
 def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
-    """Create answers whose keys are the numbers from 1, from pairs of title and action."""
+    """Create answers from pairs of title and action, with keys numbered from 1."""
     return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
@@ -133,7 +133,7 @@ class Question(ModalScreen[Then | None]):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Mark the answer above or below."""
+        """Move the mark to the answer above or below."""
         if self._marked is None:
             self._marked = 0 if by > 0 else len(self._answers) - 1
         else:
@@ -175,7 +175,7 @@ class Form(Screen[T | None]):
 
     @property
     def texts(self) -> dict[str, str]:
-        """Entered texts by key."""
+        """Entered texts, by key of the field."""
         return {part.key: part.text for part in self.all_parts}
 
     def parts_of(self, fields: Iterable[FormField]) -> Iterator[Widget]:
@@ -215,7 +215,7 @@ _TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ g
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
-    """Sheet with several text fields, which Esc discards.
+    """Sheet with several text fields; Esc closes the sheet and discards the texts.
 
     The sheet is wide if there are notes next to the fields.
     """
@@ -286,7 +286,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
 
 class LongText(ModalScreen[None]):
-    """Scrollable text over the screen; `wide` gives room for tables."""
+    """Screen with a long text that can be scrolled; `wide` gives room for tables."""
 
     BINDINGS = key_table.bindings("help")
     DEFAULT_CSS = (

@@ -23,7 +23,7 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Text input that ignores pasted text of several lines, which its container handles."""
+    """Text input that leaves pasted text of several lines to its container."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
@@ -48,24 +48,24 @@ class Part(Protocol):
 
     @property
     def key(self) -> str:
-        """Key in the file."""
+        """Key that this part edits in the file."""
 
     @property
     def text(self) -> str:
-        """Entered text in the form of the file."""
+        """Entered text, as it is written to the file."""
 
     @property
     def input(self) -> Widget:
         """Widget that receives key presses."""
 
     def settle(self) -> bool:
-        """Accept the typed text; return whether it is valid."""
+        """Accept the typed text; return whether the text is valid."""
 
 
 def all_settled(fields: Iterable[Part]) -> bool:
-    """Accept the texts of all parts; return whether all are valid.
+    """Accept the texts of all parts; return whether all texts are valid.
 
-    If not, the first invalid part gets the focus.
+    If a text is invalid, the first part with an invalid text gets the focus.
     """
     wrong = [field for field in fields if not field.settle()]
     if wrong:
@@ -79,9 +79,9 @@ class Field(Horizontal):
     Only the input is a widget of its own, because each widget in a form of dozens of fields takes
     time to start. The field draws the name and the note into the margins of the input.
 
-    The field posts `Committed` when the user leaves it, by Enter or by focus, with a valid text
-    that differs from the initial text. An invalid text stays in the field, marked, and is not
-    committed.
+    When the user presses Enter or leaves the field, the field posts `Committed` if its text is
+    valid and differs from the initial text. An invalid text stays in the field, is marked, and is
+    not committed.
     """
 
     SCOPED_CSS = False  # styles depend on the width of the screen
@@ -148,7 +148,7 @@ class Field(Horizontal):
 
     @property
     def text(self) -> str:
-        """Typed text in the form of the file, or the initial text if unchanged."""
+        """Typed text as it is written to the file, or the initial text if unchanged."""
         return self.reading.text if self.is_typing else self.begun
 
     @property
@@ -157,20 +157,23 @@ class Field(Horizontal):
         return self.check(self.input.value)
 
     def reset(self, text: str) -> None:
-        """Set another initial text."""
+        """Set and show another initial text."""
         self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
         self._tell(Reading(text))
 
     def tell(self, note: str) -> None:
-        """Show another note, unless the text is invalid; "" shows the description of the field."""
+        """Replace the note; "" restores the description of the field.
+
+        While the text is invalid, the error is shown instead of the note.
+        """
         self._note = note or self.form_field.takes
         if not self.has_class("-wrong"):
             self._show_note(self._note)
 
     def note(self, reading: Reading) -> str:
-        """Return the error or completion of the typed text, else the description of the field."""
+        """Return the error or completion of the typed text, or else the note of the field."""
         return reading.feedback(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:
@@ -196,14 +199,14 @@ class Field(Horizontal):
             self.post_message(self.Entered(self))
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Accept a valid text when the focus leaves."""
+        """Accept a valid text when the focus leaves the field."""
         if self.reading.is_good:
             self.settle()
 
     def settle(self) -> bool:
         """Accept a valid text; return whether the text is valid.
 
-        For an invalid text, the suggested correction is inserted, if any.
+        If the text is invalid and a correction is known, the correction is inserted.
         """
         reading = self.reading
         if not reading.is_good:
@@ -221,7 +224,7 @@ class Field(Horizontal):
 
 
 class Cycle(Widget, can_focus=True):
-    """Selector of one word from a list, by two arrows."""
+    """Selector with two arrows that step through a list of words."""
 
     BINDINGS = bindings("choice")
     DEFAULT_CSS = """
@@ -249,7 +252,7 @@ class Cycle(Widget, can_focus=True):
 
     @property
     def hint(self) -> str:
-        """Keys of this widget."""
+        """Text that names the keys of this widget."""
         return "← → another, ↑ ↓ go on"
 
     def show(self, word: str) -> None:
@@ -258,7 +261,7 @@ class Cycle(Widget, can_focus=True):
         self.refresh()
 
     def next_word(self, by: int) -> str:
-        """Return the word `by` places after the selected one; the list is circular."""
+        """Return the word `by` places after the selected word; the list is circular."""
         here = self.words.index(self.word) if self.word in self.words else 0
         return self.words[(here + by) % len(self.words)]
 

@@ -29,7 +29,7 @@ _EXAMPLE = re.compile(r",? ?e\.g\. [^;]+;? ?")
 class FormColumn:
     """Column of a table in a form.
 
-    `key` is the key of its values in each row, or "" if the rows are lists.
+    `key` is the key of the column in each row, or "" if the rows are lists.
     """
 
     key: str
@@ -43,11 +43,12 @@ class FormField:
 
     Attributes
     ----------
-    key : name; for a key of the file, its path, such as `position.latitude`
-    takes : description next to the field
+    key : name of the field; if the field edits a key of the file, the path of the key, such as
+        `position.latitude`
+    takes : description shown next to the field
     above : heading of a group that begins with this field
-    columns : columns, if the field is a table, whose rows are in the text
-    is_needed : whether its model requires it
+    columns : table columns, if the field is a table; `text` then contains the rows
+    is_needed : whether the model requires this key
     """
 
     key: str
@@ -67,7 +68,7 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
     Parameters
     ----------
     at : path of the model in the file, such as `deployed.`
-    needed : whether the model is required; otherwise its required keys may be blank
+    needed : whether the model is required; if not, required keys of the model may be blank
     """
     model.model_rebuild()  # resolves forward references
     own: list[FormField] = []
@@ -85,7 +86,7 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
 def model_in(annotation: Any) -> type[BaseModel] | None:
     """Return the model in a type annotation.
 
-    Return None if there is no model, or a choice between several types.
+    Return None if there is no model, or if the annotation allows several types.
     """
     members = _members(annotation)
     return members[0] if len(members) == 1 and _is_model(members[0]) else None
@@ -181,7 +182,7 @@ def _as_texts(value: Any) -> Value:
 def text_of(value: Value | None) -> str:
     """Convert a value to the text that the user would type.
 
-    A text stays unchanged, any other value becomes inline YAML.
+    A string stays unchanged; any other value becomes inline YAML.
     """
     return value or "" if isinstance(value, str | None) else inline(value)
 
@@ -193,7 +194,7 @@ def value_of(text: str) -> Value | None:
 
 
 def rows_of(text: str, columns: Sequence[FormColumn]) -> Rows | None:
-    """Parse a text to table rows; None if the text does not fit the columns."""
+    """Parse a text into table rows; return None if the text does not fit the columns."""
     return rows_in(value_of(text), columns)
 
 
@@ -215,7 +216,7 @@ def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
 
 
 def text_of_rows(rows: Iterable[Sequence[str]], columns: Sequence[FormColumn]) -> str:
-    """Convert table rows to text, without empty rows."""
+    """Convert table rows to text; empty rows are omitted."""
     return text_of([_row(row, columns) for row in rows if any(row)])
 
 
@@ -227,7 +228,7 @@ def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
 
 
 def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
-    """Return form fields with the values of the file as texts."""
+    """Return copies of form fields, filled with the values in the file as texts."""
 
     def at(key: str) -> Any:
         found = values
@@ -239,7 +240,7 @@ def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
 
 
 def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
-    """Return the values of a form, nested as in the model, without blank values."""
+    """Return the values entered in a form, nested as in the model; blank values are omitted."""
     values: dict[str, Any] = {}
     for place, text in texts.items():
         *outer, key = place.split(".")
@@ -254,7 +255,7 @@ def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
 def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
     """Write the texts of a form to the file, and return the changed draft.
 
-    A blank text deletes its key.
+    A key is deleted if its text is blank.
     """
     for key, text in texts.items():
         place = (*below, *key.split("."))

@@ -24,13 +24,14 @@ class Action:
 
     Attributes
     ----------
-    place : the focused widget, or the screen, on which its keys work
+    place : widget or screen in which the keys work
     name : name of the method, without ``action_``, with its arguments
     keys : keys in Textual's notation, separated by commas; the first is displayed
     title : two or three words, for the palette and the key bar
     meaning : a sentence for the help
-    hint : rank in the key bar, from 0; None if it is not shown there
-    palette : whether the command palette lists it (actions of the line and of the main screen)
+    hint : rank in the key bar, from 0; None if the key bar does not show the action
+    palette : whether the command palette lists the action; only actions of the line and of the main
+        screen can be listed
     """
 
     place: str

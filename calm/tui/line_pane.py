@@ -33,7 +33,7 @@ class LinePane(LineSearch):
 
     Parameters
     ----------
-    search : opens the catalogue to find a component for the row under the cursor
+    search : function that opens the catalogue to find a component for the row under the cursor
     """
 
     BINDINGS = bindings("line")
@@ -46,11 +46,14 @@ class LinePane(LineSearch):
         self._cell: LineCell | None = None  # the cell edited now or last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable actions on rows while a value is typed or if the line is empty."""
+        """Disable all actions while a value is typed, and actions on rows if the line is empty."""
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the rows of the draft, with values from the last view that fits."""
+        """Show the rows of the draft, with the results or mistakes in the last view.
+
+        If the last view has neither, the results are those of the last view with an equilibrium.
+        """
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()
         figures = view if view is not None and (view.rows or view.problems) else workspace.good
@@ -95,7 +98,7 @@ class LinePane(LineSearch):
         self.table.cursor = 0 if direction < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
-        """Toggle the mark of the row, or extend the marks and move on."""
+        """Toggle the mark of the row if `by` is 0; otherwise move `by` rows and mark both rows."""
         table = self.table
         marked, spot = table.marked, table.chosen_here
         table.cursor += by
@@ -109,7 +112,10 @@ class LinePane(LineSearch):
     # findings
 
     def action_next_finding(self) -> None:
-        """Move to the next row with a failure, else with a warning, else with a missing value."""
+        """Move to the next row with a failure.
+
+        If no row has a failure, move to the next warning, or else to the next missing value.
+        """
         rows, here = self.table.rows, self.table.cursor
         around = [*range(here + 1, len(rows)), *range(here + 1)]
         for state in (State.FAIL, State.WARN, State.UNKNOWN):
@@ -163,7 +169,7 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Edit one column of the marked rows, or of all rows with the component of this row."""
+        """Edit one column of the marked rows, or of all rows with the same component."""
         table = self.table
         spots = table.chosen
         if not table.marked:
@@ -304,7 +310,7 @@ class LinePane(LineSearch):
             self._show_edited()
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Move the cursor to the next value of the row, or to another row."""
+        """Move the cursor to the next value of the row, or to another row, as `then` requests."""
         onward = self._cell.onward() if self._cell and then == "edit next" else None
         if onward is not None:
             self._edit(onward)

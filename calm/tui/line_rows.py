@@ -43,8 +43,9 @@ def table_rows(
 ) -> list[TableRow]:
     """Return the rows of the line table, one for each item and clamp.
 
-    An item of several pieces shows their governing values. If the view belongs to an earlier text,
-    its values are shown in rows of equal name, except in the rows `added` since.
+    An item of several pieces shows, in each column, the least favourable value of these pieces. If
+    the view belongs to an earlier text, its values are shown in rows with the same component and
+    label, but not in the rows `added` since then.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
@@ -151,7 +152,7 @@ _NO_LENGTH = "The component determines the length"
 
 @dataclass(frozen=True)
 class LineCell:
-    """Editable value of a row in the file of a workspace."""
+    """Cell of the line table, whose value can be edited in the file of a workspace."""
 
     workspace: Workspace
     spot: Place
@@ -160,7 +161,7 @@ class LineCell:
 
     @property
     def listed(self) -> Listed | None:
-        """Component of the row, or None if the catalogue is not loaded or lacks it."""
+        """Catalogue entry for the component of the row; None if there is no entry or catalogue."""
         index = self.workspace.index
         return None if index is None else index.get(self._values.get("use", ""))
 
@@ -176,7 +177,7 @@ class LineCell:
 
     @property
     def text(self) -> str:
-        """Text at the start of editing."""
+        """Text of the cell at the start of editing."""
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":
@@ -185,7 +186,7 @@ class LineCell:
 
     @property
     def check(self) -> Check:
-        """Check of a typed text."""
+        """Function that checks a typed text."""
         if self.column != "length":
             return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
@@ -193,7 +194,7 @@ class LineCell:
         return length(self._values.get("length", ""), towed=self._is_towed)
 
     def put(self, text: str) -> None:
-        """Write a valid text to the file, unless it is unchanged.
+        """Write a valid text to the file, unless the text is unchanged.
 
         Raises
         ------
@@ -221,7 +222,7 @@ class LineCell:
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
     def onward(self) -> LineCell | None:
-        """Return the next editable cell of the row, or None."""
+        """Return the next editable cell of the row, or None after the last editable cell."""
         for column in EDITABLE[EDITABLE.index(self.column) + 1 :]:
             cell = LineCell(self.workspace, self.spot, column)
             if not cell.refused:

@@ -55,7 +55,10 @@ class LineScreen(screen.DraftScreen):
         self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
-        """Yield the line, and the picture and verdict, which the catalogue may replace."""
+        """Yield the line, the catalogue, and the pictures with the verdict.
+
+        Beside the line, either the catalogue or the pictures with the verdict are visible.
+        """
         with Horizontal(id="body"):
             yield self.line
             yield self.catalogue
@@ -79,7 +82,7 @@ class LineScreen(screen.DraftScreen):
         self.show_title()
 
     def show_view(self) -> None:
-        """Show the last view, dimmed if it belongs to an earlier draft."""
+        """Show the last view, dimmed if the view belongs to an earlier draft."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_side_panes()
@@ -103,7 +106,11 @@ class LineScreen(screen.DraftScreen):
         self.verdict.set_class(self.workspace.is_old, "-old")
 
     def titles(self) -> tuple[str, str]:
-        """Return name and file with unsaved changes, and environment with verdict."""
+        """Return the texts at the left and the right end of the title bar.
+
+        The left text names the file and the mooring. The right text gives the environment and the
+        verdict.
+        """
         name = " ".join(self.session.draft.text_at(("name",)).split())
         standing, parts = self.session.standing, []
         here = standing.environment
@@ -126,7 +133,7 @@ class LineScreen(screen.DraftScreen):
         table.focus()
 
     def action_back(self) -> None:
-        """Return to the verdict, if the cursor was moved from there."""
+        """Return to the verdict, if the user came to the row from the verdict."""
         if self._came_from_verdict:
             self._came_from_verdict = False
             self.add_class("-reading")

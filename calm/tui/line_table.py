@@ -96,17 +96,17 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def spot(self) -> Place | None:
-        """Position in the line of the row under the cursor; None in an empty line."""
+        """Position of the row under the cursor; None if the line is empty."""
         return self.row.spot if self.row else None
 
     @property
     def chosen_here(self) -> Place:
-        """Position in the line of the row under the cursor, in a line that is not empty."""
+        """Position of the row under the cursor; the line must not be empty."""
         return self.rows[self.cursor].spot
 
     @property
     def chosen(self) -> tuple[Place, ...]:
-        """Positions of the marked rows, else of the row under the cursor."""
+        """Positions of the marked rows, or of the row under the cursor if no row is marked."""
         if self.marked:
             return tuple(row.spot for row in self.rows if row.spot in self.marked)
         return (self.spot,) if self.spot else ()
@@ -126,7 +126,7 @@ class LineTable(TableCells, can_focus=True):
                 self.follow()
 
     def mark(self, spots: frozenset[Place]) -> None:
-        """Mark these rows only."""
+        """Mark the given rows, and no others."""
         self.marked = spots
         self.refresh()
 
@@ -147,7 +147,10 @@ class LineTable(TableCells, can_focus=True):
         return self.rows[number].texts.get(column.name, "")
 
     def row_style(self, number: int) -> Style:
-        """Return the style of a row, which marks a clamp, the cursor, a mistake or a selection."""
+        """Return the style of a row.
+
+        The style shows whether the row is a clamp, under the cursor, wrong or marked.
+        """
         row = self.rows[number]
         base = "line-table--clamp" if row.spot.is_clamp else "line-table--row"
         style = self.get_component_rich_style(base)
@@ -167,7 +170,7 @@ class LineTable(TableCells, can_focus=True):
         return style
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the signs before a row: cursor, mark or state, and kind."""
+        """Return the symbols in front of a row: cursor, mark or state, and role."""
         row = self.rows[number]
         sign = Segment(" ", style)
         if row.spot in self.marked:
@@ -205,9 +208,9 @@ class TableRow:
     Attributes
     ----------
     spot : position in the line
-    sign : sign of the kind
-    texts : texts by name of the column
-    state : most severe state of its findings
+    sign : symbol for the role of the component
+    texts : text of each cell, by column name
+    state : most severe state of the findings on the row
     wrong : whether the component is unknown
     """
 
@@ -227,14 +230,15 @@ def layout_for(
     *,
     planned: bool = False,
 ) -> tuple[TableColumn, ...]:
-    """Return the columns that fit a width; a narrow table omits the least important ones.
+    """Return the columns that fit a width; a narrow table omits the least important columns.
 
     Parameters
     ----------
     width : width of the table [cells]
-    component, label : width of the longest text in these columns, which share the remaining width
-    length : width of the longest length
-    leg : width of the longest name of a leg in a net; 0 for a single line
+    component, label : width of the longest text in the column [cells]; the two columns share the
+        width that the other columns leave
+    length : width of the longest text in the length column [cells]
+    leg : width of the longest name of a leg in a net [cells]; 0 for a single line
     planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
@@ -280,7 +284,7 @@ def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
 
 
 class LineSearch(cell_editor.EditableTable):
-    """Search commands of the line table, which move the cursor and report the match."""
+    """Search commands of the line table; each moves the cursor to a row and reports the match."""
 
     table: LineTable
     workspace: Workspace
@@ -298,7 +302,7 @@ class LineSearch(cell_editor.EditableTable):
         dialogs.enter(self.app, "Find in the line", "", fields, take)
 
     def action_find_next(self, by: int) -> None:
-        """Move to the next or previous row whose id, label, serial or maker contains all words."""
+        """Move to the next or previous row whose id, label, serial and maker contain all words."""
         wanted = self.words.casefold().split()
         if not wanted:
             self.workspace.tell("/ finds words in the line first")

@@ -45,26 +45,26 @@ UNNAMED = "unnamed.yaml"
 
 @dataclass(frozen=True)
 class View:
-    """Results and mistakes of a text.
+    """Results and mistakes found in the text of a mooring or tow file.
 
     Attributes
     ----------
-    text, path, environment : the judged text, its path and its environment
-    problems : mistakes in the text; if there are any, it has no solution
+    text, path, environment : text that was checked, path of its file, and environment used
+    problems : mistakes in the text; a text with mistakes has no solution
     missing : names of missing parts of the line
-    file : the file as read; None if it has mistakes, or if a part other than an anchor or a float
-        is missing. A line without an anchor is solved with an anchor that holds any load.
+    file : the parsed file; None if the text has mistakes, or if a part other than an anchor or a
+        float is missing. A line without an anchor is solved with an anchor that holds any load.
     result : the solution, or None
-    failure : the reason if there is no solution
-    findings : findings of the design check; none for a tow
-    tighter : findings of the same severity, but with a higher utilisation in another situation
+    failure : reason why the line has no equilibrium, or None
+    findings : findings of the design check; empty for a tow
+    tighter : findings in other situations, with a higher utilisation than in `findings`
     environments : names of the environments besides the default environment
-    rows : results in the order of the file, clamps below their piece
-    complete : whether these are all findings of `calm check`, see `judge_fully`; true for a tow,
-        which has no findings
-    cases : results in each environment, after the full check
+    rows : results of all rows in file order; each piece is followed by its clamps
+    complete : whether the findings are all those of `calm check` (see `judge_fully`); also true for
+        a solved tow, which has no findings
+    cases : results in each environment; empty before the full check
     elsewhere : mistakes in other environments
-    held : for a line without an anchor, its solutions in every environment and situation
+    held : solutions of a line without an anchor in every environment and situation
     memory : previous solutions, which are reused for the next text
     """
 
@@ -92,12 +92,12 @@ class View:
 
     @cached_property
     def items(self) -> tuple[editing.LineItem, ...]:
-        """Items of the line in the text."""
+        """Items of the line that the text describes."""
         return editing.Draft(self.text).items
 
     @property
     def here(self) -> str:
-        """Name of the current environment, as in the findings."""
+        """Name of the current environment, as used in the findings."""
         return OWN if self.file is None else self.file.environment.name or OWN
 
     @property
@@ -113,22 +113,24 @@ def judge(
     catalogs: Sequence[str | Path] = (),
     keep: View | None = None,
 ) -> View:
-    """Solve a text, and apply the design rules to the line in equilibrium.
+    """Solve the line that a text describes, and apply the design rules to its equilibrium.
 
-    This may be called in any thread.
+    The function may be called in any thread.
 
     Parameters
     ----------
     text : text of a mooring or tow file
-    path : path of its file, for relative file names; None without a file
-    environment : one of its `environments`, or an environment file
+    path : path of the file, needed to resolve relative file names; None if there is no file
+    environment : name of an environment in the file, or path of an environment file; None for the
+        default environment
     catalogs : catalogue files of the user
-    keep : an earlier view of the same file, whose solutions are reused if unchanged
+    keep : an earlier view of the same file; its solutions are reused if they still apply
 
     Returns
     -------
-    View : with the results of `calm run` and the findings of `calm check` for the situation as
-        given. No text raises an exception.
+    View
+        The results of `calm run` and the findings of `calm check` for the situation as given. No
+        exception is raised, whatever the text contains.
     """
     memory = Memory() if keep is None else keep.memory
     view = View(text, _placed(path), environment, memory=memory)
@@ -148,9 +150,9 @@ def _placed(path: str | Path | None) -> Path:
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     """Return a view with the complete findings of `calm check`.
 
-    They cover every environment and situation, waves, launch, recovery and breaks. A tow, or a line
-    without equilibrium, is returned unchanged. A line without an anchor is only solved in every
-    environment and situation.
+    The check covers every environment and situation, waves, launch, recovery and breaks. For a tow
+    or a line without equilibrium, the view is returned unchanged. A line without an anchor is
+    solved in every environment and situation, but not checked.
     """
     if view.complete or view.result is None or view.result.towed:
         return view
@@ -171,7 +173,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 class HeldLine:
     """A line solved in one environment and situation, with an anchor that holds any load.
 
-    `when` names the environment and the situation, unless they are those of the view.
+    `when` names the environment and the situation if they differ from those of the view.
     """
 
     when: str
@@ -180,14 +182,14 @@ class HeldLine:
     def needed(self, anchor: Anchor) -> float:
         """Return the weight in water that a given anchor must have in this situation [N].
 
-        It depends on the friction coefficient of the anchor.
+        This weight depends on the friction coefficient of the anchor.
         """
         load, file = self.result.anchor_load, _anchored_by(self.result.file, anchor)
         factor = file.checks.anchor_factor
         return float(required_weight(load.vertical, load.horizontal, factor, file.anchor_friction))
 
     def weight(self, anchor: Anchor) -> float:
-        """Return the weight of a given anchor and its clamps in this water [N]."""
+        """Return the weight in water of a given anchor and its clamps, in this environment [N]."""
         leg = self.result.leg
         return Leg(_anchored_by(leg.file, anchor), given_water=leg.water).anchor_weight
 
@@ -235,7 +237,7 @@ def in_all_environments(
 ) -> tuple[list[Design], list[Problem]]:
     """Return a mooring in each environment, and mistakes in environments that cannot be read.
 
-    The lengths are those cut for the environment `here`.
+    In each environment, the pieces have the lengths to which they are cut in the design `here`.
     """
     found: list[Design] = []
     problems: list[Problem] = []
@@ -317,17 +319,17 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 
 @dataclass(frozen=True)
 class FoundRow:
-    """Results of a piece, or of an instrument clamped on the piece above.
+    """Results of a piece, or of an instrument that is clamped to a piece.
 
     Attributes
     ----------
-    place : position in the line as read
-    label : label in results
-    length : cut length [m]; None for a clamp, and for a `fit` until it is solved
-    figures : values of the builder's columns by name; empty without a solution
-    use : maximum utilisation of its findings, or None if unknown
-    state : most severe state of its findings, or None without findings
-    lacks_strength : whether a strength value is missing
+    place : position of the piece or instrument in the parsed file
+    label : label of the piece or instrument in results
+    length : cut length [m]; None for a clamp, and for a fitted length that is not solved yet
+    figures : values in the columns of the builder, by column name; empty if there is no solution
+    use : maximum utilisation in the findings on the row, or None if unknown
+    state : most severe state of the findings on the row, or None if there are no findings
+    lacks_strength : whether a value needed for the strength rule is missing
     """
 
     place: Place

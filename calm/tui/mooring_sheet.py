@@ -58,7 +58,7 @@ def settings() -> list[str]:
 
 
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
-    """Create a sheet with the values in the file.
+    """Create a sheet with the values in the file, and return it as a `Sheet`.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the piece or clamp of a row; None if it is unknown or if there are several pieces."""
+    """Return the only piece or clamp of a row; None if the row has several or none."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -159,7 +159,7 @@ def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check the serial numbers of a row, separated by commas."""
+    """Check a text that contains the serial numbers of a row, separated by commas."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
@@ -181,9 +181,9 @@ def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) 
 def entered(
     draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
 ) -> Draft:
-    """Return the file with texts written to an entry of a list (see `entry_text`).
+    """Write texts to an entry of a list in the file (see `entry_text`); return the new draft.
 
-    A missing entry is added; an entry left with only its identifying key is deleted.
+    A missing entry is added. An entry that has only its identifying key left is deleted.
     """
     changed = {
         key: text for key, text in texts.items() if text != entry_text(draft, rows, called, key)
@@ -216,7 +216,7 @@ def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> Input
 
     Parameters
     ----------
-    complete : whether all rules have been judged; otherwise more values may be needed
+    complete : whether all rules have been checked; if not, more values may be needed
     """
     form_fields: list[FormField] = []
     notes = [] if complete else [PENDING]
@@ -241,10 +241,11 @@ class Missing:
     ----------
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file by key: the definition, if the file has it, else every row that
-        lacks the value (for parts of an assembly, the row of the assembly); empty if the row cannot
-        take the value
-    estimates : estimates for the class of component by key, without source
+    targets : locations in the file to which each missing value is written, by key. If the file
+        defines the component, the location is the definition. Otherwise the locations are all rows
+        that lack the value or, for a part of an assembly, the row of the assembly. There is no
+        location if the row cannot take the value.
+    estimates : estimates for the class of component, by key, as texts without their source
     """
 
     use: str
@@ -255,7 +256,7 @@ class Missing:
 
     @property
     def called(self) -> str:
-        """Name of the component, followed by labels of rows that lack a value."""
+        """Id of the component, followed by the labels of the parts that lack a value."""
         from calm.report.check_tables import named
 
         labels = named(self.labels)
@@ -268,7 +269,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the missing component values that make findings unknown, in the order of the line."""
+    """Return the missing component values that the findings need, in the order of the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
@@ -305,7 +306,7 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 def with_figures(
     draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
 ) -> Draft:
-    """Return the file with the entered component values.
+    """Write the entered component values to the file, and return the new draft.
 
     Parameters
     ----------
@@ -316,7 +317,7 @@ def with_figures(
     Raises
     ------
     EditError
-        The file does not allow it.
+        The file does not allow the change.
     """
     for each in missing:
         for key, targets in each.targets.items():

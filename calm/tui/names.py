@@ -30,7 +30,7 @@ class Named:
 def named_in(draft: Draft) -> Iterator[Named]:
     """Yield all references to labels in a file.
 
-    They occur in accepted findings, deployed items and profiler stops.
+    References occur in accepted findings, deployed items and profiler stops.
     """
 
     def within(*location: str | int) -> Iterator[tuple[yaml_document.Location, Any]]:
@@ -75,7 +75,7 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
     """Update the references to labels after an edit.
 
-    Return the draft, and messages on the updates.
+    Return the updated draft, and messages about the updates.
 
     Parameters
     ----------
@@ -125,15 +125,15 @@ def _new_reference(
 
 
 def references_to(draft: Draft, place: Place) -> list[Named]:
-    """Return the references that match only this row.
+    """Return the references to the label of a row with a single piece.
 
-    If the row is copied, they may be extended to the copy.
+    If the row is copied, these references may be extended to the copy.
     """
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 
 def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
-    """Extend acceptances of single pieces to all pieces of the same base name."""
+    """Extend accepted findings from single pieces to all pieces with the same base name."""
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):
             draft = draft.put_at(each.location, f"{each.text} *")
@@ -161,7 +161,7 @@ class EnvironmentChoice:
 
     @property
     def environment(self) -> str | None:
-        """Current environment, which is the default if the chosen one is no longer in the file."""
+        """Chosen environment, or None (the default) if the file no longer has that environment."""
         return None if self.lost_environment else self._environment
 
     @environment.setter
@@ -170,13 +170,13 @@ class EnvironmentChoice:
 
     @property
     def lost_environment(self) -> str | None:
-        """The chosen environment if a readable file lacks it, else None."""
+        """Chosen environment if the file can be read but no longer has it; otherwise None."""
         here = self._environment
         is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here
 
     @property
     def next_environment(self) -> str | None:
-        """Environment after the current one; the default follows the last."""
+        """Environment that follows the current one; the last is followed by the default."""
         names, here = self.environments, self.environment
         return names[(names.index(here) + 1) % len(names)] if here in names else None

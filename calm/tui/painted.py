@@ -73,7 +73,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells in a text for the terminal; return the parts to be sent at once."""
+        """Store the cells that a text contains; return the rest of it, to be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -113,7 +113,7 @@ class Painted:
         self._at = y, x + len(cells)
 
     def changes(self) -> str:
-        """Return the output that updates the terminal, and treat it as displayed."""
+        """Return the output that updates the terminal, and treat the new cells as displayed."""
         pen, sent, shown = _Pen(), [], self._shown
         shown += ([] for _ in range(len(self._wanted) - len(shown)))
         for y in sorted(self._touched):
@@ -134,7 +134,7 @@ class Painted:
 
 
 class Pace:
-    """Flow control, by which each frame waits until the terminal has displayed the previous frame.
+    """Flow control that delays each frame until the terminal has displayed the previous frame.
 
     After each frame, the cursor position is requested; the answer shows that the frame is
     displayed. Over a slow connection, several frames thus merge into one. If the terminal has never
@@ -179,11 +179,11 @@ class TerminalOutput:
         self._lock = RLock()  # the thread that reads the keyboard also switches modes
 
     def driver_class(self, terminal: type[Driver]) -> type[Driver]:
-        """Return a driver class for a terminal that writes through this output."""
+        """Return a subclass of the driver class `terminal`, which writes through this output."""
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
-        """Store the cells that a text contains, and send everything else at once."""
+        """Store the cells that a text contains, and send the rest of the text at once."""
         with self._lock:
             self._send = send
             if at_once := self._painted.take(text):
@@ -211,7 +211,7 @@ class TerminalOutput:
             self.send_frame()
 
     def clear(self) -> None:
-        """Discard all cells, at the end or after the terminal has changed its size."""
+        """Discard all cells, when the application ends or the terminal has changed its size."""
         with self._lock:
             self._painted.clear()
             if self._late is not None:

@@ -11,7 +11,7 @@ from calm.tui.line_pane import LinePane
 
 
 class Commands(CommandPalette):
-    """Command palette of Textual, for terminals of any height."""
+    """Command palette of Textual, adapted to terminals of any height."""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Disable the page keys if the list has no visible line."""

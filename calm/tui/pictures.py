@@ -54,7 +54,7 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         self.draw_again()
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the picture for a size; a schematic that is larger scrolls."""
+        """Draw the picture for a given size; a schematic larger than this size can be scrolled."""
         rows = self._picture(size)
         widest = max((row.cell_len for row in rows), default=0)
         self.virtual_size = Size(widest, len(rows)) if self.tab == "schematic" else Size(0, 0)
@@ -143,7 +143,7 @@ class Pictures(Vertical):
         self._show()
 
     def overlay(self, saved: Shape | None) -> None:
-        """Draw the saved line for comparison, or remove it if None."""
+        """Draw the saved line for comparison, or remove it if `saved` is None."""
         self._saved = saved
         self._show()
 
@@ -177,7 +177,7 @@ class Pictures(Vertical):
 
 
 class ProfilePicture(scrolled.DrawnRows):
-    """Picture of current speed and direction against depth, in the current environment."""
+    """Picture of current speed and direction against depth, in the selected environment."""
 
     DEFAULT_CSS = """
     ProfilePicture { height: 1fr; overflow: hidden; }
@@ -189,7 +189,7 @@ class ProfilePicture(scrolled.DrawnRows):
     def show(self, view: View | None, *, old: bool = False) -> None:
         """Draw the current profile of a view, dimmed if `old`.
 
-        If the file cannot be read, the last profile stays, dimmed.
+        If the file cannot be read, the last profile remains and is dimmed.
         """
         if view is not None and view.file is not None:
             self._view = view
@@ -199,7 +199,10 @@ class ProfilePicture(scrolled.DrawnRows):
         self.set_class(old, "-old")
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the current profile; [] if the widget is too small or if there is no environment."""
+        """Draw the current profile.
+
+        Return [] if the widget is too small or if there is no environment.
+        """
         file = None if self._view is None else self._view.file
         if _is_small(size) or file is None:
             return []

@@ -33,8 +33,8 @@ class Saving:
     ----------
     app : application on whose screen questions appear
     workspace : workspace whose file is saved
-    show_replaced_draft : shows a text that has replaced the draft, with a message
-    leave : ends the application
+    show_replaced_draft : function that shows a text that has replaced the draft, with a message
+    leave : function that ends the application
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class Saving:
         self._reported: tuple[object] | None = None  # state on the disk that was reported last
 
     def save(self, then: Then | None = None) -> None:
-        """Save, after asking for a missing file name, and call `then` afterwards."""
+        """Save the file, asking for a name if it has none; call `then` after a successful save."""
         file = self._session.file
         if file.path is None:
             self.save_as(then)
@@ -179,9 +179,9 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work; state its time, and whether the file is newer.
+        """Offer to recover unsaved work; show when it was stored, and whether the file is newer.
 
-        Discarding needs a confirmation, because it cannot be undone.
+        The user must confirm discarding the work, because this cannot be undone.
         """
         app, session, keeper = self._app, self._session, kept.keeper
 
@@ -225,7 +225,7 @@ class Saving:
     # quitting
 
     def quit(self) -> None:
-        """Quit the builder, after a question if there is unsaved work."""
+        """Quit the builder; if there is unsaved work, ask the user first."""
         self.check_external_change()
         if not self._session.changed:
             self._leave()

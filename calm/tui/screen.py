@@ -18,8 +18,8 @@ from calm.tui.workspace import Workspace
 class DraftScreen(Screen[None]):
     """Screen that displays and edits the draft of a workspace.
 
-    The application calls `settle` on the top screen before it saves or quits. It calls `replaced`
-    on all screens after another text has replaced the draft.
+    The application calls `settle` on the top screen before saving or quitting, and `replaced` on
+    all screens after another text has replaced the draft.
     """
 
     def __init__(self, workspace: Workspace) -> None:
@@ -49,7 +49,7 @@ class DraftScreen(Screen[None]):
 
     @property
     def is_typing(self) -> bool:
-        """Whether text was typed that is not in the draft yet."""
+        """Whether the user has typed text that is not in the draft yet."""
         raise NotImplementedError
 
     def settle(self) -> bool:
@@ -60,7 +60,7 @@ class DraftScreen(Screen[None]):
         raise NotImplementedError
 
     def show_draft(self) -> None:
-        """Show the draft again, as after undo or redo."""
+        """Show the draft again, for example after undo or redo."""
         raise NotImplementedError
 
     def replaced(self) -> None:
@@ -112,7 +112,7 @@ _GAP = "  "
 
 
 class TitleBar(Widget):
-    """Bar with name and file at the left, environment and verdict at the right."""
+    """Title bar with a text at the left, such as the file name, and the verdict at the right."""
 
     DEFAULT_CSS = """
     TitleBar { height: 1; background: $panel; color: $foreground; padding: 0 1; text-style: bold; }
@@ -123,7 +123,7 @@ class TitleBar(Widget):
         self._texts = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
-        """Replace the texts; `old` dims the right one."""
+        """Replace both texts; `old` dims the right text."""
         if (left, right, old) != self._texts:
             self._texts = left, right, old
             self.refresh()
@@ -159,9 +159,9 @@ class KeyBar(Static):
         self._beside_message = False
 
     def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
-        """Show the keys of actions.
+        """Show the keys of the given actions.
 
-        With `beside_message` they stay next to a message, unless it reports a mistake.
+        With `beside_message`, the keys remain next to a message, unless the message is an error.
         """
         if ((chosen := list(actions)), beside_message) != (self._actions, self._beside_message):
             self._actions, self._beside_message = chosen, beside_message

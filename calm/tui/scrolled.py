@@ -25,7 +25,7 @@ Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
-    """Scrollable lines, which `render_line` draws.
+    """Widget with scrollable lines, which `render_line` draws.
 
     `virtual_size` holds the width and the number of the lines.
     """
@@ -58,7 +58,7 @@ class Scrolled(ScrollView, inherit_bindings=False):
 
 
 class DrawnRows(Scrolled, can_focus=False):
-    """Rows drawn for the size of the widget, and drawn again when the size changes."""
+    """Widget whose rows are drawn for its size, and drawn again when the size changes."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -89,7 +89,7 @@ class DrawnRows(Scrolled, can_focus=False):
 
 
 class ScrolledText(DrawnRows):
-    """Texts below each other, wrapped to the width of the widget."""
+    """Texts one below the other, wrapped to the width of the widget."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
@@ -157,8 +157,8 @@ class TableColumn:
 class TableCells(Scrolled, inherit_bindings=False):
     """Table with a fixed heading, in which a cursor moves from cell to cell.
 
-    Subclasses define the `columns`, which of them the cursor can enter (`editable`), and the text
-    of cells, before rows and below the table.
+    Subclasses define the `columns`, the columns that the cursor can enter (`editable`), the text of
+    each cell, and the texts in front of rows and below the table.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"table--heading", "table--cursor"}
@@ -225,7 +225,7 @@ class TableCells(Scrolled, inherit_bindings=False):
     # rows and cursor
 
     def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
-        """Replace the rows; the number of the row under the cursor stays the same if possible.
+        """Replace the rows; the cursor stays at the same row number if possible.
 
         If the numbers of `changed` rows are given, only these rows are drawn again.
         """
@@ -238,7 +238,7 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
-        """Limit the cursor to the rows."""
+        """Limit the cursor to existing rows."""
         return max(0, min(cursor, len(self.rows) - 1))
 
     def validate_column(self, column: int) -> int:
@@ -272,7 +272,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         return wanted != top
 
     def row_at(self, y: int) -> int | None:
-        """Return the number of the row on a line of the widget; None outside the rows."""
+        """Return the number of the row on line `y` of the widget; None if there is no row."""
         row = y - self.HEADING + self.scroll_offset.y
         return row if y >= self.HEADING and row < len(self.rows) else None
 
@@ -284,10 +284,11 @@ class TableCells(Scrolled, inherit_bindings=False):
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the cell under the mouse; if it is already there, post `Pressed`.
+        """Move the cursor to the cell under the mouse.
 
-        The press is used rather than the release, because the layout may change in between when
-        text typed elsewhere is accepted.
+        If the cursor is already in this cell, post `Pressed`. The table reacts to the press of the
+        mouse button, not to the release, because the layout may change between the two when text
+        typed elsewhere is accepted.
         """
         place = event.get_content_offset(self)
         number = None if place is None else self.row_at(place.y)

@@ -22,7 +22,7 @@ class Session:
     Parameters
     ----------
     file : the file on the disk
-    text : its text
+    text : text of the file
     environment : see `EnvironmentChoice`
 
     Attributes
@@ -30,17 +30,17 @@ class Session:
     catalogs : catalogue files given on the command line
     copied : text of the copied items or clamps
     standing : the chosen environment
-    after_save : called with the path and text of a saved file
+    after_save : function called with the path and text of a saved file
     added : rows added by the last change
-    followed : messages on references to labels that the last change updated
+    followed : messages about the references to labels that were updated in the last change
 
     Raises
     ------
     EditError
-        By every operation that the text does not allow, because it has mistakes or a form that
-        cannot be edited. The text is then unchanged.
+        Raised by every operation that the text does not allow, because the text has mistakes or a
+        structure that cannot be edited. The text then stays unchanged.
     NotWritten
-        By `save` and `save_as`.
+        Raised by `save` and `save_as` if the file cannot be written.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Session:
     # the line
 
     def spots(self) -> list[Place]:
-        """Return the positions of all rows of the line, clamps after their piece."""
+        """Return the positions of all rows of the line, each piece followed by its clamps."""
         return _rows_of(self.draft, 0, len(self.draft.items))
 
     def item(self, spot: Place) -> LineItem:
@@ -100,7 +100,7 @@ class Session:
         return values if isinstance(values, dict) else {}
 
     def do(self, draft: Draft, label: str) -> None:
-        """Make a draft the current one, as a step of the history unless its text is unchanged."""
+        """Make a draft the current draft and add a history step, unless the text is unchanged."""
         if draft.text != self.draft.text:
             self.history.do(draft, label)
             self.added = frozenset()
@@ -142,7 +142,7 @@ class Session:
         return Place(index)
 
     def clamp(self, spot: Place, values: Mapping[str, Value]) -> Place:
-        """Add a clamp to the piece of a row, below its other clamps."""
+        """Add a clamp to the piece of a row, below the other clamps of this piece."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
         at = Place(spot.item, clamp=index)
@@ -172,9 +172,9 @@ class Session:
         return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
-        """Delete rows, and with pieces also their clamps.
+        """Delete rows; the clamps of a deleted piece are deleted, too.
 
-        Return the new row of the cursor, or None.
+        Return the row to which the cursor moves, or None if there is no such row.
         """
         chosen = _whole(spots)
         if not chosen:
@@ -220,8 +220,8 @@ class Session:
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move pieces or a single clamp up (-1) or down (1), and return their new rows.
 
-        Pieces at the end of the line do not move. Nor does a clamp that is the first or last on its
-        piece.
+        Nothing moves if a piece would move beyond the end of the line, or a clamp beyond the first
+        or last clamp on its piece.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -298,7 +298,7 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Save to another path, continue with this file, and return the note of `save`."""
+        """Save to another path, continue with this file, and return the same note as `save`."""
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -311,7 +311,7 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Store the unsaved text for the next backup copy, and return the file."""
+        """Pass the unsaved text to the working file, for the next backup copy; return this file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 

@@ -36,8 +36,8 @@ def open_session(
     Raises
     ------
     InputError, UsageError
-        The file, an environment file or a catalogue cannot be read; the folder of a new file does
-        not exist; the file has no such environment.
+        The file, an environment file or a catalogue cannot be read, the folder of a new file does
+        not exist, or the file has no such environment.
     """
     file = WorkingFile(path)
     if path is not None and file.stamp is not None:
@@ -104,8 +104,8 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 def end(app: BuildApp, number: int, _frame: object) -> None:
     """Keep unsaved work and quit, after a signal that ends the terminal or the process.
 
-    This does not wait for the event loop, which may wait forever for a closed terminal. A closed
-    terminal needs no restoring, so the process ends at once.
+    The function does not wait for the event loop, which may wait forever for a closed terminal. If
+    the terminal is closed, it need not be restored, so the process ends at once.
     """
     try:
         app.take_typed()

@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns, with numbers as names because headings may be equal."""
+        """Columns, which are named by numbers because several headings may be equal."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -59,7 +59,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """Names of the editable columns: all columns."""
+        """Names of all columns, since every column is editable."""
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
@@ -67,7 +67,7 @@ class GridCells(TableCells, can_focus=True):
         return self.rows[number][int(column.name)]
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the cursor sign in front of a row, if the table has the focus."""
+        """Return the cursor symbol in front of a row, if the table has the focus."""
         here = number == self.cursor and self.has_focus
         return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
@@ -78,7 +78,7 @@ class GridCells(TableCells, can_focus=True):
         return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
 
     def go_on(self, by: int) -> bool:
-        """Move to the next or previous value, across rows.
+        """Move to the next or previous value, if necessary in the next or previous row.
 
         Return whether there is such a value.
         """
@@ -92,11 +92,12 @@ class GridCells(TableCells, can_focus=True):
 class Grid(cell_editor.EditableTable):
     """Table with editable cells and rows.
 
-    Values are texts as in the file. Without columns, the table is empty and cannot be edited.
+    The cells contain texts as written in the file. A table without columns is empty and cannot be
+    edited.
 
     Parameters
     ----------
-    changed : called with the table and a label after a change of its rows
+    changed : function called after the rows change, with the table and a label for the change
     """
 
     BINDINGS = key_table.bindings("grid")
@@ -124,7 +125,7 @@ class Grid(cell_editor.EditableTable):
         self._before: Rows | None = None  # rows without the row that Enter added
 
     def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
-        """Replace the rows."""
+        """Replace the columns and the rows."""
         self._columns = tuple(columns)
         self.cells.show([column.heading for column in columns], rows)
 
@@ -134,7 +135,7 @@ class Grid(cell_editor.EditableTable):
         self._changed(self, label)
 
     def write(self, text: str) -> None:
-        """Write a valid text to the edited cell, if it still exists."""
+        """Write a valid text to the edited cell, if the cell still exists."""
         rows, (row, column) = self.cells.rows, self._place
         if row < len(rows) and column < len(self.cells.headings):
             values = (*rows[row][:column], text, *rows[row][column + 1 :])
@@ -145,17 +146,17 @@ class Grid(cell_editor.EditableTable):
         return ("",) * len(self._columns)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether no row should be proposed at index `at`."""
+        """Return whether the table ends before index `at`, so that no row is proposed there."""
         return False
 
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable row actions while a value is typed."""
+        """Disable all actions while a value is typed."""
         return not self.editor.is_open
 
     def action_move_row(self, by: int) -> None:
-        """Move up or down, and leave the table at its ends."""
+        """Move to the row above or below; beyond the first or last row, leave the table."""
         if 0 <= self.cells.cursor + by < len(self.cells.rows):
             self.cells.cursor += by
         elif by > 0:
@@ -176,14 +177,14 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_next()
 
     def on_key(self, event: events.Key) -> None:
-        """Start editing at a digit."""
+        """Start editing when a digit, a sign or a decimal point is typed."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
             event.stop()
             self._edit(event.character)
 
     @on(GridCells.Pressed)
     def action_edit(self) -> None:
-        """Edit the cell."""
+        """Edit the cell under the cursor."""
         if self.cells.rows:
             self._edit()
 
@@ -197,7 +198,7 @@ class Grid(cell_editor.EditableTable):
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
-        """Add a row above or below."""
+        """Add a row above or below the cursor."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
@@ -209,7 +210,7 @@ class Grid(cell_editor.EditableTable):
         self._edit()
 
     def action_drop_row(self) -> None:
-        """Delete the row."""
+        """Delete the row under the cursor."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "delete a row")
@@ -217,7 +218,7 @@ class Grid(cell_editor.EditableTable):
     # typed text
 
     def go_on(self, then: cell_editor.Then, text: str | None) -> None:
-        """Move up, down, or to the next value.
+        """Move the cursor up, down, or to the next value.
 
         After the last value of an added row, another row is added.
         """
@@ -287,13 +288,13 @@ class TableField(Grid):
 
     @property
     def text(self) -> str:
-        """Rows as text, or the initial text if unchanged."""
+        """Rows as text, or the initial text if the rows are unchanged."""
         rows = self.cells.rows
         return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
 
     @property
     def reading(self) -> Reading:
-        """Interpretation of the rows, with the first invalid cell as error."""
+        """Interpretation of the rows, which reports the first invalid cell."""
         for number, row in enumerate(self.cells.rows, 1):
             for column, text in zip(self._columns, row, strict=True):
                 reading = column.check(text)

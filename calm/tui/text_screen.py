@@ -48,7 +48,7 @@ class YamlArea(TextArea):
 
 
 class TextScreen(screen.DraftScreen):
-    """Screen with the text of the file, which is judged after each pause in typing.
+    """Screen with the text of the file; the text is checked after each pause in typing.
 
     Unchanged lines keep their line breaks.
     """
@@ -75,13 +75,13 @@ class TextScreen(screen.DraftScreen):
         self._edited = False
 
     def parts(self) -> ComposeResult:
-        """Yield the text and the mistakes."""
+        """Yield the text editor and the list of mistakes."""
         yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """Put the cursor on the first mistake, else on the row selected on the main screen."""
+        """Put the cursor on the first mistake, or else on the row selected on the main screen."""
         self.query_one(screen.KeyBar).show_keys(key_table.hints("text"))
         self.show_view()
         self.text_area.focus()

@@ -75,9 +75,9 @@ PICTURE_LIGHT = _palette(
 def choose_theme(environ: Mapping[str, str]) -> str:
     """Choose the theme for a terminal, and return its name.
 
-    A terminal with 256 colours or more gets the colours of the builder. Any other keeps its own
-    sixteen colours, which the user has chosen to be legible. The background is light if the last
-    field of `COLORFGBG`, which many terminals set, is a light colour.
+    A terminal with 256 colours or more gets the colours of the builder. Any other terminal keeps
+    its own sixteen colours, which the user has chosen to be legible. The background counts as light
+    if the last field of `COLORFGBG`, which many terminals set, is a light colour.
     """
     announced = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
     many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(announced)
@@ -128,9 +128,9 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a background.
+    """Return the filter for a dark or light background.
 
-    Filters are cached, because Textual caches their output by filter.
+    Each filter is created only once, because Textual caches the filtered lines by filter.
     """
     return Legible(dark=dark, sixteen=sixteen)
 

@@ -26,11 +26,11 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """Pane with the verdict: values at the anchor and the top, and findings with their reasons.
+    """Pane that shows the verdict, values at the anchor and the top, and findings with reasons.
 
     Parameters
     ----------
-    go_to : called with the rows and the text of a chosen line, or with () to go back
+    go_to : function called with the rows and the text of a chosen line, or with () to go back
     """
 
     BINDINGS = key_table.bindings("verdict")
@@ -78,7 +78,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Move to the next line that links to a row, or scroll."""
+        """Move to the next line that links to a row; if there is none, scroll."""
         number = self._chosen + by
         while 0 <= number < len(self._lines) and not self._is_choosable(number):
             number += by
@@ -138,6 +138,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, Renderab
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """Return the headline of the verdict, after its sign or, if it is `old`, after an ellipsis."""
+    """Return the symbol and headline of the verdict; the symbol of an `old` one is an ellipsis."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

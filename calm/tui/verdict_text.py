@@ -27,11 +27,12 @@ class VerdictLine:
 
     Attributes
     ----------
-    text, heading : text, and heading in front of it
-    state : state, which gives the sign and the colour
+    text : text of the line
+    heading : heading in front of the text; may be empty
+    state : state that determines the symbol and the colour, or None
     faint : whether the text is dimmed
     pending : whether the state may still change
-    places : rows concerned
+    places : rows that the text concerns
     """
 
     text: str
@@ -43,7 +44,7 @@ class VerdictLine:
 
     @property
     def sign(self) -> str:
-        """Sign before the line."""
+        """Symbol in front of the line."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else self.state.sign

@@ -55,13 +55,13 @@ class WaterForm:
 
     Parameters
     ----------
-    draft : the file
+    draft : draft of the file
     variant : name of an environment, merged with the default environment; None for the default
 
     Raises
     ------
     EditError
-        By all changes that the text of the file does not allow.
+        Raised by every change that the text of the file does not allow.
     """
 
     def __init__(self, draft: Draft, variant: str | None) -> None:
@@ -77,13 +77,13 @@ class WaterForm:
         return self.draft.value(self.at(*keys))
 
     def value(self, *keys: str) -> Any:
-        """Return the value of a key in this environment, else in the default environment."""
+        """Return the value of a key in this environment, or else in the default environment."""
         if self.own(keys[0]) is not None:
             return self.own(*keys)
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """Return the value of a key as typed text."""
+        """Return the value of a key as the text that a user would type."""
         return text_of(self.value(*keys))
 
     def is_own(self, key: str) -> bool:
@@ -92,7 +92,7 @@ class WaterForm:
 
     @property
     def depth(self) -> float | None:
-        """Water depth [m]; None if it is unset or not a positive depth."""
+        """Water depth [m]; None if the depth is not set or not positive."""
         return _read(POSITIVE_LENGTH, self.text("depth"))
 
     def form(self, *keys: str) -> str:
@@ -114,8 +114,8 @@ class WaterForm:
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the columns and the rows of a table as texts; missing cells are empty.
 
-        Both are empty if there is no table, or if only the text editor can show it, because its
-        rows are longer than the columns or contain anything but texts.
+        Columns and rows are empty if there is no table. They are also empty if a row is longer than
+        the columns or contains anything but texts; only the text editor can show such a table.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
@@ -131,7 +131,7 @@ class WaterForm:
     def put(self, keys: Sequence[str], text: str, *, is_needed: bool = False) -> Draft:
         """Set the value of a key, or delete the key if the text is empty.
 
-        If the key is required, its parent is deleted, too.
+        If a required key (`is_needed`) is deleted, its parent is deleted, too.
         """
         if is_needed and len(keys) > 1 and not text:
             return self.draft.put_at(self.at(*keys[:-1]), None)
@@ -140,7 +140,7 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """Write a table to the file, in which unchanged rows keep their text."""
+        """Write a table to the file; unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
@@ -149,11 +149,11 @@ class WaterForm:
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
-        """Replace the value of the current, density, temperature or salinity; None deletes it."""
+        """Replace the value of a property, such as the current; None deletes the property."""
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return the initial value for another form, from known or typical values.
+        """Return the initial value of a property in another form, from known or typical values.
 
         None means that the key can be omitted.
         """
@@ -221,7 +221,7 @@ _ACCEPT_HINT = "Enter accepts"
 
 
 class FormChoice(Cycle):
-    """Selector of the form of a property.
+    """Selector of the form in which a water property is given.
 
     The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
     Enter, the current form is shown again.
@@ -250,7 +250,7 @@ class FormChoice(Cycle):
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
-        """Accept the form shown, or move to the next field."""
+        """Accept the form shown; if it is the current form, move to the next field instead."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:
@@ -271,7 +271,10 @@ class FormChoice(Cycle):
 
     @property
     def hint(self) -> str:
-        """Hint on how to accept the form shown, if it is not the current form."""
+        """Text that names the keys of this widget.
+
+        While a new form is shown, the text names only the key that accepts this form.
+        """
         return _ACCEPT_HINT if self.word != self._given else super().hint
 
 
@@ -303,7 +306,7 @@ class ProfileGrid(Grid):
         )
 
     def new_row(self, at: int) -> tuple[str, ...]:
-        """Return the mean of the rows above and below, if both are numbers.
+        """Return the mean of the rows above and below, if all their values are numbers.
 
         Below the last row, the values of the last row are proposed one step deeper, but not below
         the seabed.

@@ -99,14 +99,14 @@ class WaterScreen(screen.DraftScreen):
 
     @property
     def water(self) -> WaterForm:
-        """The environment shown, in the current draft."""
+        """Access to the environment shown, in the current draft."""
         standing = self.session.standing
         here = standing.environment
         return WaterForm(self.session.draft, here if here in standing.environments else None)
 
     @property
     def environment_file(self) -> str | None:
-        """Environment file given on the command line, if it is the environment shown."""
+        """Environment file from the command line if its environment is shown, otherwise None."""
         standing, draft = self.session.standing, self.session.draft
         here = standing.environment
         return None if here in standing.environments or draft.problems else here
@@ -117,7 +117,7 @@ class WaterScreen(screen.DraftScreen):
         return f"The water of {self.workspace.called}", state
 
     def show_view(self) -> None:
-        """Show the current profile of the last view, dimmed if it belongs to an earlier draft."""
+        """Show the current profile of the last view; the profile is dimmed if it is out of date."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
         self.query_one(pictures.ProfilePicture).show(view, old=self.workspace.is_old)
@@ -174,7 +174,7 @@ class WaterScreen(screen.DraftScreen):
         return bool(form) and key in ("density", "current") and water.form(*place) != form
 
     def replaced(self) -> None:
-        """Show another draft; discard typed text, and the values remembered from other forms."""
+        """Show a new draft; discard typed text and the values remembered from other forms."""
         self._left.clear()
         self.discard_typing()
         self.show_draft()
@@ -182,7 +182,7 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file, return whether this succeeded, and show the reason for a failure."""
+        """Change the file; return whether this succeeded, and show the reason if it failed."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -191,14 +191,14 @@ class WaterScreen(screen.DraftScreen):
         return is_made
 
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
-        """Replace the current by a table."""
+        """Replace the water current in the environment by a table."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
     # typed text
 
     @property
     def is_typing(self) -> bool:
-        """Whether text was typed that is not in the draft yet."""
+        """Whether the user has typed text that is not in the draft yet."""
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
@@ -272,7 +272,7 @@ class WaterScreen(screen.DraftScreen):
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Use a pasted table as the current, unless another table of the form receives it."""
+        """Use a pasted table as the current profile, unless another table of the form takes it."""
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
@@ -331,7 +331,7 @@ class WaterScreen(screen.DraftScreen):
             self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
-        """Add a named environment with the current of the displayed environment."""
+        """Add a named environment with the same current as the displayed environment."""
 
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
@@ -388,9 +388,9 @@ class WaterScreen(screen.DraftScreen):
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
-        """Read a current from CSV or NetCDF.
+        """Read a current profile from a CSV or NetCDF file.
 
-        The mooring file then refers to this file, or contains a copy of its profile.
+        The mooring file then refers to the file that was read, or contains a copy of the profile.
         """
 
         def take(texts: dict[str, str] | None) -> None:
@@ -436,7 +436,7 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Discard typed text if it is invalid, else undo the last change."""
+        """Discard typed text if the text is invalid; otherwise undo the last change."""
         if self.settle():
             super().action_undo()
         else:
@@ -444,7 +444,7 @@ class WaterScreen(screen.DraftScreen):
             self.show_draft()
 
     def action_back(self) -> None:
-        """Return to the line; typed text is accepted if valid, else discarded."""
+        """Return to the line; valid typed text is accepted, invalid text is discarded."""
         self.settle()
         self.dismiss()  # not awaited, because this ends the loop that would wait
 

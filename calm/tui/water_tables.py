@@ -55,7 +55,7 @@ _NOISE = 1e-12  # rounding of speed and direction in doubles, with a margin
 def import_sheet(folder: Path) -> InputSheet:
     """Create the sheet for importing a current file.
 
-    It asks for the name of the file, a time, and whether to refer to the file or to copy its
+    The sheet asks for the name of the file, a time, and whether to refer to the file or to copy its
     profile.
     """
     return InputSheet(
@@ -75,8 +75,8 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
     Parameters
     ----------
-    path : CSV, NetCDF or zarr
-    time : time of the profile in a record, as ISO 8601; empty for a single profile
+    path : CSV, NetCDF or zarr file
+    time : time of the profile, in ISO 8601 format; empty if the file has a single profile
     depth : water depth [m]
 
     Returns
@@ -84,7 +84,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
         velocity [m/s], whichever needs fewer digits (usually as in the file). If the current has
         an upward velocity, all three components of the velocity follow the depth.
-    rows : one row per level, from the top, with all digits of the file
+    rows : one row for each level, from the top; the values keep all digits of the file
 
     Raises
     ------
@@ -147,7 +147,8 @@ class UnknownColumns(NoRows):
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
     """Return headings for copied rows.
 
-    They are the headings of the copied text, with missing units added, or those of the table.
+    The headings are those of the copied text, with missing units added. If the copied text
+    has no headings, the headings of the table are used.
     """
     if headings is None:
         return list(columns)
@@ -161,12 +162,14 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Convert copied rows to the columns of a table; if the columns are the same, keep the texts.
+    """Convert copied rows to the columns of a table.
+
+    If the copied rows have the same columns, the texts are kept.
 
     Raises
     ------
     UnknownColumns
-        The headings are not those of such a table.
+        The columns of the table cannot be derived from the headings.
     NoRows
         A row has an invalid value.
     """
@@ -277,7 +280,7 @@ _KINDS: dict[str, QuantityRange] = {
 def check_of(column: str) -> Check:
     """Return the check for the texts of a column.
 
-    They must be numbers if the heading has a unit, else quantities with units.
+    The texts must be numbers if the heading has a unit, otherwise quantities with units.
     """
     name, unit = heading(column)
     kind = _KINDS.get(name)

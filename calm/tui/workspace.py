@@ -20,12 +20,15 @@ if TYPE_CHECKING:
 
 
 def is_elsewhere(problem: Problem, path: Path) -> bool:
-    """Return whether a mistake is in another file than the edited one."""
+    """Return whether a mistake is in a file other than the edited file."""
     return problem.path not in ("", str(path))
 
 
 def place_of(problem: Problem, path: Path) -> str:
-    """Format the position of a mistake, such as ``line 4:2``, with the name of another file."""
+    """Format the position of a mistake, such as ``line 4:2``.
+
+    If the mistake is in a file other than the edited file, the file name precedes the position.
+    """
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
         return place
@@ -35,13 +38,13 @@ def place_of(problem: Problem, path: Path) -> str:
 
 
 def problem_text(problem: Problem, path: Path) -> Content:
-    """Format a mistake with its sign and its position."""
+    """Return a text with the symbol, the position and the message of a mistake."""
     parts = filter(None, (place_of(problem, path), problem.message))
     return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:
-    """Format the number of mistakes, and the files that contain them; "" if there are none."""
+    """Return the number of mistakes and where they are, as text; "" if there are no mistakes."""
     count = len(problems)
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:
@@ -59,16 +62,18 @@ class Workspace:
     Parameters
     ----------
     session : editing session of the file
-    tell : shows a message in the last line of the screen until the next key; `wrong` marks an error
-    edited : called after a change, to judge the draft and to keep a backup copy
+    tell : function that shows a message in the last line of the screen until the next key; its
+        argument `wrong` marks an error
+    edited : function that checks the draft and keeps a backup copy; called after each change
 
     Attributes
     ----------
-    index : search index of the catalogue and the components of the file; None until it is loaded
-    view : last view of the file; None before the first
+    index : search index of the catalogue and the components of the file; None until the catalogue
+        is loaded
+    view : last view of the file; None until the file is first solved
     good : last view with an equilibrium
     is_late : whether the view has been out of date for some time
-    documents_elsewhere : how to get reports and sheets if the builder cannot run commands
+    documents_elsewhere : message on how to get reports and sheets if the builder cannot write them
     """
 
     def __init__(
@@ -84,7 +89,7 @@ class Workspace:
         self._defined: Any = None
 
     def take_catalogue(self, catalogue: Catalogue) -> None:
-        """Switch to a catalogue, and add the components of the file."""
+        """Switch to a catalogue, and rebuild the search index with the components of the file."""
         self._catalogue, self.index = catalogue, None
         self.refresh_index()
 
@@ -121,7 +126,7 @@ class Workspace:
 
     @property
     def path(self) -> Path:
-        """Path of the file, as given in its mistakes."""
+        """Path of the file, as used in reports of mistakes."""
         return Path() if self.view is None else self.view.path
 
     @property
@@ -130,9 +135,9 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change, and return whether it succeeded and the resulting row.
+        """Make a change; return whether the change succeeded, and the row that `change` returned.
 
-        A failure is shown as a message.
+        If the change fails, a message shows the reason.
         """
         try:
             spot = change()
@@ -147,13 +152,13 @@ _FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and 
 
 
 class Judging:
-    """Workers that judge the draft of a workspace.
+    """Workers that solve and check the draft of a workspace.
 
     Parameters
     ----------
     app : application that runs the workers
-    workspace : receives the views
-    show : updates the screens; `is_first` marks the first view
+    workspace : workspace that provides the draft and receives the views
+    show : function that updates the screens; its argument `is_first` marks the first view
     """
 
     def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:
@@ -167,12 +172,12 @@ class Judging:
 
     @property
     def is_idle(self) -> bool:
-        """Whether the draft has been judged and no worker is running."""
+        """Whether the draft has been solved and checked, and no worker is running."""
         busy = self._is_judging or self._is_stale or self._checked is not None
         return not busy and self._workspace.view is not None
 
     def after_an_edit(self) -> None:
-        """Judge the new draft, once the screen has shown the typed text."""
+        """Solve and check the new draft, after the screen has shown the typed text."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
@@ -186,7 +191,10 @@ class Judging:
             self._show()
 
     def ask(self) -> None:
-        """Judge the draft, at once or when the worker is free; drafts in between are skipped."""
+        """Solve and check the draft.
+
+        If the worker is busy, wait until it is free, and then check only the latest draft.
+        """
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:
@@ -201,7 +209,7 @@ class Judging:
             )
 
     def ask_fully(self) -> None:
-        """Judge the draft with all checks, including launch, recovery and breaks."""
+        """Apply all checks to the draft, including launch, recovery and breaks."""
         self._stop_waiting()
         view = self._workspace.view
         is_free = not self._is_judging and self._checked is None

@@ -74,9 +74,9 @@ _below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
-    """Return the line and the water for a buoy.
+    """Return the line and the water for a buoy on a cable.
 
-    The drag of its cable at 1 m/s is K w = 12 N/m.
+    The drag of the cable at 1 m/s is K w = 12 N/m.
 
     Parameters
     ----------

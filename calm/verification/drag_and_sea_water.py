@@ -54,7 +54,10 @@ _SHARE = 1e-9
 
 
 def cheng(reynolds: float) -> float:
-    """Return Cn of a smooth cylinder from Cheng's fit, valid for Reynolds numbers below 2e5."""
+    """Return the drag coefficient Cn of a smooth cylinder by the fit of Cheng.
+
+    The fit is valid for Reynolds numbers below 2e5.
+    """
     creeping = 11.0 * pow(reynolds, -0.75)
     middle = 0.9 * (1.0 - exp(-1000.0 / reynolds))
     return creeping + middle + 1.2 * (1.0 - exp(-pow(reynolds / 4500.0, 0.7)))

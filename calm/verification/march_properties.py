@@ -294,7 +294,7 @@ _BUOYANCY, _WEIGHT = 4905.0, 2.0
 
 @cache
 def heavy_line_error(degrees: float) -> float:
-    """Return the position error of the free end of a heavy line [m], against the closed form.
+    """Return the distance of the free end of a heavy line from its closed-form position [m].
 
     Parameters
     ----------

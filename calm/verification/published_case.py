@@ -25,7 +25,7 @@ PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
 
 
 class Kind(StrEnum):
-    """Origin of an expected value, which determines the strength of an agreement as evidence."""
+    """Origin of an expected value, which determines how strong an agreement is as evidence."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"
@@ -35,7 +35,7 @@ class Kind(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """Sentence that explains the kind."""
+        """Sentence that explains this kind of origin."""
         return _MEANINGS[self]
 
     @property
@@ -67,8 +67,8 @@ class Case:
     unit : unit of `expected`, as text for a reader; empty for a pure number
     tolerance : largest allowed difference [unit], > 0
     why : reason for the tolerance, in a sentence
-    got : function that computes CALM's value [unit]; an exception counts as a missing value
-    kind : origin of `expected`
+    got : function that computes the value with CALM [unit]; an exception counts as a missing value
+    kind : origin of the expected value
     """
 
     name: str
@@ -82,7 +82,8 @@ class Case:
     def check(self) -> CaseOutcome:
         """Compute the value with CALM, and return the outcome.
 
-        If the computation raises an exception, the outcome has this exception as its reason.
+        If the computation raises an exception, the outcome gives the exception as the reason for
+        the missing value.
         """
         try:
             return CaseOutcome(self, float(self.got()))
@@ -92,7 +93,7 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseOutcome:
-    """Result of a case: CALM's value, or NaN and the reason why there is none."""
+    """Result of a case: the value from CALM, or NaN and the reason why there is no value."""
 
     case: Case
     got: float
@@ -100,12 +101,12 @@ class CaseOutcome:
 
     @property
     def difference(self) -> float:
-        """CALM's value minus the expected value [unit of the case]."""
+        """Value from CALM minus expected value [unit of the case]."""
         return self.got - self.case.expected
 
     @property
     def within(self) -> bool:
-        """Whether the two values agree within the tolerance."""
+        """Whether the value from CALM and the expected value agree within the tolerance."""
         return abs(self.difference) <= self.case.tolerance
 
 
@@ -115,9 +116,9 @@ class Source:
 
     Attributes
     ----------
-    title : title of the source, a few words
-    text : who published or derived the values, which part of CALM is compared, and why a published
-        value differs if it does; Markdown, with blank lines between paragraphs
+    title : short title of the source
+    text : who published or derived the values, which part of CALM is compared with them, and why
+        published values differ, if they do; Markdown, with blank lines between paragraphs
     cases : the cases
     picture : stem of the file name of a picture; empty if there is none
     """
@@ -130,7 +131,8 @@ class Source:
     def having(self, words: Iterable[str]) -> Source:
         """Return the source with only the cases that match a search.
 
-        All given words, or parts of words, must occur in the title or in the name of the case.
+        Each of the given words, or parts of words, must occur in the title of the source or in the
+        name of the case.
         """
         wanted = [word.casefold() for word in words]
         chosen = tuple(
@@ -148,8 +150,8 @@ class CaseColumn(Generic[Solved]):
     Attributes
     ----------
     name, unit : name and unit of the value
-    tolerance : largest allowed difference [unit], or as a share of the value if `relative`
-    of : function that returns the value from CALM's solution
+    tolerance : largest allowed difference [unit]; a share of the value if `relative` is true
+    of : function that takes the value from the solution computed by CALM
     """
 
     name: str
@@ -170,7 +172,7 @@ def table(
     Parameters
     ----------
     figures : columns of the table
-    rows : for each row its name, the function that solves it, and its published values
+    rows : for each row, its name, the function that computes the solution, and the published values
     why : reason for the tolerances
     kind : origin of the values
     """
@@ -199,8 +201,8 @@ HALF_DENSITY = REFERENCE_DENSITY / 2.0
 class LinePiece:
     """A piece of a line; attributes and units are those of `calm.physics.line.Line`.
 
-    `clamps` lists distance from the upper end of the piece, buoyancy, volume and drag of each
-    clamp.
+    `clamps` lists, for each clamp, the distance from the upper end of the piece, the buoyancy, the
+    volume and the drag.
     """
 
     length: float
@@ -240,7 +242,8 @@ def cable(
     ----------
     length, diameter : unstretched length and diameter [m]
     weight : weight in water [N/m]
-    cn, ct : drag coefficients, which refer to the diameter D and to the surface π D
+    cn : normal drag coefficient, referred to the diameter D
+    ct : tangential drag coefficient, referred to the surface π D
     compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
@@ -314,8 +317,9 @@ class Ends:
 
     Attributes
     ----------
-    x, z : distance of the free end downstream of the lower end, and its height above it [m]
-    horizontal, vertical : components of the force at the lower end, downstream and up [N]
+    x, z : distance downstream of the free end from the lower end, and height of the free end above
+        the lower end [m]
+    horizontal, vertical : components of the force at the lower end, downstream and upward [N]
     """
 
     x: float
@@ -343,11 +347,11 @@ def ends_of(solution: Solution) -> Ends:
 
 @cache
 def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
-    """Return the ends of a line, solved with the settings `FINE`.
+    """Solve a line with the settings `FINE`, and return its ends.
 
     Parameters
     ----------
-    made : function that builds the line and the water from the given values
+    made : function that builds the line and the water from the values `given`
     """
     return ends_of(solve_mooring(*made(*given), FINE))
 
@@ -358,7 +362,7 @@ class Wake:
 
     Attributes
     ----------
-    aft, depth : distance of the free end behind the tow point, and below it [m]
+    aft, depth : distances of the free end behind and below the tow point [m]
     tension : tension at the tow point [N]
     angle : angle of the line at the tow point from the horizontal [degrees]
     frequency : strumming frequency [Hz]
@@ -377,9 +381,9 @@ def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> 
     Parameters
     ----------
     line : the line, from the ship to the free end
-    water : the water in which it is towed
+    water : the water in which the line is towed
     speed : speed of the ship [m/s]
-    settings : settings of the march
+    settings : settings of the integration along the line
     """
     solution = solve_tow(line, water, Towing(speed, 0.0), settings)
     x, _, z = solution.position[0].tolist()

@@ -26,7 +26,7 @@ _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """Return the line of the mooring S1000, whose cable may be divided into equal parts."""
+    """Return the line of the mooring S1000, with its cable divided into a number of equal parts."""
     part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return published_case.line_of(
         published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
@@ -35,7 +35,7 @@ def s1000_mooring(parts: int = 1) -> Line:
 
 @cache
 def solved_s1000(degrees: float) -> Solution:
-    """Solve the mooring S1000 at an angle step [degrees]."""
+    """Solve the mooring S1000 with a given angle step [degrees]."""
     return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
 
 
@@ -134,7 +134,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
 
 @cache
 def solved_cdms_1() -> Solution:
-    """Solve the mooring CDMS-1 at default settings, with the anchor at the origin."""
+    """Solve the mooring CDMS-1 with default settings and with the anchor at the origin."""
     return solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
 
 
@@ -150,7 +150,7 @@ def height_at(solution: Solution, node: int) -> float:
 def nodes_of_tensions(solution: Solution) -> list[int]:
     """Return the nodes for which a tension is published.
 
-    They are below the sphere, below the third current meter, and at the anchor.
+    These nodes are below the sphere, below the third current meter, and at the anchor.
     """
     last: list[int] = solution.piece_nodes[[0, _THIRD_METER, -1], 1].tolist()
     return last

@@ -48,11 +48,11 @@ SMALL = 0.05
 
 @dataclass(frozen=True)
 class WaveAccuracy:
-    """Estimated relative errors of the standard deviations of tension and float pitch.
+    """Estimated relative errors of the standard deviations of tension and of the float's pitch.
 
-    `mesh` and `frequencies` are the changes if the number of elements or of frequencies is doubled.
-    `linearisation` is the change if the linearised drag is reduced by a fifth; it shows how much
-    the results depend on drag.
+    `mesh` is the relative change if the number of elements is doubled, and `frequencies` the
+    relative change if the number of frequencies is doubled. `linearisation` is the relative change
+    if the linearised drag is reduced by a fifth, which shows how much the results depend on drag.
     """
 
     mesh: float
@@ -62,15 +62,15 @@ class WaveAccuracy:
 
 @dataclass(frozen=True)
 class WaveAnalysis:
-    """Results for a mooring in all its sea states.
+    """Results for a mooring in one or more sea states.
 
     Attributes
     ----------
     name : name of the mooring
     states : results for each sea state, in the given order
     accuracy : estimated errors in the highest and in the shortest sea
-    fatigue : fatigue of each piece, with the seas weighted by their shares of time; a single sea is
-        assumed to last all year
+    fatigue : fatigue of each piece; each sea state counts for its share of time, and a single sea
+        state is assumed to last all year
     warnings : warnings about assumptions
     pitch_unknown : reason why the pitch of the float is not computed; None if it is computed
     """
@@ -84,11 +84,11 @@ class WaveAnalysis:
 
     @property
     def status(self) -> str:
-        """ "slack-in-waves" if a piece becomes slack in a sea, else "converged"."""
+        """Either "slack-in-waves", if a piece becomes slack in a sea state, or "converged"."""
         return SLACK if any(state.slack for state in self.states) else CONVERGED
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object of the results, in SI units and degrees."""
+        """Return the results as a dictionary for JSON, in SI units and degrees."""
         from calm.version import __version__
 
         return {
@@ -167,24 +167,25 @@ def analyse(
 ) -> WaveAnalysis:
     """Compute tensions and motions of a mooring in sea states.
 
-    The line is represented by lumped masses that move about its equilibrium in the mean current.
-    Waves are linear and long-crested. Drag is linearised with equal energy dissipation. Elements
-    and frequencies are refined in the highest and in the shortest sea until the standard deviations
-    of tension converge to 1 %.
+    The line is represented by lumped masses that move about the equilibrium in the mean current.
+    Waves are linear and long-crested. Drag is replaced by a linear drag that dissipates the same
+    energy. Elements and frequencies are refined until the standard deviations of tension in the
+    highest and in the shortest sea converge to 1 %.
 
     Parameters
     ----------
     seas : one or more sea states
     toward : direction in which the waves travel [degrees], clockwise from north
-    duration : duration to which the maximum and the minimum tension refer [s]
-    watched : wrapper that yields the seas one by one, for instance to show progress
+    duration : duration for which the maximum and minimum tension are computed [s]
+    watched : function that wraps the iteration over the sea states, for instance to show progress
 
     Raises
     ------
     NoEquilibrium
         The mooring has no equilibrium.
     UsageError
-        The float at the surface has no hull or no mass, or a sea breaks at this water depth.
+        The float at the surface has no hull or no mass, or a sea state is too high for the water
+        depth, so that its waves break.
     """
     for sea in seas:
         if sea.significant_height > SHALLOWEST * leg.water.depth:

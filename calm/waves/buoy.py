@@ -55,27 +55,28 @@ PRESCRIBED_STIFFNESS = 1e10
 
 @dataclass(frozen=True)
 class Buoy:
-    """Float at the surface, with its hull.
+    """Properties of a float at the surface that determine its motion in waves.
 
     Attributes
     ----------
     mass : mass of the float and of the pieces on it [kg]
-    displaced : displaced mass of water [kg]
-    radius : radius of its waterplane [m]
-    draft : draft [m]
-    drag, heave_drag : K of the drag K|V|V in the current, and in heave [N/(m/s)²]
-    rao : rows of the prescribed response: angular frequency [rad/s], amplitude [-] and phase
-        [degrees] of heave relative to the elevation; optionally amplitude [degrees/m] and phase
-        [degrees] of pitch
-    follows : whether heave and pitch follow the water
-    panels : (12, f) results of a panel method: row 0, frequency [rad/s]; rows 1 to 8, added mass
-        and radiation damping of heave, surge, surge coupled with pitch, and pitch about the
-        surface; rows 9 to 11, exciting force per metre of elevation in heave, and divided by ω² in
-        surge and pitch. None means that formulas are used instead
-    profile : (s, 2) radius and height above the surface of the sections of the hull [m], from the
-        keel up; None if the pitch is not computed
-    centre : height above the surface of the centre of mass of the float with all pieces on it [m]
-    bail : height above the surface of the attachment point of the line [m]
+    displaced : mass of the displaced water [kg]
+    radius : radius of the waterplane [m]
+    draft : draft of the float [m]
+    drag, heave_drag : K of the drag K|V|V in horizontal flow, and in heave [N/(m/s)²]
+    rao : rows of a prescribed response. Each row has an angular frequency [rad/s], and the
+        amplitude [-] and phase [degrees] of heave relative to the wave elevation; the amplitude
+        [degrees/m] and phase [degrees] of pitch may follow
+    follows : whether heave and pitch follow the motion of the water surface
+    panels : (12, f) results of a panel method. Row 0 is the angular frequency ω [rad/s]. Rows 1 to
+        8 are added mass and radiation damping, in turn for heave, for surge, for the coupling of
+        surge with pitch, and for pitch about the surface. Rows 9 to 11 are the exciting forces per
+        metre of elevation in heave, surge and pitch; the last two are divided by ω². None means
+        that formulas are used instead
+    profile : (s, 2) radius of each horizontal section of the hull, and height of the section above
+        the surface [m], from the keel up; None if the pitch is not computed
+    centre : height of the centre of mass above the surface, for the float with all pieces on it [m]
+    bail : height of the attachment point of the line above the surface [m]
     gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
@@ -95,7 +96,7 @@ class Buoy:
 
     @property
     def heaves(self) -> Literal["filtered", "panels", "follows"] | None:
-        """Method for computing heave; None if the file gives the response of the float."""
+        """Method for computing heave; None if the mooring file prescribes the float's response."""
         if self.follows:
             return "follows"
         if self.rao:
@@ -105,12 +106,13 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return dynamic stiffness and exciting force per metre of elevation in heave [N/m].
+        """Return the dynamic stiffness and the exciting force in heave [N/m].
 
-        The formulas for a disc of radius R at the draft T are: Froude-Krylov force ρgA e^(-kT) 2
-        J1(kR)/(kR); added mass `DISC_ADDED`, excited by the acceleration of the water at this
-        draft; and radiation damping by Haskind's relation, k ω |X|² / (2 ρ g²) in deep water
-        (Newman 1977, 6.18).
+        The exciting force is per metre of wave elevation. Without a prescribed response or a panel
+        method, the float is represented by a disc with radius R at the draft T. The Froude-Krylov
+        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³, and the acceleration
+        of the water at this draft excites it. The radiation damping follows from Haskind's
+        relation, k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
 
         Parameters
         ----------
@@ -141,10 +143,11 @@ class Buoy:
     def pitch(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return dynamic stiffness and exciting forces per metre of elevation, in surge and pitch.
+        """Return the dynamic stiffness and the exciting forces in surge and pitch.
 
-        They refer to the point where the axis of the float meets the surface. Pitch is positive if
-        the part above the surface moves forward.
+        The exciting forces are per metre of wave elevation. All results refer to the point where
+        the axis of the float meets the surface. Pitch is positive if the part above the surface
+        moves forward.
 
         Parameters
         ----------
@@ -153,8 +156,9 @@ class Buoy:
 
         Returns
         -------
-        Stiffness (3, f) of surge [N/m], of surge coupled with pitch [N], and of pitch [N m];
-        exciting force in surge [N/m] and moment in pitch [N] (2, f).
+        The stiffness (3, f) in surge [N/m], for the coupling of surge with pitch [N], and in pitch
+        [N m]; and, as an array (2, f), the exciting force in surge [N/m] and the exciting moment in
+        pitch [N].
         """
         if self.panels is None:
             added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)
@@ -184,9 +188,9 @@ class Buoy:
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the righting moment of the float per radian of pitch [N m].
 
-        It is the sum of the moments of the waterplane, the buoyancy and the weight, which for a
-        free float equals weight times metacentric height, and of the line, which pulls down at the
-        bail.
+        The righting moment is the sum of the moments of the waterplane, the buoyancy and the
+        weight, and of the pull of the line at the bail. For a free float it equals weight times
+        metacentric height.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -238,7 +242,7 @@ class Buoy:
 
 
 def bessel(order: int, x: Floats) -> Floats:
-    """Evaluate the Bessel function of the first kind, of an integer order ≥ 0.
+    """Evaluate the Bessel function of the first kind Jn(x), for an integer order n ≥ 0.
 
     For |x| below 4, the power series is used (Abramowitz and Stegun 9.1.10), which is accurate at
     small x. Otherwise the function is the mean of cos(nθ − x sin θ) at equal steps around a circle
@@ -263,13 +267,13 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
 
     Parameters
     ----------
-    follows : whether the heave follows the water, whatever the hull
+    follows : whether heave and pitch follow the water surface, whatever the hull
 
     Raises
     ------
     UsageError
-        The hull or the mass of the float is unknown, the component is not a float, or the float
-        would capsize.
+        The hull or the mass of the float is unknown, the component at the surface is not a float,
+        or the float would capsize.
     """
     if not solution.afloat:
         return None
@@ -350,11 +354,12 @@ def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
 
 
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
-    """Compute `Buoy.panels` for an axisymmetric hull in deep water by Capytaine.
+    """Compute `Buoy.panels` for an axisymmetric hull in deep water with Capytaine.
 
     Parameters
     ----------
-    profile : (n, 2) radius and height above the surface, from the keel up [m]
+    profile : (n, 2) radius of each horizontal section, and height of the section above the surface
+        [m], from the keel up
     density, gravity : density of the water [kg/m³] and acceleration of gravity [m/s²]
 
     Raises

@@ -22,7 +22,7 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
     ----------
     deviation : standard deviation σ, in the unit of the result
     period : time between upward crossings of the mean [s]
-    duration : duration to which the maximum refers [s]
+    duration : duration for which the maximum is computed [s]
     """
     if not deviation > 0.0 or isnan(period):
         return 0.0
@@ -36,9 +36,9 @@ def passing_probability(margin: float, deviation: float, period: float, duration
 
     Parameters
     ----------
-    margin, deviation : margin from the mean, and standard deviation σ, in the same unit
+    margin, deviation : departure from the mean, and standard deviation σ, in the same unit
     period : time between upward crossings of the mean [s]
-    duration : duration to which the probability refers [s]
+    duration : duration for which the probability is computed [s]
     """
     if deviation <= 0.0:
         return 0.0 if margin > 0.0 else 1.0
@@ -58,15 +58,16 @@ tensions measured at sea is wider (`calm.waves.measured`).
 
 @dataclass(frozen=True)
 class FatigueCurve:
-    """Fatigue curve N = K R^-slope: number of cycles to failure at a tension range R.
+    """Fatigue curve N = K R^-m for the number N of cycles to failure at a tension range R.
 
     Attributes
     ----------
     slope : exponent m of the curve
     logarithm : log10 of K
-    by_mean : decrease of log10 K per unit of mean tension divided by breaking load
-    range : what R measures: `stress` in the steel [MPa], or `share` of the breaking load
-    source : publication of the curve
+    by_mean : decrease of log10 K if the mean tension increases by the breaking load
+    range : definition of R, which is the range of the `stress` in the steel [MPa], or the range of
+        tension as a `share` of the breaking load
+    source : publication that gives the curve
     """
 
     slope: float
@@ -105,12 +106,13 @@ load, half the range used here; their distance from the mean is not stated.
 
 @dataclass(frozen=True)
 class PieceFatigue:
-    """Fatigue of a piece; values are None without a curve or if a required parameter is unknown.
+    """Fatigue of a piece.
 
-    `life` is the time to a damage of 1 [years]. `life_low` and `life_high` are the lives if the
-    standard deviations of tension are larger and smaller by `BAND`; `life_half_cut_off` and
-    `life_twice_cut_off` are the lives for half and twice the cut-off frequency of the waves.
-    `unknown` names the missing parameter.
+    Values are None if no curve applies or if a required parameter is unknown. `life` is the time
+    until the damage is 1 [years]. `life_low` is the life if the standard deviations of tension are
+    larger by the fraction `BAND`, and `life_high` the life if they are smaller. `life_half_cut_off`
+    and `life_twice_cut_off` are the lives for half and for twice the cut-off frequency of the
+    waves. `unknown` gives the reason why there are no values.
     """
 
     index: int
@@ -127,7 +129,7 @@ class PieceFatigue:
 
 
 def moments_of(omega: Floats, spectral: Floats) -> Floats:
-    """Return the spectral moments m0, m1, m2 and m4 of a response.
+    """Return the spectral moments m0, m1, m2 and m4 of a response, in this order.
 
     Parameters
     ----------
@@ -140,15 +142,16 @@ def moments_of(omega: Floats, spectral: Floats) -> Floats:
 
 
 def dirlik(moments: Sequence[float], slope: float) -> float:
-    """Return the mean of R^slope of the rainflow ranges R, times their rate [1/s].
+    """Return the expected sum of R^slope over all rainflow ranges R per second.
 
-    The ranges have one exponential and two Rayleigh distributions that were fitted to simulations
-    (Dirlik 1985, Application of computers in fatigue analysis, University of Warwick).
+    The distribution of the ranges is a sum of an exponential and two Rayleigh distributions, fitted
+    to simulations (Dirlik 1985, Application of computers in fatigue analysis, University of
+    Warwick).
 
     Parameters
     ----------
-    moments : m0, m1, m2, m4 for angular frequencies
-    slope : exponent of the ranges
+    moments : spectral moments m0, m1, m2, m4 from `moments_of`
+    slope : exponent of the fatigue curve
     """
     zeroth, first, second, fourth = moments
     if not zeroth > 0.0:
@@ -170,10 +173,11 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
 
 
 def narrow_band(moments: Sequence[float], slope: float) -> float:
-    """Return the result of `dirlik` for a narrow-band process.
+    """Return the result of `dirlik` in the limit of a narrow-band process.
 
-    The ranges of such a process have a Rayleigh distribution. The formula is ν0 (2 √(2 m0))^m Γ(1 +
-    m/2). It is an upper bound for all processes with the same moments m0 and m2 (Rychlik 1993).
+    The ranges of such a process have a Rayleigh distribution. The result is ν0 (2 √(2 m0))^m Γ(1 +
+    m/2), with the exponent m = `slope` and the rate ν0 of upward crossings of the mean. This is an
+    upper bound for all processes with the same moments m0 and m2 (Rychlik 1993).
     """
     zeroth, _, second, _ = moments
     if not zeroth > 0.0:
@@ -184,9 +188,9 @@ def narrow_band(moments: Sequence[float], slope: float) -> float:
 
 
 def curve_of(component: Component) -> str | None:
-    """Return the name of a component's fatigue curve: as specified, else by type and material.
+    """Return the name of a component's fatigue curve, or None if no curve applies.
 
-    Return None if no curve applies.
+    If the component does not specify a curve, the curve follows from its type and material.
     """
     if component.fatigue is not None and component.fatigue.curve is not None:
         return component.fatigue.curve
@@ -207,9 +211,10 @@ def fatigue_of(
 
     Parameters
     ----------
-    component, index, label : component, index and label of the piece; corrosion reduces the
-        diameter, and the strength with the square of the diameter
-    seas : share of time, mean tension [N], and spectral moments of the tension in each sea
+    component, index, label : component, index and label of the piece. Corrosion reduces the
+        diameter, and reduces the strength in proportion to the square of the diameter
+    seas : for each sea state, the share of time, the mean tension [N], and the spectral moments of
+        the tension
     """
     name, strength = curve_of(component), component.breaking_load
     size = getattr(component, "diameter", None)

@@ -39,26 +39,29 @@ CYLINDER_ADDED, SPHERE_ADDED, BODY_ADDED = 1.0, 0.5, 1.0
 
 @dataclass(frozen=True)
 class LumpedLine:
-    """Line of n lumped masses from the free end down, and n - 1 springs; the last node is fixed.
+    """Line of n lumped masses from the free end down, with n - 1 springs between the masses.
+
+    The last mass does not move.
 
     Attributes
     ----------
     position : (n, 3) position east, north, and up from the surface [m]
-    mass : (n,) mass [kg]
+    mass : (n,) mass at each node [kg]
     added_across, added_along : (n,) added mass normal and tangential to the line [kg]
-    water_across, water_along : (n,) displaced mass on which the wave pressure acts [kg]
+    water_across, water_along : (n,) mass of displaced water for the force of the wave pressure,
+        normal and tangential to the line [kg]
     across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for the flow normal to the line,
         for the tangential flow, and for flow in any direction [N/(m/s)²]
-    tangent : (n, 3) unit vectors down the line, at the nodes
-    tension : (n-1,) tension in equilibrium [N]
-    stiffness : (n-1,) spring stiffness dT/d(length) [N/m]
-    spring : (n-1, 3) unit vectors along the springs, down the line
+    tangent : (n, 3) unit vectors along the line at the nodes, pointing down the line
+    tension : (n-1,) tension of the springs in equilibrium [N]
+    stiffness : (n-1,) stiffness of the springs, dT/d(length) [N/m]
+    spring : (n-1, 3) unit vectors along the springs, pointing down the line
     span : (n-1,) stretched lengths of the springs [m]
     current : (n, 3) current at the nodes [m/s]
-    piece_spring : (pieces,) index of the spring below the upper end of each piece, but below the
-        lower end for pieces of the top float; -1 without a spring
-    piece_below : (pieces,) index of the next spring of the same piece; if there is none,
-        `piece_spring`
+    piece_spring : (pieces,) index of the spring just below the upper end of each piece; for pieces
+        of the top float, index of the spring just below the float; -1 for pieces on the seabed
+    piece_below : (pieces,) index of the next spring of the same piece; if there is no such spring,
+        the same as `piece_spring`
     piece_node : (pieces,) node at the upper end of each piece; -1 on the seabed
     top_pieces : number of pieces of the top float, including the pieces that it carries above the
         surface
@@ -87,9 +90,9 @@ class LumpedLine:
     inextensible: tuple[str, ...]
 
     def turned(self, motion: Complexes) -> Complexes:
-        """Return the rotation (f, n-1, 3) of the springs [rad], for motions (f, n, 3).
+        """Return the rotation (f, n-1, 3) of the springs [rad] for motions (f, n, 3) of the nodes.
 
-        It is normal to their axes.
+        The rotation is given as the change of the unit vector along each spring.
         """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
@@ -97,8 +100,8 @@ class LumpedLine:
     def upper_ends(self, middle: Complexes) -> Complexes:
         """Extrapolate values (f, n-1, …) from the midpoints of springs to the upper ends of pieces.
 
-        The extrapolation is linear, from the first two springs of a piece. Pieces on the seabed get
-        0.
+        The extrapolation is linear, from the first two springs of a piece. The value is 0 for
+        pieces on the seabed.
         """
         first, next_one = self.piece_spring, self.piece_below
         share = self.span[first] / (self.span[first] + self.span[next_one])
@@ -110,12 +113,12 @@ class LumpedLine:
 def lumped_line(leg: Leg, solution: Solution, longest: float) -> LumpedLine:
     """Represent the line of a solution by lumped masses and springs.
 
-    Half of the mass and of the drag of an element is lumped at each of its ends. Parts on the
-    seabed do not move and are omitted.
+    Half of the mass of an element, and half of its drag, is lumped at each of its ends. Parts on
+    the seabed do not move and are omitted.
 
     Parameters
     ----------
-    leg : leg that was solved
+    leg : leg to which the solution belongs
     solution : equilibrium of this leg
     longest : largest length of an element [m]
     """

@@ -24,10 +24,10 @@ COMPARED = 1.0, 10.0
 
 @dataclass(frozen=True)
 class MeasuredBand:
-    """Range of the ratio of measured to computed tension, from `low` to `high`.
+    """Range, from `low` to `high`, of the ratio of measured to computed tension.
 
-    The ratio is that of the standard deviations. `from_height` and `to_height` are the limits of
-    significant height of the seas compared [m].
+    The ratio compares standard deviations of tension. `from_height` and `to_height` are the
+    smallest and largest significant wave heights in the comparison [m].
     """
 
     low: float
@@ -50,9 +50,10 @@ seas, `panels` 1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to
 def measured_band(
     significant_height: float, heave: Literal["filtered", "panels", "follows"]
 ) -> MeasuredBand:
-    """Return the band of measured tensions below a float at the surface.
+    """Return the range of the ratio of measured to computed tension below a float at the surface.
 
-    Seas outside the range of the comparison get the band of the nearest height.
+    For a sea state outside the range of the comparison, the result is the band for the nearest wave
+    height.
 
     Parameters
     ----------

@@ -28,9 +28,10 @@ if TYPE_CHECKING:
 class PieceLoads:
     """Tensions of a piece in a sea state [N].
 
-    `tension_max` and `tension_min` are the most probable extremes at the upper end within the
-    duration; `greatest` and `least` are the extremes over the whole piece. `slack_probability` is
-    the probability that the upper end becomes slack within the duration.
+    `tension_max` and `tension_min` are the most probable maximum and minimum at the upper end
+    within the duration of the analysis. `greatest` and `least` are the maximum and minimum over the
+    whole piece. `slack_probability` is the probability that the upper end becomes slack within this
+    duration.
     """
 
     tension_std: float
@@ -45,13 +46,13 @@ class PieceLoads:
 class PieceInWaves:
     """Results for a piece of the line in a sea state.
 
-    Tensions are described in `PieceLoads`. Heave is in m, and tilt in degrees.
+    The tensions are defined in `PieceLoads`. Heave is in m, and tilt in degrees.
 
     Attributes
     ----------
-    half_cut_off, twice_cut_off : tensions with half and with twice the cut-off frequency
-    measured_low, measured_high : tensions at the two ends of the band measured at sea; None if no
-        band applies
+    half_cut_off, twice_cut_off : tensions for half and for twice the cut-off frequency of the waves
+    measured_low, measured_high : tensions with the standard deviation multiplied by
+        `MeasuredBand.low` and `MeasuredBand.high`; None if no band applies
     """
 
     index: int
@@ -79,7 +80,10 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state up to its cut-off frequency, half of it, and twice it."""
+    """Responses to a sea state, computed up to three cut-off frequencies of the waves.
+
+    These are the cut-off frequency itself, half this frequency, and twice this frequency.
+    """
 
     full: WaveResponse
     half: WaveResponse
@@ -92,19 +96,20 @@ class MooringInSea:
 
     Attributes
     ----------
-    components : results for the pieces, down the line
+    components : results for the pieces, from the top down
     slack : labels of the pieces that become slack
     cut_off : cut-off frequency of the waves [rad/s]
-    band : band of measured over computed standard deviations of tension; None for a line below the
-        surface and for a float with a prescribed response
-    follower_std : standard deviation of the tension below a float that follows every wave [N],
-        computed only in the highest of several seas; None in other seas and for a line below the
-        surface
+    band : range of measured divided by computed standard deviations of tension; None for a line
+        below the surface and for a float with a prescribed response
+    follower_std : standard deviation of the tension below the float if it followed every wave [N].
+        This is computed only in the highest sea state; None in other sea states and for a line
+        below the surface
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
-    moments : moments of the tension in the pieces, for the cut-off frequency, half of it, and twice
-        it
+    moments : spectral moments of the tension in the pieces, for the cut-off frequency, half this
+        frequency, and twice this frequency
     spectrum : angular frequencies [rad/s], and spectrum of the tension at the top [N² s/rad]
-    along : depth [m], and mean, standard deviation and maximum of the tension down the line [N]
+    along : depth [m] of points down the line, and mean, standard deviation and maximum of the
+        tension at these points [N]
     """
 
     sea: SeaState
@@ -119,7 +124,7 @@ class MooringInSea:
     along: tuple[Floats, Floats, Floats, Floats]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object of the sea state, in SI units and degrees."""
+        """Return the results as a dictionary for JSON, in SI units and degrees."""
         return {
             "significant_wave_height": self.sea.significant_height,
             "peak_period": self.sea.peak_period,
@@ -183,13 +188,13 @@ def mooring_in_sea(
     duration: float,
     follower: float | None,
 ) -> MooringInSea:
-    """Compute tensions and motions of the pieces of a mooring from its responses to a sea state.
+    """Compute tensions and motions of the pieces of a mooring from the responses to a sea state.
 
     Parameters
     ----------
-    responses : responses for the cut-off frequency, half of it, and twice it
-    duration : duration to which the maximum and the minimum tension refer [s]
-    follower : `MooringInSea.follower_std` of the result
+    responses : responses for the cut-off frequency, half this frequency, and twice this frequency
+    duration : duration for which the maximum and minimum tension are computed [s]
+    follower : value for `MooringInSea.follower_std`
     """
     response = responses.full
     pitches = buoy is not None and buoy.profile is not None

@@ -45,9 +45,10 @@ class WaveResponse:
     ----------
     omega : (f,) angular frequency [rad/s]
     weight : (f,) variance of the elevation that each frequency represents [m²]
-    motion : (f, n, 3) motion of the nodes [m/m]
-    pull : (f, n-1) tension in the springs [N/m]
-    pitch : (f,) pitch of the float, positive in the direction of wave travel [rad/m]
+    motion : (f, n, 3) displacement of the nodes [m/m]
+    pull : (f, n-1) change of the tension in the springs [N/m]
+    pitch : (f,) pitch of the float, positive if the top moves in the direction of wave travel
+        [rad/m]
     """
 
     omega: Floats
@@ -57,7 +58,11 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Return standard deviation and zero-crossing period [s] for transfer functions (f, …)."""
+        """Return the standard deviations and zero-crossing periods [s] of responses to the sea
+        state.
+
+        The responses are given by transfer functions (f, …).
+        """
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
         zeroth = spectral.sum(0)
@@ -67,9 +72,10 @@ class WaveResponse:
         return np.sqrt(zeroth), period
 
     def below(self, limit: float) -> WaveResponse:
-        """Return the response to the waves below a frequency `limit` [rad/s].
+        """Return the response to only those waves whose frequency is below `limit` [rad/s].
 
-        Each frequency represents the waves up to the midpoints between it and its neighbours.
+        Each frequency stands for the waves in an interval that ends halfway to the neighbouring
+        frequencies.
         """
         middle = 0.5 * (self.omega[1:] + self.omega[:-1])
         edges = np.concatenate([self.omega[:1], middle, self.omega[-1:]])
@@ -77,7 +83,7 @@ class WaveResponse:
         return replace(self, weight=self.weight * np.clip(share, 0.0, 1.0))
 
     def joined(self, other: WaveResponse) -> WaveResponse:
-        """Combine the frequencies of two responses in one."""
+        """Combine this response and a response at other frequencies into one response."""
         names = [each.name for each in fields(self)]
         both = ((getattr(self, name), getattr(other, name)) for name in names)
         return WaveResponse(*(np.concatenate(pair) for pair in both))
@@ -90,7 +96,7 @@ class Waves:
     Attributes
     ----------
     omega : (f,) angular frequency [rad/s]
-    toward : direction of travel [degrees], clockwise from north
+    toward : direction in which the waves travel [degrees], clockwise from north
     depth, density, gravity : water depth [m], density [kg/m³], and acceleration of gravity [m/s²]
     """
 
@@ -107,14 +113,14 @@ class Waves:
 
     @property
     def ahead(self) -> Floats:
-        """Unit vector in the direction of travel, (3,)."""
+        """Unit vector (3,) in the direction of travel."""
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity (f, n, 3) of water at positions (n, 3) [1/s].
+        """Return the velocity (f, n, 3) of the water at positions (n, 3) [m] in waves [1/s].
 
-        It is per metre of wave elevation. The elevation of the linear waves is the real part of
-        e^(i(ωt - ks)), with s in the direction of travel.
+        The velocity is per metre of wave elevation. The elevation is the real part of e^(i(ωt -
+        ks)), where s is the distance in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
@@ -202,24 +208,25 @@ def respond(
     first: Floats | None = None,
     once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
-    """Compute the response to a sea state.
+    """Compute the response of a line to a sea state.
 
-    The drag of each node is replaced by the linear drag that is equivalent on average, for a
-    Gaussian motion about the mean current: E[F v'] / E[v'²]. It is updated until the motions
-    converge.
+    The drag on each node is replaced by a linear drag that dissipates the same energy on average.
+    For a Gaussian flow v' about the mean current, the coefficient of the linear drag is E[F v'] /
+    E[v'²]. The coefficients are updated until the motions converge.
 
     Parameters
     ----------
-    line, buoy : the line, and the float at the surface; None for a line below the surface
-    waves, sea : the waves, and their spectrum
-    drag_factor : factor on the damping, for a sensitivity test
+    line, buoy : the line, and the float at the surface (None for a line below the surface)
+    waves, sea : the waves, and the sea state that defines their spectrum
+    drag_factor : factor by which the linear drag is multiplied, for a sensitivity test
     first : initial estimate of the flow past the nodes, such as the flow in a similar sea
-    once : whether to use this flow without iteration
+    once : whether to use the flow `first` without iteration
 
     Returns
     -------
-    The response, and the flow past the nodes for which drag is linearised: (n, 3) standard
-    deviations along the axes of each node [m/s], followed by a row for the pitch of the float.
+    The response, and the flow past the nodes for which drag is linearised. The flow is an array (n
+    + 1, 3): standard deviations along the three axes of each node [m/s], followed by a row for the
+    pitch of the float.
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
@@ -433,7 +440,9 @@ def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
 
 
 def wave_numbers(omega: Floats, depth: float, gravity: float) -> Floats:
-    """Return the wave numbers k of linear waves [1/m]: ω² = g k tanh(k h), by Newton's method.
+    """Return the wave numbers k of linear waves [1/m].
+
+    The equation ω² = g k tanh(k h) is solved by Newton's method.
 
     Parameters
     ----------

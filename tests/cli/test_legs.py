@@ -890,7 +890,10 @@ legs:
 BROKEN_GRIDS = [
     (GRIDDED[GRIDDED.index("environment") :], "a grid needs the `position`"),
     (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes around the position"),
-    (GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"), "the grid of the seabed has no depth at the anchor"),
+    (
+        GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"),
+        "the grid of the seabed has no depth at the anchor",
+    ),
     (GRIDDED.replace("grid.nc", "grid.tif"), "gdal_translate -of netCDF grid.tif grid.nc"),
     (GRIDDED.replace("grid.nc", "absent.nc"), "no such file"),
     (GRIDDED.replace("grid.nc", "words.nc"), "cannot be read as NetCDF"),

@@ -401,7 +401,7 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, own, truth, fold
         assert np.isnan(copy["depth"].values[:, 1]).all()
     assert (folder / "copy.motion.nc").exists()
     page = (folder / "report" / "motion.html").read_text()
-    assert "middle, hidden" in page and "drag of cables and chains" in page
+    assert "middle, withheld" in page and "drag of cables and chains" in page
     assert (folder / "report" / "motion.pdf").read_bytes().startswith(b"%PDF")
     again = calm(*words, "--onto", "copy.nc", "-o", "other.nc")
     assert again.code == 2 and "has `depth` already" in again.err

@@ -59,6 +59,7 @@ UGLY = (
 )  # fmt: skip
 
 OF_THE_LINE = ("add ", "clamp ", "use ", "delete ", "duplicate ", "move ", "paste ", "change ")
+OF_A_TABLE = ("add a row", "delete a row")
 ELSEWHERE = ("edit the text", "reload the file", "recover")
 
 
@@ -87,7 +88,7 @@ def check_step(label, before, after):
     """Of each step, that what it was not about is as it was, byte for byte."""
     items = Counter(item.text for item in before.items)
     now = Counter(item.text for item in after.items)
-    if label.startswith(OF_THE_LINE):
+    if label.startswith(OF_THE_LINE) and label not in OF_A_TABLE:
         if before.items and after.items:  # an emptied list is written in another way
             assert around(before) == around(after), label
         if label.startswith("move ") and items.total() == now.total():

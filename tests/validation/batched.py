@@ -42,7 +42,7 @@ def in_company(line: Line, water: Water, settings: Settings) -> tuple[str, Ends]
     )  # fmt: skip
     if ending != endings[own] or not same:
         raise Unlike("alone it is not what it is in company")
-    pieces, clamps, ends = (rows[own] for rows in together)
+    pieces, clamps, ends, _ = (rows[own] for rows in together)
     of = {name: pieces[i] for i, name in enumerate(OF_PIECE)}
     place = np.column_stack([of["x_top"], of["y_top"], -of["depth_top"]])
     down = np.lexsort((line.clamp_at, line.clamp_piece))  # in this order they are in the rows

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import fields, replace
+from math import inf
 from random import Random
 from typing import Any
 
@@ -18,7 +19,15 @@ import pytest
 
 import calm
 from calm.errors import NoEquilibrium
+from calm.physics.cable import pass_segment
+from calm.physics.compiled import outcome, packed
 from calm.physics.drag import Friction
+from calm.physics.law_kinds import record_type
+from calm.physics.line import NO_BALANCE
+from calm.physics.profile import Interval, Sea
+from calm.physics.stretch import Knot
+from calm.physics.strumming import AT_REST
+from calm.physics.track import CableStretch
 from calm.shipped import shipped_folder
 from calm.solve import Settings, Solution, solve_mooring, solve_rise
 from tests.validation.families import FAMILIES
@@ -84,3 +93,28 @@ def test_lines_that_rise_are_the_same() -> None:
     plain, compiled = both(lambda: digits(lambda: solve_rise(line, water, 100.0).solution))
     assert plain == compiled
     assert "position" in plain
+
+
+def segment_in_thin_shear(random: Random) -> tuple[Any, ...]:
+    """Arguments of `pass_segment` for a segment beside a thin layer that turns the current over."""
+    top, thick = random.uniform(0.5, 2.0), 10.0 ** random.uniform(-3.0, 0.0)
+    far, at_top, below = (random.uniform(-3.0, 3.0) for _ in range(3))
+    currents = [(0.0, far, 0.0), (top, at_top, (below - at_top) / thick), (top + thick, below, 0.0)]
+    intervals = [Interval(z, u, du, 0.0, 0.0, 0.0, 0.0, 1025.0, 0.0) for z, u, du in currents]
+    sea = Sea([-inf, top, top + thick, inf], intervals, [1.0] * 4, 9.81, [])
+    net, drag = random.uniform(-90.0, 90.0), 10.0 ** random.uniform(0.0, 3.0)
+    cable = CableStretch(0, 10.0, net, 0.0, drag, 0.1, 0.0, 0.5, 0, 0, 0, 0.0)
+    pull, above = 10.0 ** random.uniform(-1.0, 2.0), random.uniform(-0.2, 1.5)
+    state = (0.0, 0.0, above - top, random.uniform(-pull, pull), 0.0, -pull, 0.0, 0)
+    return cable, [], AT_REST, sea, state, random.uniform(0.1, 3.0), 0.0, (0.0, 0.0, 0.0)
+
+
+def test_segments_without_balance_are_the_same() -> None:
+    random, unbalanced = Random(1), 0
+    for _ in range(1000):
+        cable, knots, vibration, sea, *others = segment_in_thin_shear(random)
+        plain = pass_segment(cable, knots, vibration, sea, *others)
+        none: Any = np.zeros(0, record_type(Knot))
+        assert outcome(pass_segment, True, cable, none, vibration, packed(sea), *others) == plain
+        unbalanced += plain[1] == NO_BALANCE
+    assert unbalanced > 10

@@ -61,8 +61,8 @@ class Level:
 
     Attributes
     ----------
-    period : T [years]. GEV: the annual maximum exceeds the level in one of T years on average; POT:
-        a peak exceeds it once in T years on average
+    period : return period T [years]. With GEV, the annual maximum exceeds the level in one of T
+        years on average; with POT, a peak exceeds the level once in T years on average
     level : estimated return level
     low, high : ends of the confidence interval; None if the data do not determine it
     """
@@ -80,7 +80,7 @@ class Fit:
     Attributes
     ----------
     method : a key of `METHODS`
-    location, scale, shape : μ, σ, ξ; the location of POT is its threshold
+    location, scale, shape : μ, σ and ξ; for POT, the location is the threshold
     count : number of fitted maxima or peaks
     rate : number of maxima or peaks per year
     rules : description of the selection of maxima or peaks
@@ -108,16 +108,16 @@ class LevelsRefused:
 def return_levels(
     time: Times, values: Column, statuses: Mapping[str, int], step: np.timedelta64 | None = None
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
-    """Compute return levels with 95 % intervals by GEV and by POT; a method without levels returns
-    the reason.
+    """Compute return levels with 95 % intervals, first by GEV and then by POT.
 
-    No levels are computed if profiles with a current were not solved. Solutions are most often
-    missing in the strongest currents, so levels from the remaining profiles would be too low.
+    If a method has no levels, the reason is returned instead. No levels are computed if profiles
+    with a current were not solved. Solutions are most often missing in the strongest currents, so
+    levels from the remaining profiles would be too low.
 
     Parameters
     ----------
-    time : (n,) ascending and evenly spaced, except for gaps
-    values : (n,) NaN for missing values
+    time : (n,) times, ascending and evenly spaced except for gaps
+    values : (n,) values of the quantity; NaN if missing
     statuses : number of profiles by status, from `calm.batch.finished.statuses_of`. Unsolved
         profiles are ignored if they have no data or a status in
         `calm.batch.statuses.IN_WEAK_CURRENT`
@@ -265,7 +265,7 @@ YEAR = np.timedelta64(31_557_600, "s")
 
 
 def years_of(step: np.timedelta64, count: int) -> float:
-    """Return the time that a number of profiles represents, if each represents the median step
+    """Return the time represented by `count` profiles, each of which represents one median step
     [years].
     """
     return count * float(step / YEAR)
@@ -286,7 +286,7 @@ def median_step(time: Times) -> np.timedelta64:
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """Return the maximum of every complete year, and the number of years including incomplete ones.
+    """Return the maximum of every complete year, and the number of all years, complete or not.
 
     Years of 365.25 days are counted from the first profile. A year is complete if it has at least
     the fraction `WHOLE` of the possible values.
@@ -326,8 +326,8 @@ def extremal_index(intervals: NDArray[np.float64]) -> float:
     """Estimate the extremal index θ, the fraction of exceedances that are independent of previous
     ones.
 
-    The intervals between exceedances, (N - 1,), are at least 1 step; the estimator depends on
-    whether one of them exceeds 2.
+    The intervals (N - 1,) between exceedances are in time steps and at least 1. A different
+    estimator is used if any interval exceeds 2.
     """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())

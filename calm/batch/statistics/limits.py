@@ -39,10 +39,10 @@ class CountedLimit:
     ----------
     rule : rule of the design check
     criterion : criterion of the rule
-    leg : leg to which the criterion applies; values that the catalogue lacks are replaced by the
+    leg : leg to which the criterion applies; values missing from the catalogue are replaced by the
         lower bounds of their estimates
-    seats : columns of the leg, if there are several legs
-    on_estimate : whether the limit is the lower bound of an estimate, so that exceeding it is not
+    seats : column numbers of the leg in the batch result, if there are several legs
+    on_estimate : whether the limit is the lower bound of an estimate; exceeding such a limit is not
         certain to be a failure
     """
 
@@ -60,7 +60,7 @@ class CountedLimit:
         return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """Return for each value (n,) whether it violates the limit (false for NaN)."""
+        """Return, for each value (n,), whether the value violates the limit; false for NaN."""
         limit = self.criterion.limit
         assert limit is not None
         beyond = values < limit if self.criterion.least else values > limit
@@ -68,13 +68,13 @@ class CountedLimit:
 
 
 def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
-    """List all limits of a mooring that can be evaluated in a batch, rule by rule and down the
+    """List all limits of a mooring that can be evaluated in a batch, by rule and then down the
     line.
 
     The tension of a piece is the maximum or minimum of the tensions at its ends and at its clamps,
-    because a result has no other values. A line designed to reach the surface is always checked as
-    a surface mooring, even if its float is submerged. As in the design check, values that a
-    component lacks are replaced by the lower bounds of their estimates.
+    because a batch result has no tensions elsewhere. A line designed to reach the surface is always
+    checked as a surface mooring, even if its float is submerged. As in the design check, missing
+    values of a component are replaced by the lower bounds of their estimates.
     """
     seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
@@ -185,13 +185,15 @@ _LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on
 
 @dataclass(frozen=True)
 class Exceedance:
-    """Frequency with which a limit is exceeded: `share` is a fraction of the `count` profiles in
-    which the limit can be evaluated.
+    """Frequency with which a limit is exceeded in a batch.
 
-    A profile beyond a limit that is an estimate is not counted as a failure.
+    `count` is the number of profiles in which the limit can be evaluated, and `share` the fraction
+    of these profiles that exceed the limit.
+
+    If the limit is an estimate, profiles that exceed it are left out of both numbers.
 
     `worst` is the value farthest beyond the limit, or the closest to it if none is beyond, and
-    `time` is the time of this value. Both are None without a limit or without values.
+    `time` is the time of this value. Both are None if there is no limit or no value.
     """
 
     limit: CountedLimit
@@ -208,12 +210,12 @@ class RuleShare:
     Attributes
     ----------
     judged : number of profiles in which at least one limit of the rule is evaluated
-    fails, warns : fraction of these profiles in which the rule fails, or warns without failing;
-        None if there are no such profiles
-    fails_at_most : upper bound of `fails`, as if the rule also failed in every unsolved profile
-        with a current; None without evaluated profiles
-    unknown : number of limits that cannot be evaluated, usually for lack of a value
-    exceedances : how often each limit is exceeded
+    fails, warns : fraction of these profiles in which the rule fails, and in which it warns but
+        does not fail; None if there are no such profiles
+    fails_at_most : upper bound of `fails`, for which every unsolved profile with a current is
+        counted as a failure; None if no profile is evaluated
+    unknown : number of limits that cannot be evaluated, usually because a value is missing
+    exceedances : frequency with which each limit is exceeded
     """
 
     name: str
@@ -227,8 +229,9 @@ class RuleShare:
 
 
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
-    """Compute the fraction of profiles without equilibrium; profiles that did not converge are not
-    counted.
+    """Compute the fraction of profiles without equilibrium.
+
+    Profiles that did not converge are left out of this fraction.
     """
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
@@ -238,7 +241,7 @@ def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
 def shares_of(
     series: ResultColumns, limits: Iterable[CountedLimit], unsolved: int
 ) -> Iterator[RuleShare]:
-    """Yield the fraction of failures for each rule.
+    """Yield the `RuleShare` of each rule.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class LegSeats(NamedTuple):
     Attributes
     ----------
     components, clamps : ranges of columns
-    number : number of the leg, from 0
+    number : number of the leg, counted from 0
     """
 
     components: slice
@@ -179,8 +179,9 @@ class ResultColumns:
         return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
 
     def greatest_tension(self, seats: Sequence[Seat]) -> Column:
-        """Return the maximum tension (n,) over several parts [N], at both ends of a component or at
-        a clamp.
+        """Return the maximum tension (n,) over several parts [N].
+
+        For a component, both ends are considered.
         """
         return self._gathered(np.maximum, seats)
 

@@ -38,7 +38,9 @@ the hash of the complete input.
 
 @dataclass(frozen=True)
 class PartDistributions:
-    """Distributions for a component or a clamp; a quantity without values has None."""
+    """Distributions of the quantities of a component or a clamp; None for a quantity without
+    values.
+    """
 
     label: str
     clamped: bool
@@ -108,8 +110,8 @@ class Summary:
     begin, end : times of the first and the last profile
     years : years represented by the solved profiles
     parts : the components in the order of the file, then the clamps
-    responses : one for each of `RESPONSES`
-    worst : worst profiles by the names in `RANKED`, in order
+    responses : statistics of each of the `RESPONSES`
+    worst : worst profiles, the worst first, for each response in `RANKED`
     rules : the equilibrium rule, and the rules that can be evaluated in every profile
     not_judged : reasons why the remaining rules are not evaluated, by the names of the rules
     source : origin of the result, by the names in `SOURCE`
@@ -137,7 +139,9 @@ class Summary:
 
     @property
     def known_responses(self) -> Sequence[Response]:
-        """Responses with a value in at least one profile, or all responses if there are no values.
+        """Responses with a value in at least one profile, or all responses if no response has a
+        value.
+
         Most nets, for example, have no offset.
         """
         return [one for one in self.responses if one.distribution is not None] or self.responses
@@ -149,8 +153,8 @@ class Summary:
 
     @property
     def unsolved(self) -> int:
-        """Number of profiles that have a current but no values: no equilibrium, or no
-        convergence.
+        """Number of profiles that have a current but no solution, because none exists or none was
+        found.
         """
         return self.count - self.solved - self.endings[Ending.NO_DATA]
 
@@ -362,11 +366,11 @@ class Distribution:
     ----------
     count : n
     mean : mean over the profiles
-    percentiles : values at `PERCENTILES`, interpolated linearly between the sorted values, where
-        rank 1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
+    percentiles : values at `PERCENTILES`, interpolated linearly between the sorted values; the p
+        quantile has the rank 1 + (n - 1) p (definition 7 of Hyndman and Fan 1996)
     maximum, time : the maximum, and the time at which it is first reached
     share, value : exceedance curve. A fraction `share` of the profiles reaches or exceeds `value`,
-        which is the quantile 1 - share; the shares are `SHARES` down to a single profile
+        which is the quantile 1 - share. The shares are those in `SHARES` that exceed 1/n, and 1/n
     """
 
     count: int
@@ -379,7 +383,9 @@ class Distribution:
 
 
 def distribution_of(values: Column, time: Times) -> Distribution | None:
-    """Compute the distribution of (n,) values without NaN; None if all values are NaN."""
+    """Compute the distribution of the values that are not NaN; return None if all (n,) values are
+    NaN.
+    """
     known = values[np.isfinite(values)]
     known.sort()
     count = len(known)

@@ -45,14 +45,14 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
-    """Draw a line as one SVG picture. Up to about 50 parts fit on an A4 page; more parts need a
-    longer sheet.
+    """Draw a line as one SVG picture.
 
-    The picture has no external references, identifiers or style sheets, so that several pictures
-    can be placed on a page. Long texts are wrapped and never cut. The same line always gives the
-    same picture. With a result, depths are under load and in the current. Without a result, depths
-    are those of the upright, unstretched line; they are unknown for a tow and for a float at the
-    surface.
+    Up to about 50 parts fit on an A4 page; more parts need a longer sheet. The picture has no
+    external references, identifiers or style sheets, so that several pictures can be placed on a
+    page. Long texts are wrapped and never cut. The same line always gives the same picture. If a
+    result is given, the depths are those of the loaded line in the current. Without a result, the
+    depths are those of the upright, unstretched line; for a tow, and for a line with a float at the
+    surface, they are unknown.
     """
     (drawn,) = _drawn(schematic_of(file, result), inf)
     return drawn
@@ -179,7 +179,7 @@ class LineColumn:
     headings : headings of the values; each is a sequence of text lines, with the unit last
     rights : right edge of each column of values
     text : left and right edge of the texts
-    line_at : position of the line from the left edge
+    line_at : distance of the line from the left edge
     """
 
     width: float
@@ -195,11 +195,11 @@ def column_of(
     width: float,
     line_at: float = 26.0,
 ) -> LineColumn:
-    """Compute the layout of a column. Each column of values is as wide as its widest entry.
+    """Compute the layout of a column; each column of values is as wide as its widest entry.
 
     Parameters
     ----------
-    parts : rows of text next to the line
+    parts : rows of text for each part next to the line
     headings : headings of the values
     line_at : distance of the line from the left edge; the symbols take twice this width
     """
@@ -214,8 +214,9 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text next to a part, with values, and with an optional `side_text` at the distance
-    `at`.
+    """A line of text next to a part, with its values and an optional text to the side.
+
+    `side_text` is written at the distance `at` from the start of the line.
     """
 
     text: str
@@ -234,8 +235,9 @@ class TextLine(NamedTuple):
 
 @dataclass(frozen=True)
 class PlacedPart:
-    """A part with its position and texts; `ends` are the upper and lower end of the line drawn
-    through it.
+    """A part with its position in the picture and its texts.
+
+    `ends` are the positions of the upper and lower end of the line that is drawn through the part.
     """
 
     part: ShownPart
@@ -255,8 +257,8 @@ def measured(
 ) -> list[PlacedPart]:
     """Compute the height of each part; the parts are not placed yet.
 
-    The height of a cable with its clamps increases with the logarithm of its length, at a rate of
-    `growth`, so that long cables look long.
+    The height of a cable, including its clamps, increases with the logarithm of its length, so that
+    long cables look long. `growth` multiplies the rate of this increase.
     """
     found = [_measured(part, column) for part in parts]
     for number, one in enumerate(found):
@@ -298,8 +300,8 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 def divided(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
     """Divide parts into groups at most `room` high.
 
-    A group ends above a junction if there is one near its end, else between two pieces, else
-    between two clamps.
+    A group ends above a junction if there is a junction near the end of the group, otherwise
+    between two pieces or, failing that, between two clamps.
     """
     rest = [*parts]
     while rest:
@@ -319,8 +321,9 @@ def divided(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPar
 def placed(
     parts: Sequence[PlacedPart], top: float, line_top: float | None = None
 ) -> tuple[PlacedPart, ...]:
-    """Place parts below each other, beginning at `top`. The line begins at `line_top`, by default
-    at `top`.
+    """Place parts one below the other, beginning at `top`.
+
+    The line begins at `line_top`, which by default is `top`.
     """
     tops = accumulate((part.height for part in parts), initial=top)
     found = [
@@ -333,9 +336,7 @@ def placed(
 
 
 def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
-    """Write the headings of the values, with their last lines aligned, and draw a rule below
-    them.
-    """
+    """Write the headings of the values, aligned at their last lines, above a horizontal rule."""
     for lines, right in zip(column.headings, column.rights, strict=True):
         for number, word in enumerate(reversed(lines)):
             y = top + HEAD - 8.0 - 9.4 * number
@@ -346,7 +347,7 @@ def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> Non
 def draw_sea(
     page: Pen, column: LineColumn, left: float, levels: tuple[float, float], row: TextRow | None
 ) -> None:
-    """Draw the water between two levels, and the surface with an optional text."""
+    """Draw the water between two levels, and the sea surface with an optional row of text."""
     pen = page.group(left, 0.0)
     symbols.draw_water(pen, 2.0 * column.line_at, *levels)
     symbols.draw_surface(pen, 2.0 * column.line_at, levels[0])
@@ -355,13 +356,13 @@ def draw_sea(
 
 
 def draw_ground(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
-    """Draw the seabed with its text."""
+    """Draw the seabed with its row of text."""
     symbols.draw_seabed(page.group(left, 0.0, stroke=INK), 2.0 * column.line_at, y)
     draw_row(page, column, left, y + SEABED_ROOM / 2 + 1.0, row)
 
 
 def draw_row(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
-    """Write a row of text without a part, with its values."""
+    """Write a row of text that belongs to no part, with its values."""
     page.letters(left + column.text[0], y, row.label, size=FONT, colour=SOFT)
     for text, right in zip(row.cells, column.rights, strict=False):
         page.letters(left + right, y, text, size=FONT, colour=SOFT, anchor="end")

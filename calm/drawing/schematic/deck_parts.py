@@ -22,11 +22,11 @@ Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
 def parts_of_deck(
     deck: Deck, listed: Sequence[DeckItem], *, surface: bool
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts with values; `surface` is set if its top
-    floats at the surface.
+    """Convert the listed items of a line or leg to parts with values.
 
     The values of each part are its number, cut length or position on the wire, stretched length,
-    depth, planned depth if any part has one, height, tension and net buoyancy.
+    depth, planned depth (if any part has one), height, tension and net buoyancy. `surface` is true
+    if the top of the line floats at the surface.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
     cells = partial(_figures, deck.numbers, weights=weights, planned=has_plans(deck))
@@ -48,7 +48,7 @@ def parts_of(
 
     Parameters
     ----------
-    every : all items of the line, from which labels chosen by the user are found
+    every : all items of the line, in which labels chosen by the user are looked up
     cells : function that returns the values next to a part
     surface : whether the top of the line floats at the surface
     """

@@ -46,7 +46,7 @@ def schematic_text(
     *,
     ascii_only: bool = False,
 ) -> str:
-    """Draw a line in order from the top, not to scale, with the columns of `schematic_svg`.
+    """Draw a line as text, from the top and not to scale, with the columns of `schematic_svg`.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def schematic_text(
 
 
 def can_carry(encoding: str | None) -> bool:
-    """Return whether an output encoding has all characters of the schematic."""
+    """Return whether an output encoding can represent all characters of the schematic."""
     return encodable(encoding, _SIGNS)
 
 

@@ -22,8 +22,9 @@ class Pen:
         self.element = element
 
     def draw(self, tag: str, **attributes: float | str) -> Pen:
-        """Add an element, and return a pen that draws inside it. ``_`` in attribute names becomes
-        ``-``.
+        """Add an element, and return a pen that draws inside the new element.
+
+        ``_`` in the names of attributes becomes ``-``.
         """
         written = {name.replace("_", "-"): _text(value) for name, value in attributes.items()}
         return Pen(ElementTree.SubElement(self.element, tag, written))
@@ -61,8 +62,9 @@ class Pen:
     def write(
         self, x: float, y: float, text: str, width: float, *, size: float, bold: bool = False
     ) -> None:
-        """Write a text, vertically centred at `y`. A text wider than `width` is shortened, and its
-        tooltip has the whole text.
+        """Write a text, vertically centred at `y`.
+
+        A text wider than `width` is shortened, and its tooltip contains the whole text.
         """
         shown = shortened(text, width, size, bold=bold)
         pen = self.letters(x, y, shown, size=size, bold=bold)
@@ -82,9 +84,7 @@ class Pen:
         bold: bool = False,
         anchor: str = "start",
     ) -> Pen:
-        """Write a text without shortening, vertically centred at `y`. Nothing is drawn for an empty
-        text.
-        """
+        """Write a text of any width, vertically centred at `y`; an empty text draws nothing."""
         if not text:
             return self
         weight = {"font_weight": "bold"} if bold else {}
@@ -101,12 +101,13 @@ def _text(value: float | str) -> str:
 
 
 def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
-    """Create an empty picture with a white background, and return its pen. The origin is the upper
-    left corner.
+    """Create an empty picture with a white background, and return its pen.
+
+    The origin of the picture is the upper left corner.
 
     Parameters
     ----------
-    width, height : width and height in the units of the picture; in points if `size` is None
+    width, height : width and height in units of the picture, which are points if `size` is None
     title : title of the picture
     size : printed width and height, with units
     """
@@ -124,7 +125,7 @@ def picture(width: float, height: float, title: str, size: tuple[str, str] | Non
 
 
 def svg_text(picture: Pen) -> str:
-    """Convert the picture to text, one element per line."""
+    """Convert a picture to SVG text, with one element per line."""
     ElementTree.indent(picture.element)
     return ElementTree.tostring(picture.element, encoding="unicode") + "\n"
 
@@ -143,7 +144,7 @@ _BOLD = 1.19
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """Return an upper bound for the width of a text, relative to the font size."""
+    """Return an upper bound for the width of a text, in the unit of the font size `size`."""
     ems = sum(map(_ems, text))
     return size * ems * (_BOLD if bold else 1.0)
 

@@ -23,7 +23,7 @@ _JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 
 @dataclass(frozen=True)
 class TextRow:
-    """Row of text next to a part: label, component name, and a cell per column."""
+    """Row of text next to a part: label, component name, and a cell for each column."""
 
     label: str
     name: str
@@ -33,13 +33,12 @@ class TextRow:
 
 @dataclass(frozen=True)
 class ShownPart:
-    """A part that has its own symbol: a piece, several equal pieces, a junction, or a clamped
-    instrument.
+    """A part with its own symbol: a piece, equal pieces, a junction, or a clamped instrument.
 
     Attributes
     ----------
-    sign : symbol to draw; for a chain or cable with floats, the symbol and number of the floats
-    rows : rows of text: two for a pair of releases, else one
+    sign : symbol to draw; for a chain or cable with floats, the symbol and the number of the floats
+    rows : rows of text: two rows for a pair of releases, otherwise one
     labels : labels of the pieces that the part represents
     cable : symbol of the cable, if the part is a cable or clamped on a cable; None for a rigid part
     length : length of a cable [m], NaN if unknown
@@ -65,12 +64,12 @@ class Schematic:
     title : name of the line
     subtitle : depth and position of a mooring, or speed of a tow
     note : explanation of the depths
-    columns : the known quantities of `HEADINGS`
+    columns : names of the columns of values, from `HEADINGS`
     parts : parts from the top, with clamped instruments after their piece
     surface : whether the first part floats at the surface
     towed_by : row of text at the ship or the helicopter
     sea : row of text at the sea surface; None in air
-    seabed : row of text at the seabed; None if its depth is unknown
+    seabed : row of text at the seabed; None if the depth of the seabed is unknown
     """
 
     title: str
@@ -85,8 +84,9 @@ class Schematic:
 
 
 def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schematic:
-    """Build the contents of the schematic of a line. With a result, depths are those of the
-    solution.
+    """Build the contents of the schematic of a line.
+
+    If a result is given, the depths are those of the solution.
     """
     levels = levels_of(file, result)
     bottom = file.environment.depth
@@ -117,8 +117,9 @@ def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schemati
 
 
 def one_line(text: str) -> str:
-    """Convert a text to a single line, with a mark in place of characters that XML or a terminal
-    cannot show.
+    """Convert a text to a single line, and replace characters that cannot be shown.
+
+    Characters that XML or a terminal cannot show become a replacement character.
     """
     return printable(" ".join(text.split()))
 
@@ -154,9 +155,7 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the sign for a float at the surface: a sphere is unchanged, any other symbol becomes a
-    buoy.
-    """
+    """Return the symbol of a float at the surface: a sphere, or a buoy in place of any other."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
@@ -214,10 +213,10 @@ class Levels:
 
     Attributes
     ----------
-    lengths, depths : cut length of each piece, and depth of its upper end [m]
+    lengths, depths : cut length of each piece, and depth of the upper end of each piece [m]
     clamps : depth of each clamped instrument [m]
     first : piece at the top of the line
-    surface : whether this piece floats at the surface
+    surface : whether the piece `first` floats at the surface
     note : explanation of the depths
     """
 
@@ -230,10 +229,10 @@ class Levels:
 
 
 def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
-    """Return lengths and depths from a result or, without a result, from the upright, unstretched
-    line.
+    """Return lengths and depths from a result, if there is one, or from the upright line.
 
-    Without a result, depths are unknown for a tow and for a line that reaches the surface.
+    The upright line is unstretched. Without a result, depths are unknown for a tow and for a line
+    that reaches the surface.
     """
     if result is not None:
         return Levels(
@@ -269,7 +268,5 @@ def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
 
 
 def place_text(at: float) -> str:
-    """Format the distance of a clamp from the upper end of its piece [m], as it appears in the
-    column of lengths.
-    """
+    """Format the distance of a clamp from the upper end of its piece [m] for the length column."""
     return f"at {QUANTITIES['at'].format(at)}"

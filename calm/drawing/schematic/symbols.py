@@ -18,7 +18,7 @@ from calm.physics.materials import fibre_of
 
 
 class Symbol(StrEnum):
-    """Symbol in a schematic, with its name for a legend."""
+    """Symbol in a schematic; the value is the name of the symbol in a legend."""
 
     SPHERE = "float"
     BALL = "ball"
@@ -50,9 +50,7 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 
 @dataclass(frozen=True)
 class Sign:
-    """A symbol, the number of times it is repeated, and whether it contains an ADCP that looks up
-    or down.
-    """
+    """A symbol, how often it is repeated, and whether it contains an ADCP that looks up or down."""
 
     symbol: Symbol
     count: int = 1
@@ -81,12 +79,12 @@ _DOWN = re.compile(r"\bdown(?:ward|wards)?\b")
 
 
 def sign_of(use: str, label: str, component: Component) -> Sign:
-    """Choose the sign of a piece or of a clamped instrument.
+    """Choose the symbol for a piece or a clamped instrument.
 
     Parameters
     ----------
-    use, label : id and label of the part; words in the label are considered last
-    component : component of the part, whose kind, role, name and note are considered first
+    use, label : component id and label of the part; words in the label are considered last
+    component : component of the part; its kind, role, name and note are considered first
     """
     own = f"{use} {component.name or ''} {component.note or ''}".lower()
     words = f"{own} {label.lower()}"
@@ -153,14 +151,14 @@ _BEAM = 11.0
 
 @dataclass(frozen=True)
 class SymbolFigure:
-    """Height of a symbol, and the function that draws it about the origin of a pen."""
+    """Height of a symbol, and the function that draws the symbol about the origin of a pen."""
 
     height: float
     draw: Callable[[Pen], None]
 
 
 def figure_of(sign: Sign) -> SymbolFigure:
-    """Return the drawing of a sign; signs of cables and chains have none."""
+    """Return the drawing of a symbol; cables and chains have no such drawing."""
     if sign.symbol in BALLS:
         figure = _pack(sign)
     elif sign.symbol is Symbol.WHEELS:
@@ -347,7 +345,7 @@ def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
 
 
 def draw_water(pen: Pen, width: float, top: float, bottom: float) -> None:
-    """Draw the water in the background of the line."""
+    """Draw the water behind the line."""
     height = bottom - top
     pen.box(width / 2, (top + bottom) / 2, width, height, fill=_WATER, stroke="none")
 
@@ -370,8 +368,9 @@ def draw_seabed(pen: Pen, width: float, y: float) -> None:
 
 
 def draw_ship(pen: Pen) -> None:
-    """Draw a ship that tows from its A-frame; the sheave is at the origin, 26 units above the
-    water.
+    """Draw a ship that tows from its A-frame.
+
+    The sheave of the A-frame is at the origin, 26 units above the water.
     """
     pen.path("M-62 16L-14 16L-12 32Q-36 36 -56 32Z", fill=_HULL)
     pen.path("M-50 16L-50 3L-30 3L-30 16Z", fill="white")

@@ -50,12 +50,12 @@ _NEED = ("float", "release", "anchor", "instrument")
 def elevation(
     result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()
 ) -> list[Text]:
-    """Draw a line in the vertical plane of its excursion or tow direction.
+    """Draw a line in the vertical plane of its excursion or of the tow.
 
-    Distances are from the anchor towards the free end, or from the ship backward; their scale
-    differs from that of the depths. The line in still water is dotted. From a width of 50 cells,
-    the names of parts are shown. `overlays` are shapes in other environments or of other designs;
-    they are dashed.
+    Distances are from the anchor towards the free end, or from the ship backward. Distances and
+    depths have different scales. The line in still water is dotted. If the drawing is at least 50
+    cells wide, the names of parts are shown. `overlays` are shapes in other environments or of
+    other designs, which are dashed.
     """
     side = line_picture.elevation_of(result, overlays)
     moored = not result.towed
@@ -183,7 +183,7 @@ _KILO = 1e4
 
 
 def tension(result: LegResult, width: int, height: int) -> list[Text]:
-    """Draw tension against the distance along the line, from the top.
+    """Draw the tension against the distance along the line from its top.
 
     A red dotted line shows the allowable load at each position: the working load of the piece, or
     its breaking load divided by the required safety factor. Loads much larger than the tension are
@@ -243,9 +243,9 @@ _DEGREES_FROM = 18
 
 
 def current_profile(water: Water, width: int, height: int) -> list[Text]:
-    """Draw speed and direction of the current by depth, in at least 12 by 6 cells.
+    """Draw speed and direction of the current against depth, in at least 12 by 6 cells.
 
-    Depths are on the same rows as in an `elevation` of the same height.
+    Each depth is on the same row as in an `elevation` of equal height.
     """
     margin = 6 if width >= _DEGREES_FROM else 2
     depths, u, v = line_picture.current_between(water, 0.0, water.depth)
@@ -274,9 +274,9 @@ _MARGIN = 0.06
 
 
 def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()) -> list[Text]:
-    """Draw a line from above, with its anchor or the ship at the origin.
+    """Draw a line from above, with the anchor or the ship at the origin.
 
-    `overlays` are shapes in other environments or of other designs; they are dashed.
+    `overlays` are shapes in other environments or of other designs, which are dashed.
     """
     shapes = [*(leg.shape for leg in result.legs), *overlays]
     rows = height - header_rows(height) - 2

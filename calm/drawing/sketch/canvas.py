@@ -35,7 +35,7 @@ class Canvas:
         self._signs: list[list[str | None]] = [[None] * width for _ in range(height)]
 
     def dot(self, x: float, y: float, style: str) -> None:
-        """Draw a dot, and set the style of its cell."""
+        """Draw a dot, and set the style of the cell that contains it."""
         column, row = int(x // DOTS_ACROSS), int(y // DOTS_DOWN)
         if 0 <= column < self.width and 0 <= row < self.height:
             self._bits[row][column] |= _BITS[int(y) % DOTS_DOWN][int(x) % DOTS_ACROSS]
@@ -61,7 +61,7 @@ class Canvas:
                 drawn += 1
 
     def text(self, column: int, row: int, text: str, style: str = "") -> None:
-        """Write characters over the dots; text outside the canvas is clipped."""
+        """Write a text over the dots; characters outside the canvas are clipped."""
         if not 0 <= row < self.height or column >= self.width:
             return
         if column < 0:
@@ -79,11 +79,11 @@ class Canvas:
             column += width
 
     def sign(self, column: int, row: int) -> str | None:
-        """Return the character that was written in a cell, if any."""
+        """Return the character that was written in a cell; None for a cell without a character."""
         return self._signs[row][column]
 
     def rows(self) -> list[Text]:
-        """Return the drawing, one text of full width per row of cells."""
+        """Return the drawing as rows of cells, each a text of the full width."""
         found = [Text(no_wrap=True, end="") for _ in range(self.height)]
         for text, *cells in zip(found, self._signs, self._bits, self._styles, strict=True):
             for sign, bits, style in zip(*cells, strict=True):
@@ -105,7 +105,7 @@ _ROWS_PER_TICK = 3
 
 @dataclass(frozen=True)
 class CellScale:
-    """Range of a quantity over a number of dots, from `low` at the left or top to `high`."""
+    """Range of a quantity over a number of dots, from `low` at the left or at the top to `high`."""
 
     low: float
     high: float
@@ -118,7 +118,7 @@ class CellScale:
 
 @dataclass(frozen=True)
 class PlotFrame:
-    """Area of a canvas inside its scales: first column and row, size, and the two scales."""
+    """Area of a canvas inside the scales: first column and row, size, and the two scales."""
 
     canvas: Canvas
     column: int
@@ -147,10 +147,9 @@ class PlotFrame:
         self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
-        """Draw a mark at a point, or in an adjacent cell if another mark is in the cell of the
-        point.
+        """Draw a mark in the cell of a point, or in an adjacent cell if this cell has another mark.
 
-        A mark is not repeated if an equal mark is already there.
+        If the cell already has an equal mark, nothing is drawn.
         """
         column, row = self.cell(x, y)
         for shift in (0, 1, -1, 2):
@@ -179,8 +178,9 @@ class PlotFrame:
     def scale_across(self, values: Iterable[float], *units: str) -> None:
         """Write numbers along the last row of the canvas, and ticks on the row above.
 
-        The first of the `units` that fits is written after the numbers. If none fits, numbers are
-        removed until the last unit fits, but at least two numbers remain.
+        `units` are alternative texts for the unit; the first text that fits is written after the
+        numbers. If no text fits, numbers are removed until the last text fits, but at least two
+        numbers remain.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
@@ -230,12 +230,13 @@ def scaled_frame(
     Parameters
     ----------
     size : total numbers of columns and rows
-    caption : text above the frame, if there is a row for it
-    across, down : values at the left and the right edge, and at the upper and the lower edge
+    caption : text above the frame, omitted if the canvas has too few rows
+    across : values at the left and the right edge
+    down : values at the upper and the lower edge
     units : alternative texts for the unit of the horizontal scale (see `PlotFrame.scale_across`)
     seabed : depth of the seabed below the frame, if any [m]
     margin : number of free columns on the right for other texts
-    per_tick : number of columns per number of the horizontal scale
+    per_tick : number of columns for each number on the horizontal scale
     """
     canvas, head = Canvas(*size), header_rows(size[1])
     if head:

@@ -26,10 +26,10 @@ _SLIGHT = 1e-9
 
 @dataclass
 class ComponentMaker:
-    """Converter of buoys, anchors, connectors and materials to components.
+    """Converter of the buoys, anchors, connectors and materials of a problem file to components.
 
-    Drag and weight refer to the water of the problem. Keys that CALM does not support are added to
-    `dropped`.
+    Drag and weight refer to the water in the problem file. Keys that CALM does not support are
+    added to `dropped`.
     """
 
     density: float
@@ -39,7 +39,7 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """Convert a material to a cable, with its drag at one depth and speed.
+        """Convert a material to a cable, with the drag at a given depth and speed.
 
         Parameters
         ----------
@@ -101,9 +101,9 @@ class ComponentMaker:
             component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """Convert a connector to a sphere of the same drag and length.
+        """Convert a connector to a sphere with the same drag and length.
 
-        A connector without size becomes a body.
+        A connector of unknown size becomes a body.
         """
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
@@ -121,7 +121,7 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """Convert an anchor; it has no weight if the file has none.
+        """Convert an anchor; its weight is missing if the file gives none.
 
         Parameters
         ----------
@@ -147,10 +147,10 @@ class ComponentMaker:
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """Convert the float at the upper end of a mooring, or a towed body.
+        """Convert a buoy: the float at the upper end of a mooring, or a towed body.
 
-        A buoy that is not at the surface becomes a point, as in WHOI Cable; otherwise its hull is
-        taken from the file.
+        A submerged buoy becomes a point, as in WHOI Cable. A buoy at the surface gets the hull that
+        the file describes.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"
@@ -215,9 +215,9 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """True if a drag coefficient depends on depth, and not on speed.
+    """True if a drag coefficient depends on depth rather than on speed.
 
-    A table that ends at a realistic speed is a table by speed.
+    The arguments of a table are taken to be speeds if the last argument is a realistic speed.
     """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 

@@ -59,7 +59,7 @@ class TokenStream:
         return self.tokens[self.at]
 
     def ahead(self, count: int) -> Token:
-        """Return the token `count` places after the next one, without consuming it."""
+        """Return the token `count` places after the next token, without consuming any token."""
         return self.tokens[min(self.at + count, len(self.tokens) - 1)]
 
     def take(self) -> Token:
@@ -69,21 +69,21 @@ class TokenStream:
         return token
 
     def is_next(self, *signs: str) -> bool:
-        """True if the next token is one of the given signs."""
+        """True if the next token is one of the given symbols."""
         return self.next.kind == "sign" and self.next.text in signs
 
     def accept(self, sign: str) -> bool:
-        """Consume the next token if it is the given sign; return whether it was."""
+        """Consume the next token if it is the given symbol; return whether it was consumed."""
         return self.is_next(sign) and bool(self.take())
 
     def expect(self, sign: str) -> None:
-        """Consume the next token, which must be a given sign."""
+        """Consume the next token; raise InputError if it is not the given symbol."""
         if not self.accept(sign):
             raise self.next.refuse(f"`{sign}` is missing before `{self.next.text}`")
 
 
 class UnknownNameError(InputError):
-    """A formula contains undefined names, listed in `names`."""
+    """Error raised if a formula contains undefined names; `names` lists them."""
 
     def __init__(self, token: Token, names: Sequence[str]) -> None:
         self.names = tuple(names)
@@ -96,19 +96,19 @@ class UnknownNameError(InputError):
 
 @dataclass
 class Expression:
-    """Parsed formula, with the names it contains and its first token."""
+    """Parsed formula, with the names that it contains and its first token."""
 
     formula: Formula
     names: frozenset[str]
     token: Token
 
     def at(self, **values: float) -> float:
-        """Evaluate the formula for values of its names.
+        """Evaluate the formula for given values of the names in it.
 
         Raises
         ------
         UnknownNameError
-            The formula contains other names.
+            The formula contains names without a value.
         InputError
             The formula has no value, for example because it divides by zero.
         """
@@ -134,7 +134,7 @@ def constant(text: str) -> float:
 
 
 def read_expression(words: TokenStream) -> Expression:
-    """Parse a formula as far as it extends; raise InputError if it is invalid."""
+    """Parse the formula at the start of the tokens; raise InputError if the formula is invalid."""
     token, names = words.next, set[str]()
     formula = _Reader(words, names).choice(0)
     return Expression(formula, frozenset(names), token)

@@ -45,15 +45,16 @@ class KeyValue:
     repeats: bool = False
 
     def number(self, **values: float) -> float:
-        """Evaluate the formula; `values` are the values of its names."""
+        """Evaluate the formula; `values` holds the values of the names in it."""
         if self.formula is None:
             raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
         return self.formula.at(**values)
 
     def at(self, depth: float) -> float:
-        """Evaluate the formula or table at a depth, or at the speed or strain that it depends on.
+        """Evaluate the formula or table at a depth.
 
-        A table is interpolated linearly, and extrapolated beyond its ends.
+        If the table has speeds or strains instead of depths, `depth` is a speed or a strain. A
+        table is interpolated linearly, and extrapolated beyond its ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)
@@ -72,10 +73,10 @@ class KeyValue:
 
 
 class KeyValues(dict[str, KeyValue]):
-    """Values by key, of a section, a definition or a block."""
+    """Values of a section, a definition or a block, by key."""
 
     def number(self, *keys: str, default: float = 0.0) -> float:
-        """Return the first nonzero value among keys that are synonyms, at time 0.
+        """Return the first nonzero value among several synonymous keys, evaluated at time 0.
 
         `default` is returned if all keys are missing.
         """
@@ -97,15 +98,16 @@ class CableDefinition:
 
     @property
     def name(self) -> str:
-        """Name by which the layout refers to this definition."""
+        """Name by which the layout of the problem refers to this definition."""
         return self.token.text
 
 
 @dataclass
 class CableSegment:
-    """A length of one material, and the connector at its upper end.
+    """A segment of one material, and the connector at the upper end of the segment.
 
-    `attachments` are connectors attached along the segment, each with the numbers of its nodes.
+    `attachments` are connectors attached along the segment, each with the numbers of the nodes to
+    which it is attached.
     """
 
     token: Token
@@ -121,13 +123,13 @@ class CableTerminal(CableDefinition):
 
     @property
     def buoy(self) -> KeyValue | None:
-        """Name of the buoy or platform at this end; None if there is none."""
+        """Name of the buoy or platform at this end; None if there is neither."""
         return self.values.get("buoy") or self.values.get("platform")
 
 
 @dataclass
 class CableBranch:
-    """A side line: its segments from the junction outward, and its terminal."""
+    """A side line, with its segments from the junction outward, and its terminal."""
 
     token: Token
     layout: CableItems
@@ -144,9 +146,9 @@ class CableProblem:
     Attributes
     ----------
     options : options of the import
-    description, environment, analysis : values of these sections by key
+    description, environment, analysis : values by key in the sections of these names
     buoys, anchors, connectors, materials : definitions by name
-    layout : terminals, segments and branches in the order of the file
+    layout : terminals, segments and branches, in file order
     """
 
     path: Path
@@ -173,7 +175,7 @@ class CableProblem:
 
     @property
     def segments(self) -> list[CableSegment]:
-        """Segments of the line, from its first end to its last."""
+        """Segments of the line, from its first terminal to its last."""
         return [each for each in self.layout if isinstance(each, CableSegment)]
 
     @property

@@ -25,15 +25,15 @@ _End = grammar.CableTerminal | str
 
 @dataclass
 class CableLayout:
-    """Converter of the layout of a problem to pieces, or to legs of a net.
+    """Converter of the layout in a problem file to pieces, or to legs of a net.
 
     Attributes
     ----------
-    problem : problem of the line
+    problem : contents of the problem file
     makers : converter of components
     design : design to which pieces and legs are added; drag that depends on depth or speed is
-        evaluated in its water
-    nodes : number of nodes of the net so far
+        evaluated in the water of this design
+    nodes : number of nodes of the net that exist so far
     """
 
     problem: grammar.CableProblem
@@ -55,7 +55,7 @@ class CableLayout:
         return self.water.depth
 
     def lay_mooring(self) -> None:
-        """Convert the line from the buoy down to the anchor."""
+        """Convert the line of a mooring, from the buoy down to the anchor."""
         items = self._pieces_of(self.problem.segments)
         lower, upper = self.problem.terminals
         if "anchor" in upper.values:
@@ -68,10 +68,10 @@ class CableLayout:
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
 
     def lay_tow(self) -> None:
-        """Convert the line from the ship down.
+        """Convert the line of a tow, from the ship down.
 
-        If the ship is at rest in a current, it becomes a moving ship, and the current at the
-        surface is subtracted.
+        A ship at rest in a current is converted to a moving ship. The current at the surface is
+        then subtracted from the current at all depths.
         """
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals
@@ -100,7 +100,7 @@ class CableLayout:
         Raises
         ------
         InputError
-            A branch has no end, or there is nothing between two anchors.
+            A branch has no terminal, or there is nothing between two anchors.
         """
         first, *others = self.problem.layout
         assert isinstance(first, grammar.CableTerminal)

@@ -35,7 +35,7 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Resolves comments, macros, conditions and includes as the C preprocessor does."""
+    """Processor of comments, macros, conditions and includes that works like the C preprocessor."""
 
     options: ImportOptions
     _macros: dict[str, _Macro] = field(default_factory=dict)
@@ -49,8 +49,8 @@ class Preprocessor:
         Raises
         ------
         InputError
-            A file cannot be read or may not be included, a directive is invalid, or macros expand
-            without end.
+            A file cannot be read or may not be included, a directive is invalid, or the expansion
+            of macros does not end.
         UsageError
             A macro defined by the user has an invalid name.
         """

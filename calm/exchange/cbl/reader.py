@@ -66,7 +66,7 @@ _Grid = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def is_cbl(content: bytes) -> bool:
-    """True if a file looks like a WHOI Cable problem, by at least two of its section names."""
+    """True if a file has at least two section names of a WHOI Cable problem file."""
     text = content.decode("latin-1").lower()
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
@@ -77,8 +77,8 @@ def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     Raises
     ------
     InputError
-        The file is invalid, or has features that CALM cannot represent. All undefined names are
-        listed together.
+        The file is invalid, or has features that CALM cannot represent. The error lists all
+        undefined names.
     """
     given, missing = dict(options.defines), list[Problem]()
     while True:

@@ -29,8 +29,8 @@ class SourceLine:
 class Token:
     """A token and its position.
 
-    `kind` is ``key`` (a name with its `=`), ``name``, ``text`` (in quotes), ``number``, ``sign`` or
-    ``end``.
+    `kind` is ``key`` (a name followed by `=`), ``name``, ``text`` (in quotes), ``number``, ``sign``
+    (a symbol such as a bracket) or ``end``.
     """
 
     kind: str
@@ -46,12 +46,12 @@ class Token:
 
 
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
-    """Yield the tokens of the lines, followed by an ``end``.
+    """Yield the tokens of the lines, followed by a token of kind ``end``.
 
     Raises
     ------
     InputError
-        A character is not allowed.
+        The lines contain a character that is not allowed.
     """
     last = SourceLine("", "", 0)
     for line in lines:

@@ -30,7 +30,7 @@ polypropylene, polyethylene, Kevlar, aluminium, Dyneema.
 
 
 def piece_of(element: MddElement) -> model.ImportedPiece:
-    """Convert an element other than the anchor to a piece."""
+    """Convert an element, which must not be the anchor, to a piece."""
     if element.is_line:
         return model.ImportedPiece(_flexible(element), element.length)
     return model.ImportedPiece(rigid(element))
@@ -40,8 +40,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
     """Convert a rigid or clamped element to a component.
 
     Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
-    whatever its length. An element that has only a width is a cylinder, with Cd for flow normal to
-    its axis and without drag on its end faces.
+    whatever the length of the element. An element that has only a width is a cylinder. Its Cd
+    applies to flow normal to the axis, and its end faces have no drag.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -72,10 +72,10 @@ def rigid(element: MddElement) -> model.ImportedComponent:
 
 
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
-    """Give a surface float a hull whose draft and drag are proportional to its used buoyancy.
+    """Give a surface float a hull whose draft and drag are proportional to the buoyancy in use.
 
-    This is how Mooring Design & Dynamics treats floats. The hull displaces only as much as the net
-    buoyancy requires.
+    Mooring Design & Dynamics treats floats in this way. The hull displaces only as much water as
+    the net buoyancy requires.
     """
     lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
@@ -131,7 +131,7 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Convert the lowest element to an anchor; the weight may have either sign in the file."""
+    """Convert the lowest element to an anchor; its weight in the file may have either sign."""
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -141,14 +141,14 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """An element of the line: a column of the matrix ``H``, with its values in other variables.
+    """An element of the line: a column of the matrix ``H``, with its values from other matrices.
 
     Attributes
     ----------
     length, width, diameter : sizes [m]; a sphere has a diameter, other elements have a width
-    is_line : whether it is a wire, rope or chain, whose values are per metre
-    is_fastener : whether it is a shackle, link or swivel
-    lift : net buoyancy [kg], for a line per metre [kg/m]
+    is_line : whether the element is a wire, rope or chain, whose values are per metre
+    is_fastener : whether the element is a shackle, link or swivel
+    lift : net buoyancy [kg], or per metre [kg/m] if the element is a line
     mass : mass in air [kg]; None if the file has none
     modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if the line does not
         stretch
@@ -171,15 +171,15 @@ class MddElement:
 
     @property
     def across(self) -> float:
-        """Width, or the diameter if it has no width [m]."""
+        """Width of the element [m], or its diameter if it has no width."""
         return self.width or self.diameter
 
 
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
     """Read the elements of a line in file order; also return messages about mistakes.
 
-    `suffix` selects the matrices: ``t`` for those of a tow, ``CO`` for those of clamped elements,
-    and empty for those of a mooring.
+    `suffix` selects the matrices by the end of their names: ``t`` for the matrices of a tow, ``CO``
+    for those of clamped elements, and empty for those of a mooring.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)

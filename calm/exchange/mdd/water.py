@@ -15,8 +15,8 @@ def read_water(
 ) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
     """Read the environment of a file, and the current record if the file has several profiles.
 
-    In a mooring, `z` is the height above the seabed, and the largest `z` is the water depth; in a
-    tow, `z` is the depth. The current of the environment is the first profile of the record.
+    For a mooring, the variable `z` holds heights above the seabed, and the largest `z` is the water
+    depth. For a tow, `z` holds depths. The environment has the current of the first profile.
 
     Parameters
     ----------

@@ -116,7 +116,7 @@ class _File:
 
 
 def read_moordyn(path: Path) -> model.ImportedDesign:
-    """Read a single line from an anchor up to a float, or a net of legs.
+    """Read a MoorDyn file with a single line from an anchor up to a float, or with a net of legs.
 
     Raises
     ------

@@ -123,7 +123,7 @@ class _System:
 
 
 def write_moordyn(exported: ExportedDesign) -> Exported:
-    """Write a line or the legs of a net as a MoorDyn file, and the current in a second file.
+    """Convert a line or the legs of a net to a MoorDyn file, and the current to a second file.
 
     Raises
     ------

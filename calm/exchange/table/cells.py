@@ -76,7 +76,7 @@ _NOTHING = {
 
 
 class WorkbookNumber(str):
-    """A workbook number as text, always with a decimal point."""
+    """A number from a workbook as text, always with a decimal point."""
 
     __slots__ = ()
 
@@ -87,9 +87,9 @@ SheetRows = list[list[str]]
 
 @dataclass(frozen=True)
 class ColumnUnit:
-    """A unit: its factor to SI, and whether values are per metre.
+    """The unit of a column: its factor to SI, and whether values are per metre.
 
-    `by_mass` is true if a force is given in kilograms or pounds.
+    `by_mass` is true if forces are given in kilograms or pounds.
     """
 
     factor: float
@@ -100,13 +100,15 @@ class ColumnUnit:
 def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Parse a unit, ignoring words such as *wet*; return None if the text contains no unit.
 
-    The text comes from brackets, a row of units, or a cell with a number. `what` is the quantity of
-    the column.
+    Parameters
+    ----------
+    text : text in brackets, in a row of units, or after the number in a cell
+    what : quantity in the column
 
     Raises
     ------
     ValueError
-        The unit does not fit this quantity.
+        The unit does not fit the quantity.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -132,7 +134,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
     Raises
     ------
     ValueError
-        The text in brackets is not a unit, or there are two units.
+        The text in brackets is not a unit, or the heading has two units.
     """
     if what not in _DIMENSIONS:
         return None
@@ -195,9 +197,9 @@ def _factor(text: str, dimension: str) -> float | None:
 
 
 class CellNumber(NamedTuple):
-    """Number in a cell, the text after it, and a message if the cell cannot be read.
+    """Number in a cell, the text after the number, and a message if the cell cannot be read.
 
-    `value` is None if the cell has no number. `tidied` is true if the cell has other text as well.
+    `value` is None if the cell has no number. `tidied` is true if the cell also has other text.
     """
 
     value: float | None
@@ -207,7 +209,7 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Parse the number in a cell; `decimal` is the decimal sign of the file, empty if unknown."""
+    """Parse the number in a cell; `decimal` is the decimal symbol of the file, empty if unknown."""
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
         return CellNumber(None)
@@ -266,14 +268,15 @@ def _either(digits: str) -> str:
 
 
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
-    """Find the decimal sign of a file; also return a remark about commas, empty if there are none.
+    """Find the decimal symbol of a file, and return a remark on the meaning of commas.
 
-    `cells` yields the position and the text of each cell that should have a number.
+    The remark is empty if the file has no commas. `cells` yields the position and the text of each
+    cell that should have a number.
 
     Raises
     ------
     ValueError
-        Both signs are used, or numbers such as `1,250` remain ambiguous.
+        Both the point and the comma are decimal symbols, or numbers such as `1,250` are ambiguous.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
@@ -320,7 +323,7 @@ def is_table(content: bytes) -> bool:
 
 
 class ReadSheets(NamedTuple):
-    """Rows of each sheet, and descriptions of hidden parts, by sheet name."""
+    """Rows of each sheet, and a description of the hidden parts of each sheet, by sheet name."""
 
     rows: dict[str, SheetRows]
     hidden: dict[str, str]

@@ -87,17 +87,18 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column of a list: its index, heading, and the factor from its numbers to SI.
+    """A column of a list: its index, its heading, and the factor from its numbers to SI.
 
     Attributes
     ----------
     by_mass : whether forces are in kilograms
-    per_metre : whether values of lines are per metre
+    per_metre : whether the values of lines are per metre
     known : whether the heading has a unit
-    whole : whether the heading marks totals: values of all pieces of a row, or of the whole length
-        of a line
+    whole : whether the heading marks values as totals, for all pieces in a row or for the whole
+        length of a line
     wrong : mistake in the heading, as a message; empty if there is none
-    twin : second column of the same quantity; one of the two is per metre, the other per piece
+    twin : second column for the same quantity; one of the two columns is per metre, the other is
+        per piece
     """
 
     index: int
@@ -111,7 +112,7 @@ class ListColumn:
     twin: ListColumn | None = None
 
     def of(self, row: list[str], *, line: bool) -> tuple[ListColumn, str]:
-        """Choose this column or its twin for a row, and return it with its cell.
+        """Choose between this column and its twin for a row; return the chosen column and its cell.
 
         The column per metre is preferred for lines, and the column per piece for other rows.
         """
@@ -122,7 +123,7 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """Headings of a sheet: their row, the recognised columns, and the other headings."""
+    """Headings of a sheet: index of their row, recognised columns, and other headings."""
 
     row: int
     columns: dict[str, ListColumn]
@@ -130,7 +131,7 @@ class ListHeadings:
 
     @property
     def problems(self) -> list[str]:
-        """Messages about headings with mistakes, and about unknown ones that cannot be ignored."""
+        """Messages about wrong headings, and about unknown headings that cannot be ignored."""
         beside = "lists lines in the same rows as other pieces; each line needs its own row"
         from_an_end = "has distances from an end of the line; each piece needs its own length"
         return [
@@ -155,8 +156,8 @@ class ListHeadings:
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
     """Find the headings of a sheet.
 
-    Return None if no row has headings for a name and a length or a force. Columns in `given` take
-    precedence over those that are recognised.
+    Return None if no row has a heading for the name together with a heading for a length or a
+    force. Columns in `given` take precedence over columns recognised by their headings.
     """
     best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
@@ -182,8 +183,8 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
     Parameters
     ----------
-    sheets : rows of each sheet by its name
-    given : headings by the name of the column
+    sheets : rows of each sheet, by name of the sheet
+    given : heading given by the user for each column, by name of the column in CALM
     path : path of the list
 
     Raises
@@ -355,12 +356,15 @@ def _plain(text: str, keep: str = "") -> str:
 
 
 def cell_of(row: list[str], column: ListColumn | None) -> str:
-    """Return the cell of a row in a column; empty if the row has no such cell."""
+    """Return the text of the cell in a row and a column; empty if the row has no such cell."""
     return row[column.index] if column and column.index < len(row) else ""
 
 
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
-    """Find the decimal sign in the columns of numbers; also return a remark about commas."""
+    """Find the decimal symbol in the columns of numbers; also return a remark on the commas.
+
+    A contradiction is added to `problems`; both results are then empty.
+    """
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:
         return decimal_sign(

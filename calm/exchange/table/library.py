@@ -38,7 +38,7 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    The first of several elements with the same name is used.
+    If several elements have the same name, the first of them is used.
 
     Raises
     ------
@@ -54,7 +54,10 @@ def read_library(path: Path) -> Library:
 
 
 def is_library(sheets: Mapping[str, SheetRows]) -> bool:
-    """True if sheets form a library: several have headings, or one is the table of moords."""
+    """True if the sheets form a library of elements.
+
+    A library has several sheets with headings, or a sheet that is the element table of moords.
+    """
     headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
     moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
     return len(headed) >= _SHEETS or any(
@@ -72,7 +75,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
     Parameters
     ----------
-    rows : rows of the list; they are changed
+    rows : rows of the list, which are changed in place
     library : the library
     source : name of the library, for hints to the user
     """

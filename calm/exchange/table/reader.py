@@ -39,7 +39,8 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     Raises
     ------
     InputError
-        No headings are recognised, a value is missing, or no end of the list is an anchor.
+        No headings are recognised, a value is missing, or there is no anchor at either end of the
+        list.
     """
     columns, elements = options.columns, options.elements
     sheets, hidden = read_sheets(path)

@@ -41,7 +41,7 @@ class ListRow:
     Attributes
     ----------
     metre : names of the values that are per metre
-    line : whether the row is a cable or chain; None if its name decides
+    line : whether the row is a cable or chain; None if this is to be inferred from the name
     hint : advice on missing values
     problems : messages about mistakes
     """
@@ -80,7 +80,7 @@ class ListRow:
 
     @property
     def sinks(self) -> bool:
-        """Whether the row is a line or an anchor, or its name is that of a part that sinks."""
+        """Whether the row is a line, an anchor, or a part that sinks according to its name."""
         named = is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
@@ -110,8 +110,8 @@ def rows_of(
     Parameters
     ----------
     guessed : list to which guesses are added
-    bare : returns whether a row that has only this name is a piece, because a library has its
-        values
+    bare : function that returns whether a row with nothing but a given name is a piece, because a
+        library has the values
     """
     rows: list[ListRow] = []
     known = headings.columns
@@ -207,8 +207,8 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
     """Return messages about cumulative or implausibly large lengths.
 
-    Lengths that grow from piece to piece, up to one end of the line, are distances from the other
-    end.
+    Lengths that increase from piece to piece along the whole line are taken to be distances from an
+    end of the line.
     """
     pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
     lengths = [row.figures["length"] for row in pieces]
@@ -233,9 +233,9 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Convert weights to net buoyancy, positive up.
 
-    Weights are positive down, unless most sinking parts have negative weights. A column of
-    buoyancies holds weights if all sinking parts have positive values and all other parts negative
-    values.
+    Weights are positive down, unless most sinking parts have negative weights. If all sinking parts
+    have positive buoyancies, and all other parts have negative buoyancies, these values are
+    weights, too.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
@@ -262,7 +262,7 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) ->
 
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
-    """Convert values of lines to values per metre, if the list gives them for the whole line."""
+    """Convert values of lines to values per metre if the list gives totals for the whole length."""
     lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)

@@ -20,11 +20,11 @@ NAMED = ("components", "environments")
 
 
 class EditError(CalmError):
-    """The requested change cannot be made to the present text."""
+    """The requested change cannot be made in the current text."""
 
 
 class Page:
-    """An editable text that ends with a line break, with its nodes and its writing style."""
+    """An editable YAML text that ends with a line break, with its nodes and writing style."""
 
     def __init__(self, text: str, root: Node, style: WritingStyle) -> None:
         self.text = text
@@ -32,14 +32,14 @@ class Page:
         self.style = style
 
     def node(self, location: Location) -> Node | None:
-        """Return the node at a location; None if there is none."""
+        """Return the node at a location, or None if the location does not exist."""
         node: Node | None = self.root
         for step in location:
             node = node.entry(step)[1] if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """Return the patches that set the value at a location; missing mappings are added."""
+        """Return the patches that set the value at a location and add missing mappings above it."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
@@ -72,7 +72,7 @@ class Page:
         return [writing.set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
-        """Return the patches that remove a key."""
+        """Return the patches that remove the key at a location."""
         outer = self.node(location[:-1])
         assert outer is not None
         if len(outer.keys) == 1:
@@ -141,7 +141,7 @@ class Page:
         ----------
         location : location of the list
         index : index of the first new item
-        values : the items; items in `Worded` keep their text
+        values : the items; a `Worded` list supplies items with their own text
         """
         node = self.node(location)
         if node is None or not node.children:
@@ -210,7 +210,9 @@ REMOVED = object()
 
 
 def with_value(data: Any, location: Location, value: Any) -> Any:
-    """Return a copy of data with another value at a location; missing mappings are added.
+    """Return a copy of data in which the value at a location is replaced or removed.
+
+    Missing mappings above the location are added.
 
     Parameters
     ----------
@@ -240,9 +242,9 @@ def has_control(data: Any) -> bool:
 def cells_that_differ(
     old: Any, new: Sequence[Sequence[str | None]]
 ) -> list[tuple[int, int, str]] | None:
-    """List the changed cells (row, column, text) of a table.
+    """List the cells whose text changes between two tables, each as (row, column, new text).
 
-    Return None if the tables have different shapes, or if a value is removed.
+    Return None if the tables have different shapes, or if a cell loses its value.
     """
     rows = old if isinstance(old, list | tuple) else []
     if [len(row) if isinstance(row, list | tuple) else -1 for row in rows] != [*map(len, new)]:
@@ -261,7 +263,7 @@ _ENDINGS = ("\r\n", "\n", "\r")
 
 
 class EndedLine(NamedTuple):
-    """A line as its text and its line break, which is empty for the last line."""
+    """A line of text and its line break; the line break of the last line is empty."""
 
     text: str
     line_break: str
@@ -277,10 +279,10 @@ def lines_of(text: str) -> list[EndedLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """Replace the lines of a text by those of a text editor, keeping the file's line breaks.
+    """Replace the lines of a text with lines from a text editor, which have no line breaks.
 
-    Unchanged and replaced lines keep their line breaks. Added lines have the usual line break of
-    the file.
+    Unchanged and replaced lines keep the line breaks of the text. An added line gets the usual
+    line break of the text.
     """
     old = lines_of(text)
     usual = WritingStyle.of(text, None).line_break

@@ -38,7 +38,7 @@ line: []                              # top to bottom
 
 
 def clamps_of(item: int) -> Location:
-    """Return the location of the list of clamps of an item."""
+    """Return the location of an item's list of clamps."""
     return (*LINE, item, "clamps")
 
 
@@ -48,7 +48,8 @@ class Draft:
 
     Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks and
     a byte-order mark are kept. New text follows the style of the file. A comment directly above an
-    item belongs to the item. The changed text is read again to check that nothing else has changed.
+    item belongs to the item. After each edit, the text is parsed to check that nothing else has
+    changed.
 
     Parameters
     ----------
@@ -57,8 +58,8 @@ class Draft:
     Raises
     ------
     EditError
-        An edit cannot be made: there is no such item, the text has `problems`, or its layout does
-        not allow the change.
+        An edit is impossible because an item does not exist, the text has `problems`, or the layout
+        of the text does not allow the edit.
     """
 
     text: str
@@ -76,7 +77,7 @@ class Draft:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """Problems of the YAML text, because of which the file can only be edited as plain text.
+        """Problems in the YAML text; if there are any, the file can only be edited as plain text.
 
         The `path` of each problem is empty.
         """
@@ -90,7 +91,7 @@ class Draft:
 
     @cached_property
     def items(self) -> tuple[LineItem, ...]:
-        """Items of `line`, as written: neither expanded nor validated."""
+        """Items of the line as written in the file, neither expanded nor validated."""
         text, found = self._padded, []
         for rows, _ in self.lists.all if self._root is not None else ():
             node = self._page.node(rows)
@@ -104,7 +105,7 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Locations of the line items. An index in `LINE` counts through all legs."""
+        """Locations of the lists of line items. A line index counts the items of all legs."""
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
@@ -115,7 +116,7 @@ class Draft:
     def value(self, location: Location) -> Any:
         """Return the text, mapping or list at a location.
 
-        Return None if there is none, or if the text has `problems`.
+        Return None if the location does not exist, or if the text has `problems`.
         """
         if self._root is None:
             return None
@@ -123,23 +124,22 @@ class Draft:
         return node.data if node else None
 
     def text_at(self, location: Location) -> str:
-        """Return the text of a scalar at a location; empty if there is none."""
+        """Return the text of the scalar at a location; empty if there is no scalar."""
         value = self.value(location)
         return value if isinstance(value, str) else ""
 
     def insert(
         self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert a new item above the item at an index, or below the last item.
+        """Insert an item so that it gets a given index; items from that index on move down by one.
 
         Parameters
         ----------
         index : index of the new item
         values : keys and values of the new item
-        rows : location of the list, here and in other methods: the line, `clamps_of` an item, or
-            another list
-        above : at an index between two legs, whether the item becomes the first of the lower leg;
-            otherwise it becomes the last of the upper leg
+        rows : location of the list: `LINE`, the result of `clamps_of`, or another list
+        above : at an index between two legs, True makes the item the first of the lower leg, and
+            False makes it the last of the upper leg
         """
         self._check_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
@@ -172,7 +172,7 @@ class Draft:
         Parameters
         ----------
         index : index of the item
-        to : its new index
+        to : new index of the item
         rows : location of the list
 
         Raises
@@ -203,7 +203,7 @@ class Draft:
     def paste(
         self, index: int, snippets: Iterable[str], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert items that `copy` returned, above the item at an index or below the last item.
+        """Insert items that `copy` returned; the first of them gets a given index.
 
         Parameters
         ----------
@@ -231,9 +231,9 @@ class Draft:
         return self.put_at((*own, number, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
-        """Set the value at a location, and add missing mappings above it.
+        """Set the value at a location, and add any missing mappings that enclose the location.
 
-        The value None removes the key. Mappings above it that become empty are removed as well,
+        The value None removes the key. Enclosing mappings that become empty are removed as well,
         except for `environment` and the named environments.
         """
         page, location = self._page, self.lists.real(location)
@@ -253,12 +253,12 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """Replace a table; unchanged rows keep their text.
+        """Replace a table of `columns` and `rows`; unchanged rows keep their text.
 
         Parameters
         ----------
         location : location of the table
-        columns : names with units
+        columns : column names with units
         rows : rows of values; if the shape is unchanged, only changed values are rewritten
         """
         old = self.value(location)
@@ -341,11 +341,11 @@ def _worded(snippets: Iterable[str]) -> Worded:
 
 
 class History:
-    """Undo history of a draft, with the last saved text.
+    """Undo history of a draft; it also remembers the last saved text.
 
     Parameters
     ----------
-    draft : the draft as saved
+    draft : the draft that is in the file at the start
     """
 
     def __init__(self, draft: Draft) -> None:
@@ -366,9 +366,9 @@ class History:
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """Make a draft current, as a step with a label that can be undone.
+        """Make a draft the current one; `label` names this step, which can be undone.
 
-        A draft that equals the current one adds no step.
+        No step is added if the draft equals the current draft.
         """
         if draft.text == self.draft.text:
             return

@@ -25,9 +25,9 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 
 @dataclass(frozen=True)
 class LineLists:
-    """Locations of the line items: in a single list, or in one list per leg of a net.
+    """Locations of the lists of line items: a single list, or one list per leg of a net.
 
-    An index in `LINE` counts through all lists ("line index").
+    A line index counts through the items of all lists.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class LineLists:
 
     @classmethod
     def of(cls, data: Any) -> LineLists:
-        """Find the lists in the data of a file."""
+        """Find the lists of line items in the data of a file."""
         data = data if isinstance(data, dict) else {}
         legs = data.get("legs")
         if "line" in data or not isinstance(legs, dict):
@@ -54,22 +54,22 @@ class LineLists:
 
     @property
     def legs(self) -> list[str]:
-        """Name of the leg of each item; empty names for a single line."""
+        """Name of each item's leg, by line index; names are empty if the file has a single line."""
         names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
         return [name for name, count in names for _ in range(count)]
 
     def real(self, location: Location) -> Location:
-        """Convert a location with a line index to the location in the text."""
+        """Convert a location that contains a line index to the location in the file."""
         if location[:1] != LINE or len(location) == 1:
             return location
         rows, index = self.place(int(location[1]), above=True)
         return (*rows, index, *location[2:])
 
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the list that contains a line index, and the index in this list.
+        """Convert a line index to the location of a list and an index in this list.
 
-        An index between two legs is the first item of the lower leg if `above`, else the end of the
-        upper leg.
+        At an index between two legs, the result is the start of the lower leg if `above` is true,
+        and otherwise the end of the upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
@@ -78,13 +78,16 @@ class LineLists:
         return self.all[-1][0], index
 
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
-        """Locate a line index as `place` does; an index in another list is unchanged."""
+        """Return the location and the index in the file of an item in the list at `rows`.
+
+        In `LINE`, the index is a line index, which `place` converts; otherwise it is unchanged.
+        """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
     def grouped(
         self, indices: Iterable[int], rows: Location
     ) -> Iterator[tuple[Location, list[int]]]:
-        """Group indices of items by list; yield the location of each list and its indices."""
+        """Yield the location of each list with given items, and their indices in that list."""
         if rows != LINE:
             yield self.real(rows), [*indices]
             return
@@ -99,12 +102,12 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : position of the item in the text, counted from 1; pieces read from it have the
-        same
-    values : keys and their plain values, as written; the text of a key without value is empty. The
+    line, column : line and column of the item in the text, counted from 1; the pieces that the item
+        produces have the same line and column
+    values : keys and their plain values, as written; a key without a value has an empty text. The
         mapping `length_at` becomes a text such as `480 m at 2 kN`
-    clamps : its clamps
-    text : its lines in the file, including the comments that belong to it
+    clamps : clamps of the item
+    text : lines of the item in the file, including the comments that belong to it
     """
 
     line: int
@@ -115,13 +118,13 @@ class LineItem:
 
 
 def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
-    """Convert a node to an item.
+    """Convert a YAML node to a line item.
 
     Parameters
     ----------
     node : node of the item
     text : text that contains the node
-    lines : lines of the item, if they contain more than the node
+    lines : text of the item with its comments; if empty, the text of the node
     """
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
@@ -139,7 +142,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
 
 def snippet_of(text: str, column: int) -> str:
-    """Return the text of an item as a block list with this item only, starting in column 1.
+    """Convert the text of an item to a block list of this item only, starting in column 1.
 
     Parameters
     ----------
@@ -153,7 +156,7 @@ def snippet_of(text: str, column: int) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """Parse the text that `snippet_of` returned; return None unless it has exactly one item."""
+    """Parse a text that `snippet_of` returned; return None unless it contains exactly one item."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
@@ -175,9 +178,9 @@ class Items:
     start, end : span of the collection in the text, which `patch` replaces
     is_flow : whether the collection is in brackets
     column : column of the dashes, or of the keys of a mapping, counted from 1
-    texts : text of each item: its lines with its comments, or for a collection in brackets the text
-        between commas
-    gaps : text before each item that belongs to none, such as a comment further left
+    texts : text of each item: its lines including comments, or for a collection in brackets the
+        text between two commas
+    gaps : text before each item that belongs to no item, such as a less indented comment
     rest : text after the last item
     separator : text between two items in brackets
     on_a_dash : whether the first entry of the mapping is on the line of a dash or of a `?`
@@ -194,7 +197,7 @@ class Items:
     on_a_dash: bool = False
 
     def remove(self, index: int) -> str:
-        """Remove an item and return its text. Text between items is kept."""
+        """Remove an item and return its text. Text that belongs to no item is kept."""
         text, gap = self.texts.pop(index), self.gaps.pop(index)
         if index == len(self.texts):
             self.rest = gap + self.rest
@@ -203,7 +206,7 @@ class Items:
         return text
 
     def insert(self, index: int, text: str) -> None:
-        """Insert an item."""
+        """Insert an item at an index."""
         self.texts.insert(index, text)
         self.gaps.insert(index, "")
         if index == 0 and len(self.gaps) > 1:
@@ -217,7 +220,7 @@ class Items:
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Divide a collection into items; return None if it shares lines with other text.
+    """Divide a collection into items; return None if the collection shares lines with other text.
 
     The text must end with a line break.
     """

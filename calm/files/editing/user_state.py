@@ -12,13 +12,16 @@ from calm.files.editing.working_file import Keeper, state_folder
 
 
 class Presence:
-    """Record in the state folder of the file that this process has open."""
+    """Entry in the state folder that records which file this process has open."""
 
     def __init__(self) -> None:
         self._place: Path | None = None
 
     def announce(self, path: Path | None) -> list[int]:
-        """Record a file (or None) as open; return the ids of other processes that have it open."""
+        """Record the file that this process has open; return ids of other processes with that file.
+
+        The path None means that this process has no file open.
+        """
         if self._place is not None:
             with suppress(OSError):
                 self._place.unlink(missing_ok=True)
@@ -46,9 +49,9 @@ _MOST_RECENT = 40
 
 
 class Remembered:
-    """Ids of favourite and recently used components, latest first.
+    """Ids of favourite and recently used components, latest first, kept between sessions.
 
-    Both lists are empty if their file cannot be read.
+    Both lists are empty if the file in which they are saved cannot be read.
 
     Attributes
     ----------
@@ -66,18 +69,18 @@ class Remembered:
         self.favourites, self.recent = ids
 
     def take(self, id: str) -> None:
-        """Record the choice of a component for this session, without saving it."""
+        """Record the choice of a component for this session, without saving the choice."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         with suppress(OSError):
             self._keep()
 
     def mark(self, id: str) -> bool:
-        """Mark a component as favourite, or remove the mark; return whether it is a favourite now.
+        """Mark or unmark a component as a favourite; return whether it is a favourite afterwards.
 
         Raises
         ------
         OSError
-            The mark could not be saved; it lasts until the builder ends.
+            The mark could not be saved, so it is lost when the builder ends.
         """
         is_new = id not in self.favourites
         self.favourites = [each for each in self.favourites if each != id]

@@ -36,13 +36,13 @@ class NotWritten(CalmError):
 class WorkingFile:
     """A mooring file that is being edited, and the backup copy of its unsaved text.
 
-    The copy belongs to this session. Copies of other sessions are read, and are removed only after
-    their work was taken over by `adopt` or discarded.
+    The copy belongs to this session. Backup copies of other sessions are read, but are removed only
+    after the user has adopted or discarded the work in them.
 
     Parameters
     ----------
-    path : path of the file; None if it has no name yet. Its copy is then in the user's state folder
-        (`XDG_STATE_HOME`), as are copies that cannot be written next to the file
+    path : path of the file; None if the file has no name yet. The backup copy is in the user's
+        state folder (`XDG_STATE_HOME`) if the file has no name or its folder cannot be written
 
     Attributes
     ----------
@@ -77,9 +77,9 @@ class WorkingFile:
         return text
 
     def save(self, text: str) -> str:
-        """Write the file. Other programs see either the old or the new text.
+        """Write the file. Other programs see either the old or the new text, never a part of it.
 
-        Its permissions are kept. A symbolic link still points to the same file.
+        The permissions of the file are kept. A symbolic link still points to the same file.
 
         Returns
         -------
@@ -111,14 +111,14 @@ class WorkingFile:
 
     @property
     def stamp(self) -> Stamp | None:
-        """Return values that identify the state of the file on disk; None if there is no file."""
+        """Time, size and inode of the file on disk, used to detect changes; None without a file."""
         status = None if self.path is None else _status(self.path)
         return status and (status.st_mtime_ns, status.st_size, status.st_ino)
 
     def changed_on_disk(self) -> bool:
         """True if the file has changed, or was removed, since it was last read or saved.
 
-        The content is read only if time or size have changed, and only from a regular file.
+        The content is compared only if the time, size or inode of the file has changed.
         """
         if self.path is None:
             return False
@@ -131,9 +131,10 @@ class WorkingFile:
         return self._differs
 
     def keep(self) -> Path | None:
-        """Write `unsaved` to the backup copy and return its path; any thread may call this.
+        """Write `unsaved` to the backup copy and return the path of the copy.
 
-        If nothing is unsaved, the copy of this session is removed.
+        If nothing is unsaved, the copy of this session is removed and the result is None. Any
+        thread may call this method.
 
         Raises
         ------
@@ -147,16 +148,16 @@ class WorkingFile:
             return self._keep(self.unsaved)
 
     def forget(self) -> None:
-        """Delete the backup copy and any adopted copy, because the work was saved or discarded."""
+        """Delete the backup copy and any adopted copy, after the work was saved or discarded."""
         with self._lock:
             self.unsaved = None
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
             self._adopted = None
 
     def recoverable_work(self) -> KeptWork | None:
-        """Return the latest unsaved work of a session that has ended.
+        """Return the latest unsaved work left by a session that has ended.
 
-        Return None if there is none, or if it equals the file.
+        Work that equals the file is ignored. Return None if no work remains.
         """
         content = self._content()
         found = []
@@ -177,13 +178,13 @@ class WorkingFile:
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
     def is_of_another(self, kept: KeptWork) -> bool:
-        """True if the file has changed since the recovered work began."""
+        """True if the content of the file has changed since the recovered work `kept` began."""
         return self.path is not None and kept.base != _digest(self._content())
 
     def adopt(self, kept: KeptWork) -> None:
-        """Continue with recovered work; its copy is deleted when the work is saved or discarded.
+        """Continue with recovered work, whose copy is deleted when the work is saved or discarded.
 
-        If the file has changed since that work began, `changed_on_disk` is then true.
+        If the file has changed since the recovered work began, `changed_on_disk` returns True.
         """
         self._adopted = kept.place
         if self.is_of_another(kept):
@@ -303,7 +304,7 @@ class Keeper:
     def is_running(self) -> bool:
         """Whether the process is known to be running; False for a process on another machine.
 
-        A web page has one process for successive sessions.
+        The result is also False in a web browser, where successive sessions share one process.
         """
         if not self.is_here or os.name != "posix" or sys.platform == "emscripten":
             return False
@@ -326,7 +327,7 @@ class KeptWork:
     place : path of the copy
     text : text of the mooring file
     keeper : process that wrote the copy
-    base : `_digest` of the content of the file when the work began
+    base : digest of the content that the file had when the work began
     at : time of the copy [s since 1970]
     """
 

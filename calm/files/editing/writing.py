@@ -34,13 +34,13 @@ Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 
 
 class Wording(NamedTuple):
-    """A list item with the text by which it is written.
+    """A list item with its text in both YAML styles.
 
     Attributes
     ----------
     value : value of the item
-    lines : its lines in a block list that starts in column 1, with its comments
-    inline : its text in brackets, without comments
+    lines : lines of the item, with its comments, in a block list that starts in column 1
+    inline : text of the item in flow style, without comments
     """
 
     value: Value
@@ -49,7 +49,7 @@ class Wording(NamedTuple):
 
 
 class Worded(list[Value]):
-    """List items that are written with their own text."""
+    """List items, each of which is written with the text of its `Wording`."""
 
     def __init__(self, wordings: Iterable[Wording]) -> None:
         self.wordings = tuple(wordings)
@@ -83,8 +83,8 @@ class WritingStyle:
     Attributes
     ----------
     line_break : line break of the file
-    step : number of columns by which keys below a key are indented
-    dash : number of columns by which the dashes of a list below a key are indented
+    step : number of columns by which a nested mapping is indented from its key
+    dash : number of columns by which the dashes of a list are indented from its key
     """
 
     line_break: str = "\n"
@@ -93,7 +93,7 @@ class WritingStyle:
 
     @classmethod
     def of(cls, text: str, root: Node | None) -> WritingStyle:
-        """Detect the style of a text from its first line break and first indented entries."""
+        """Detect the style of a text from its first line break and its first indented entries."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"
         step = dash = None
@@ -108,7 +108,7 @@ class WritingStyle:
         return cls(line_break, step, step if dash is None else dash)
 
     def entry(self, name: str, value: Value, column: int, *, open: bool = False) -> str:
-        """Return the lines of an entry of a block mapping.
+        """Return the lines that write a key and its value in a block mapping.
 
         Parameters
         ----------
@@ -122,14 +122,14 @@ class WritingStyle:
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """Return the text after the colon of a key, and the lines below the key.
+        """Return the text to write after the colon of a key, and the lines to write below the key.
 
         Parameters
         ----------
         name : the key
         value : the value
         column : column of the key, from 1
-        open : as for `entry`
+        open : as in `entry`
         """
         if value is None:
             return "", ""
@@ -154,13 +154,13 @@ class WritingStyle:
         return indented.replace("\n", self.line_break)
 
     def item(self, value: Value, column: int, *, block: bool = False) -> str:
-        """Return the lines of an item of a list.
+        """Return the lines that write an item of a block list.
 
         Parameters
         ----------
         value : value of the item
         column : column of the dash, from 1
-        block : whether to write one key per line; mappings that contain collections always are
+        block : whether to write one key per line; a value that contains collections always has one
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):
@@ -194,9 +194,9 @@ def read_inline(text: str) -> Value:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Return the index at which to insert a new key among the existing keys.
+    """Return the index at which to insert the key `name` among the existing keys `names`.
 
-    The keys are in the order of the format; other keys are last.
+    Keys of the file format are inserted in the order of the format, and other keys at the end.
     """
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
@@ -237,8 +237,8 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
     Parameters
     ----------
     text : the text
-    flow : whether the scalar is in brackets, where commas and brackets end a plain text
-    quote : present quotation mark, which is kept; empty if there is none
+    flow : whether the scalar is in a flow collection, where commas and brackets end a plain scalar
+    quote : current quotation mark, which is kept if possible; empty if there is none
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
@@ -269,7 +269,7 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """Apply patches to a text; patches at the same position are applied in the given order."""
+    """Apply patches to a text; patches at the same position keep their given order."""
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -279,30 +279,30 @@ def patched(text: str, patches: Iterable[Patch]) -> str:
 
 
 def line_start(text: str, place: int) -> int:
-    """Return the index at which the line of a position begins."""
+    """Return the index at which the line that contains the position `place` begins."""
     return text.rfind("\n", 0, place) + 1 or int(text.startswith("\ufeff"))
 
 
 def line_end(text: str, place: int) -> int:
-    """Return the index at which the line after a position begins."""
+    """Return the index at which the line after the position `place` begins, or the text ends."""
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
 
 def first_on_line(text: str, place: int) -> bool:
-    """True if only blanks precede a position on its line."""
+    """True if only blanks precede the position `place` on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return the index at which the lines of an item end, including its own comments.
+    """Return the index at which the lines of an item end, including the comments that belong to it.
 
     Parameters
     ----------
     text : the text, which ends with a line break
     place : index at which the value of the item ends
-    column : column of the item, from 1; comments below the item and to the right of this column
-        belong to it
+    column : column of the item, counted from 1; comments below the item belong to it if they start
+        to the right of this column
     """
     end = line_end(text, place)
     while (comment := _COMMENT.match(text, end)) and end < len(text):
@@ -313,15 +313,15 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return the index at which the lines of an item begin, including its own comments.
+    """Return the index at which the lines of an item begin, including comments that belong to it.
 
     Parameters
     ----------
     text : the text, which ends with a line break
-    place : index at which the item begins, the first on its line
+    place : index at which the item begins; the item is the first on its line
     least : comments before this index do not belong to the item
-    column : comments to the right of this column, from 1, do not belong to the item; None for no
-        limit
+    column : comments to the right of this column, counted from 1, do not belong to the item; None
+        means no such limit
     """
     start = line_start(text, place)
     while start > least:
@@ -348,7 +348,7 @@ def set_value(
     ----------
     text : the text, which ends with a line break
     mapping : the mapping that contains the key
-    at : index of the entry
+    at : index of the key in the mapping
     value : the new value
     style : style of the file
     open : whether a mapping is written below its key even if it is short
@@ -380,9 +380,9 @@ def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
 
     Parameters
     ----------
-    old : the scalar
+    old : node of the scalar
     value : the new text
-    flow : whether the scalar is in brackets
+    flow : whether the scalar is in a flow collection
     """
     quote = old.style if old.style in "'\"" else ""
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))

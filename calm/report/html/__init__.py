@@ -47,7 +47,7 @@ def page(report: Report, leaves: Sequence[str] | None = None) -> str:
 
 
 def fragment(part: ReportPart) -> str:
-    """Render a part for a notebook, without the style of a page, and as wide as its text."""
+    """Render a part as HTML for a notebook, without page style and only as wide as its text."""
     blocks = tuple(one.narrow() if isinstance(one, Table) else one for one in part.blocks)
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts([replace(part, blocks=blocks)], "n")  # type: ignore[attr-defined]
@@ -55,7 +55,7 @@ def fragment(part: ReportPart) -> str:
 
 
 def read_templates() -> None:
-    """Read and compile the templates, once for all processes that are forked later."""
+    """Read and compile the templates once, so that processes forked later need not do so."""
     for name in ("parts.html.jinja", "page.html.jinja"):
         _environment().get_template(name)
 

@@ -1,8 +1,11 @@
 """Where compiled laws are kept."""
 
 import builtins
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from shutil import rmtree
+from threading import Event, Thread
 from types import BuiltinFunctionType, FunctionType
 from typing import Any
 
@@ -42,6 +45,102 @@ def test_compiled_code_is_kept_where_the_user_says(
     assert folder is not None
     assert folder.parent == tmp_path
     assert folder.is_dir()
+
+
+ARGUMENTS = (0.3, -0.1, 0.9, 0.7, 0.5, -0.2, 0.1)
+
+
+@pytest.fixture
+def kept_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The file in the cache with the code of a law."""
+    monkeypatch.setenv("CALM_CACHE_DIR", str(tmp_path / "Käfig of code"))
+    monkeypatch.setattr(compiled, "cache_folder", compiled.cache_folder.__wrapped__)
+    monkeypatch.setattr(compiled, "_entries", {})
+    compiled.outcome(drag_share, True, *ARGUMENTS)
+    [file] = tmp_path.rglob("*.o")
+    return file
+
+
+def compilations(monkeypatch: pytest.MonkeyPatch) -> int:
+    """Number of compilations by another process that calls the law."""
+    count: list[int] = []
+    monkeypatch.setattr(compiled, "_entries", {})
+    monkeypatch.setattr(compiled, "on_compilation", [lambda: count.append(1)])
+    assert compiled.outcome(drag_share, True, *ARGUMENTS) == drag_share(*ARGUMENTS)
+    return len(count)
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        lambda code: b"",
+        lambda code: code[:100],
+        lambda code: code[: len(code) // 2],
+        lambda code: bytes(5000),
+        lambda code: code[:-1] + bytes([code[-1] ^ 1]),
+    ],
+    ids=["empty", "head", "half", "zeros", "one bit"],
+)
+def test_damaged_code_in_the_cache_is_compiled_again(
+    kept_code: Path, monkeypatch: pytest.MonkeyPatch, damaged: Callable[[bytes], bytes]
+) -> None:
+    assert compilations(monkeypatch) == 0
+    kept_code.write_bytes(damaged(kept_code.read_bytes()))
+    assert compilations(monkeypatch) == 1
+    assert compilations(monkeypatch) == 0
+
+
+def test_code_of_another_law_is_not_taken(kept_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = kept_code.with_name("other.o")
+    kept_code.rename(other)
+    assert compilations(monkeypatch) == 1
+    other.write_bytes(kept_code.read_bytes())
+    assert compiled._stored(kept_code)
+    assert not compiled._stored(other)
+
+
+def test_a_cache_deleted_meanwhile_is_done_without(
+    kept_code: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = kept_code.parent
+    monkeypatch.setattr(compiled, "cache_folder", lambda: folder)
+    rmtree(folder)
+    assert compilations(monkeypatch) == 1
+    assert not folder.exists()
+
+
+def test_code_that_cannot_be_stored_leaves_no_file(kept_code: Path) -> None:
+    folder = kept_code.parent
+    kept_code.unlink()
+    kept_code.mkdir()
+    compiled._store(kept_code, b"code")
+    assert list(folder.iterdir()) == [kept_code]
+
+
+def test_without_a_home_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_home() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("CALM_CACHE_DIR", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(Path, "home", no_home)
+    assert compiled.cache_folder.__wrapped__() is None
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
+def test_a_fork_waits_for_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiled, "cache_folder", lambda: None)
+    monkeypatch.setattr(compiled, "_entries", {})
+    begun = Event()
+    monkeypatch.setattr(compiled, "on_compilation", [begun.set])
+    thread = Thread(target=compiled.outcome, args=(drag_share, True, *ARGUMENTS))
+    thread.start()
+    begun.wait()
+    child = os.fork()
+    if child == 0:
+        os._exit(0 if compiled._lock.acquire(timeout=5.0) else 1)
+    assert os.waitpid(child, 0)[1] == 0
+    thread.join()
 
 
 def test_rows_of_a_list_are_set() -> None:

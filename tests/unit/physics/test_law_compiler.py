@@ -1,7 +1,7 @@
 """Compiled laws mean what they mean in Python."""
 
 from collections.abc import MutableSequence, Sequence
-from math import copysign, inf, isfinite, isnan, nan, pi, sqrt
+from math import copysign, floor, inf, isfinite, isnan, log, nan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -126,6 +126,89 @@ def test_a_law_is_called_by_its_address() -> None:
     assert compiled.outcome(twice, True, function, point) == 7.0
 
 
+def with_else(n: int) -> int:
+    found = 0
+    for i in range(n):
+        if i == 3:
+            break
+    else:
+        found += 7
+    for i in (1, n):
+        if i == 2:
+            break
+    else:
+        found += 100
+    while n > 0:
+        n -= 2
+        if n == 1:
+            break
+    else:
+        return found + 5000
+    return found + 10
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 9])
+def test_what_follows_a_loop_without_break_is_done(n: int) -> None:
+    assert compiled.outcome(with_else, True, n) == with_else(n)
+
+
+def needed(x: float, n: int) -> tuple[float, float, float, int]:
+    either, both = x or n or 2.5, x and n
+    if not ((x and n) or x > 1.0):
+        both += 10.0
+    return either, both, (n or 3) / 2, n and 4
+
+
+@pytest.mark.parametrize("x", [0.0, -0.0, 1.5, nan])
+@pytest.mark.parametrize("n", [0, 2])
+def test_and_and_or_have_the_value_that_python_gives(x: float, n: int) -> None:
+    *real, whole = needed(x, n)
+    assert repr(compiled.outcome(needed, True, x, n)) == repr((*map(float, real), whole))
+
+
+def overwritten(path: Path) -> tuple[float, float, float, float]:
+    points, first = path.points, path.points[0]
+    compiled.set_row(points, 0, moved(first, 10.0))
+    kept = first.x
+    points[1], points[2] = points[2], points[1]  # type: ignore[index]
+    total, last = 0.0, 1.0
+    for each in (kept, last):
+        last = 100.0
+        total += each
+    return kept, points[1].x, points[2].x, total + last
+
+
+def test_a_row_keeps_its_value_when_its_place_is_overwritten() -> None:
+    plain = path()
+    listed = plain._replace(points=[Point._make(row) for row in plain.points.tolist()])  # type: ignore[attr-defined]
+    assert compiled.outcome(overwritten, True, plain) == overwritten(listed)
+    assert [tuple(row) for row in plain.points.tolist()] == listed.points  # type: ignore[attr-defined]
+
+
+def parts(points: Sequence[float], first: int) -> tuple[int, int, int]:
+    return len(points[first:2]), len(points[first:]), len(points[:first])
+
+
+@pytest.mark.parametrize("first", [0, 2, 4, 9])
+def test_a_part_beyond_the_end_is_empty(first: int) -> None:
+    given = np.arange(5.0)
+    assert compiled.outcome(parts, True, given, first) == parts(list(given), first)
+
+
+def numbers(x: float, n: int) -> tuple[float, bool, int, bool]:
+    return copysign(1.0, floor(x) * 1.0), isnan(n) or isfinite(n), abs(x < 1.0), 5 < n in (1, 2)
+
+
+@pytest.mark.parametrize("x", [-0.0, -0.5, 2.5])
+def test_numbers_are_those_of_python(x: float) -> None:
+    assert compiled.outcome(numbers, True, x, 1) == numbers(x, 1)
+
+
+def test_an_argument_has_the_kind_that_the_law_declares() -> None:
+    assert compiled.outcome(largest, True, 1, 2) == (2, 1, 2)
+    assert compiled.outcome(largest, True, 1.5, 2.5) == (2.5, 1.5, 2.5)
+
+
 def with_power(x: float) -> float:
     return x**2
 
@@ -134,12 +217,63 @@ def with_text(x: float) -> float:
     return len(str(x)) * x
 
 
-@pytest.mark.parametrize("law", [with_power, with_text])
+def with_plus(x: float) -> float:
+    return +x
+
+
+def with_base(x: float) -> float:
+    return log(x, 2.0)
+
+
+def with_name(x: float) -> float:
+    return max(x, 2.0, key=abs)
+
+
+def with_steps(x: Any) -> float:
+    return len(x[::2])
+
+
+def counted_from_the_end(x: Any) -> float:
+    return len(x[:-1])
+
+
+def itself(x: float) -> float:
+    return itself(x - 1.0)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        with_power, with_text, with_plus, with_base, with_name, with_steps, counted_from_the_end,
+        itself,
+    ],
+)  # fmt: skip
 def test_what_is_no_law_is_refused_with_its_line(law: Any) -> None:
+    given: Any = np.ones(4) if law in (with_steps, counted_from_the_end) else 1.5
     with pytest.raises(
         Uncompilable, match=f"{law.__name__}, line {law.__code__.co_firstlineno + 1}"
     ):
-        compiled.outcome(law, True, 1.5)
+        compiled.outcome(law, True, given)
+
+
+def without_result(x: float) -> float:  # type: ignore[return]
+    if x > 0.0:
+        return 1.0
+
+
+def unset(n: int) -> float:
+    while n > 0:
+        if n < 3:
+            return pi  # noqa: F823
+        pi = 1.0  # noqa: F841
+        n -= 1
+    return 0.0
+
+
+@pytest.mark.parametrize("law", [without_result, unset])
+def test_what_has_no_value_is_refused(law: Any) -> None:
+    with pytest.raises(Uncompilable, match=r"without a result|pi has no value"):
+        compiled.outcome(law, True, 5)
 
 
 def test_arrays_with_gaps_are_refused() -> None:

@@ -63,7 +63,7 @@ def test_what_a_new_file_cannot_take_over_is_told(
     file = WorkingFile(path)
     other = path.with_name("other.yaml")
     os.link(path, other)
-    assert "hard links keep the old text" in file.save("name: a\n")
+    assert "hard links to the file keep the old text" in file.save("name: a\n")
     assert other.read_text() != "name: a\n"
 
     really = Path.stat
