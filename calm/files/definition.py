@@ -167,7 +167,7 @@ Length = Annotated[
 Diameter = Annotated[
     float,
     DIAMETER,
-    described("diameter, e.g. 12 mm; for a chain, the diameter of its bar", "12 mm"),
+    described("diameter; for a chain, the diameter of its bar, e.g. 12 mm", "12 mm"),
 ]
 Mass = Annotated[
     float | None, MASS, described("mass in air (per metre of a cable or chain)", "35 kg")
