@@ -202,8 +202,8 @@ def impossible(component: Component) -> Iterator[str]:
     if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
         weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
         yield (
-            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; this mass of its "
-            f"material would weigh {say('load', weight)} in water"
+            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; a body of this "
+            f"mass and material would weigh {say('load', weight)} in water"
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
