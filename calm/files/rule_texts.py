@@ -55,7 +55,7 @@ RULES = {
         "the curve of "
         "`drag: reynolds`",
         "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
-        "surface, greater by 5 %; otherwise the effect is reported, but not judged",
+        "surface, more than 5 % greater; otherwise the effect is reported, but not judged",
         "Constant coefficients are valid up to 2e5; above this number the drag of smooth shapes "
         "falls",
         "the profiles of a record are solved with one law of drag"),
