@@ -153,7 +153,7 @@ def internal_failure(error: Exception) -> NoEquilibrium:
     return NoEquilibrium(
         "internal-error",
         f"CALM failed ({type(error).__name__}: {error}).",
-        "Please report it, with the file.",
+        "Please report this error, with the mooring file.",
     )
 
 

@@ -68,12 +68,14 @@ def on_cluster(
         try:
             yield from in_order(submit, tasks, ahead)
         except (CancelledError, KilledWorker, OSError) as error:
-            raise UsageError(f"the scheduler or its workers were lost: {error}") from None
+            raise UsageError(
+                f"the connection to the scheduler or its workers was lost: {error}"
+            ) from None
         except (ImportError, AttributeError, RuntimeError) as error:
             # dask raises these for missing modules
             raise UsageError(
                 f"the scheduler or a worker cannot run the tasks: {error}; install "
-                f"calm-mooring {__version__} there, too"
+                f"calm-mooring {__version__} on the scheduler and on every worker"
             ) from None
 
 

@@ -18,7 +18,9 @@ def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
         if reported:
             return
         reported = True
-        report("compiling the solver for this machine, once only; this takes some seconds")
+        report(
+            "compiling the solver for this machine; this is done only once and takes a few seconds"
+        )
         if cache_folder() is None:
             report(
                 "no writable cache folder was found, so every run compiles again; set "

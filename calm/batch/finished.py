@@ -87,7 +87,9 @@ def status_names(dataset: Dataset) -> tuple[str, ...]:
     names = tuple(str(attributes.get("flag_meanings", "")).split())
     numbers = np.atleast_1d(attributes.get("flag_values", ())).tolist()
     if not names or numbers != list(range(len(names))):
-        raise UsageError("this is not a result of calm batch: its `status` has no flag meanings")
+        raise UsageError(
+            "this file is not a result of calm batch: its variable `status` has no flag meanings"
+        )
     return names
 
 

@@ -239,7 +239,7 @@ class Batch:
     ) -> Profiles:
         """Solve profiles. For the parameters and errors, see `solve_profiles`."""
         if workers is not None and workers < 1:
-            raise ValueError(f"{workers} workers: at least one is needed")
+            raise ValueError(f"`workers` is {workers}; it must be at least 1")
         shape, current = _checked(u, v, depth, w)
         if self.mooring.several:
             measured = self._solve_together(current, workers)

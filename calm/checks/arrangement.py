@@ -58,7 +58,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             message = (
                 f"{clamp.label} has `role: release`, but a clamped release cannot free the line."
             )
-            yield unknown(clamp, message, "Insert it in the line, or change its role.")
+            yield unknown(clamp, message, "Insert the release in the line, or change its role.")
     if release is None:
         if not reaches_the_surface(leg):
             yield unknown(
@@ -74,7 +74,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
-        message = f"No piece above {piece.label} is buoyant: once released, it stays on the seabed."
+        message = f"No piece above {piece.label} is buoyant: after release, it stays on the seabed."
         yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
         return
     doubts = []
@@ -83,7 +83,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if length < LEAST_BELOW_RELEASE and all(one.fit_top_depth is None for one in below):
         message = (
             f"{piece.label} is {say('depth', length)} above the anchor; "
-            f"{LEAST_BELOW_RELEASE:g} m keeps a release clear of mud and of falling gear."
+            f"at least {LEAST_BELOW_RELEASE:g} m keeps a release clear of mud and falling gear."
         )
         doubts.append((piece, message, "Insert rope or chain between release and anchor."))
     text = _words(piece.use, piece.component.name, piece.label)
@@ -95,12 +95,16 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     for index, one in enumerate(pieces[:release]):
         if one.component.role == "release" and not _floats(pieces[: index + 1]):
             message = f"No piece above release {one.label} is buoyant: opening it frees no float."
-            doubts.append((one, message, "Move it below the buoyancy, or change its role."))
+            doubts.append(
+                (one, message, "Move this release below the buoyancy, or change its role.")
+            )
     for one in below:
         floats = net_buoyancy(one.component, leg.water.gravity) > 0.0
         if floats and not isinstance(one.component, Flexible):
             message = f"{one.label} is buoyant, but below the release: it stays with the anchor."
-            doubts.append((one, message, "Move it above the release, or use one that sinks."))
+            doubts.append(
+                (one, message, "Move this part above the release, or use a part that sinks.")
+            )
     for part, message, remedy in doubts:
         yield verdict_on(part, State.WARN, message, remedy)
     if not doubts:
@@ -144,7 +148,9 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
             yield verdict_on(piece, State.PASS, f"{ending}, but there is a swivel between them.")
         else:
             message = f"{ending}, which tilts in the current, and there is no swivel between them."
-            remedy = "Insert a swivel there, or use wire that is `torque_balanced`."
+            remedy = (
+                "Insert a swivel at this end of the wire, or use wire that is `torque_balanced`."
+            )
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -183,7 +189,7 @@ def clamp_place(handling: Handling) -> Iterator[Verdict]:
     """Report clamps that overlap or that extend beyond the end of their cable or chain."""
     leg = handling.leg
     lengths = leg.line.length.tolist()
-    remedy = "Move it to a free position, or check its `at` and its length."
+    remedy = "Move the clamp to a free position, or check its `at` and its length."
     for piece in leg.file.pieces:
         if not isinstance(piece.component, Flexible):
             continue
@@ -225,7 +231,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
                 f"{base.label} ({base.component.material}) corrodes in contact with {noble.label} "
                 f"({noble.component.material}), which is {volts:.2f} V nobler in sea water."
             )
-            remedy = "Insulate one from the other (`insulated: true`), or fit an anode."
+            remedy = "Insulate the two parts from each other (`insulated: true`), or fit an anode."
             yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
 
 
@@ -335,11 +341,13 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
         f"Tension in {wire.label} at {part.label} is {say('load', row.tension)}; "
         f"the profiler needs {say('load', least)} to travel."
     )
-    yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
+    yield at_least(part, row.tension, least, message, "Add buoyancy above the wire.")
     yield from _path_obstacles(part, wire)
     if component.drive_force is None:
-        message = f"The drive force of {part.label} is unknown, and may be too small to climb."
-        yield unknown(part, message, "Set its `drive_force` and `speed`.", lacks="drive_force")
+        message = f"The drive force of {part.label} is unknown; it may be too small for the wire."
+        yield unknown(
+            part, message, "Set `drive_force` and `speed` of the profiler.", lacks="drive_force"
+        )
         return
     flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))
     lean = radians(row.tilt)
@@ -375,8 +383,8 @@ def _path_obstacles(part: Clamp, wire: Piece) -> Iterator[Verdict]:
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:
-            message = f"{other.label} blocks {part.label}, {other.at:.0f} m down the wire."
-            yield verdict_on(part, State.FAIL, message, "Move it outside the stops.")
+            message = f"{other.label}, {other.at:.0f} m down the wire, blocks {part.label}."
+            yield verdict_on(part, State.FAIL, message, "Move the obstacle outside the stops.")
     thin, thick = PROFILER_WIRE
     diameter = getattr(wire.component, "diameter", 0.0)
     if not thin <= round(diameter, 5) <= thick:

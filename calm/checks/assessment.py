@@ -269,7 +269,7 @@ class Acceptance:
             yield f"{count} {lack} a name (`by`) or an end date (`until`)"
         for accept in sorted(self.accepts, key=lambda one: one.line):
             of = f" of {accept.component}" if accept.component is not None else ""
-            what = f"line {accept.line}: `accept` for {accept.rule}{of}"
+            what = f"line {accept.line} of the file: `accept` for {accept.rule}{of}"
             if accept.date is not None and accept.date > self.day.isoformat():
                 yield f"{what} is dated {accept.date} and does not apply yet"
             elif not accept.counts_on(self.day):
@@ -289,8 +289,8 @@ def _accepted(finding: Finding, accept: Accept) -> Finding:
         return accepted
     if tension > load:
         message = (
-            f"{finding.message} The `accept` in line {accept.line} allows at most "
-            f"{say('load', load)}."
+            f"{finding.message} The `accept` on line {accept.line} of the file allows "
+            f"at most {say('load', load)}."
         )
         return finding.but(message=message)
     return accepted if finding.limit is not None else accepted.but(limit=load, sense="<=")

@@ -125,10 +125,14 @@ def check_catalogue(
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
             if definition.prefer not in known or definition.prefer == identifier:
-                message = f"prefers `{definition.prefer}`, which is in no catalogue"
+                message = (
+                    f"has `prefer: {definition.prefer}`, which must be the id of another component"
+                )
                 findings.append(CatalogueFinding(identifier, message))
             elif other is not None and other.prefer is not None:
-                message = f"prefers `{definition.prefer}`, which itself prefers `{other.prefer}`"
+                message = (
+                    f"has `prefer: {definition.prefer}`, which itself has `prefer: {other.prefer}`"
+                )
                 findings.append(CatalogueFinding(identifier, message))
     return findings
 
@@ -198,8 +202,8 @@ def impossible(component: Component) -> Iterator[str]:
     if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
         weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
         yield (
-            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; this mass of its "
-            f"material would weigh {say('load', weight)} in water"
+            f"weighs {mass:.4g} kg in air and {say('load', -net)} in water; a body of this "
+            f"mass and material would weigh {say('load', weight)} in water"
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
@@ -339,7 +343,7 @@ def figures(handling: Handling) -> Iterator[Verdict]:
                 f"{key.source} has {limit_value_text(key, key.default)}."
             )
             yield unknown(None, message, "Add its `source`, or remove the value.")
-    remedy = "Check its values and their units."
+    remedy = "Check the values of the component and their units."
     for part in parts_of(handling.leg.file.pieces):
         for state, found in (
             (State.FAIL, impossible),

@@ -44,7 +44,7 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
         f"coefficient is valid up to {power_text(limit)}."
     )
     effect, worse = _effect(result, {one.index for one, _ in rows})
-    remedy = "Check its drag coefficient."
+    remedy = "Check the drag coefficient of this part."
     state = State.WARN if worse else State.NOT_JUDGED
     yield result, verdict_on(row.part, state, f"{message}{effect}", remedy)
 

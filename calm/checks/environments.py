@@ -36,7 +36,7 @@ WEAKER = 0.5
 _LEAST = 0.05
 """Ordinary current speed below which a weaker storm current is ignored [m/s]."""
 
-_CHECK = "Check its values and units."
+_CHECK = "Check the values and units of the environment."
 
 
 @rule("environment")
@@ -97,5 +97,5 @@ def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
     calm = all(leg.file.environment.wind is None for leg in legs)
     if area and calm and reaches_the_surface(legs[0]):
         message = f"No environment has a `wind`, so the wind load on {top.label} is not checked."
-        remedy = "Set the `wind` of each environment, such as that of a storm."
+        remedy = "Set `wind` in each environment, for example the wind of a storm."
         yield legs[0], verdict_on(top, State.WARN, message, remedy)

@@ -73,15 +73,21 @@ class Bounds:
 
 _CRISIS = "smooth flow beyond the drag crisis: sphere 0.06 (Katz, Automotive Aerodynamics, figure "
 _CRISIS += "6.19), cylinder 0.2 (Roshko 1961, Journal of Fluid Mechanics 10, 345-356)"
-_STRUMMING = "1.2 of a cylinder, 2.5 times that as it vibrates (Griffin 1985, ASME OMAE)"
-_CHAIN = "2.4 to 2.6 on the diameter (OrcaFlex manual, Chain), about half and twice that"
+_STRUMMING = (
+    "1.2 for a cylinder at rest, 2.5 times as much if it vibrates (Griffin 1985, ASME OMAE)"
+)
+_CHAIN = "2.4 to 2.6 with the bar diameter (OrcaFlex manual, Chain); bounds: half and twice that"
 
 DRAG_BOUNDS = {
     ("sphere", "cx"): Bounds(0.06, 2.0, _CRISIS),
     ("cylinder", "cn"): Bounds(0.2, 4.0, f"{_CRISIS}; {_STRUMMING}"),
-    ("cylinder", "ct"): Bounds(0.001, 2.0, "skin friction of a smooth wall; a blunt end"),
-    ("cable", "cn"): Bounds(0.05, 4.0, f"a streamlined section around it; {_STRUMMING}"),
-    ("cable", "ct"): Bounds(0.0005, 1.0, "skin friction of a smooth wall; a string of balls"),
+    ("cylinder", "ct"): Bounds(
+        0.001, 2.0, "from skin friction on a smooth wall to the drag of a blunt end"
+    ),
+    ("cable", "cn"): Bounds(0.05, 4.0, f"cable in a streamlined fairing; {_STRUMMING}"),
+    ("cable", "ct"): Bounds(
+        0.0005, 1.0, "from skin friction on a smooth wall to the drag of a string of balls"
+    ),
     ("chain", "cn"): Bounds(1.0, 6.0, _CHAIN),
 }
 """Bounds of drag coefficients by kind and key. Zero is not plausible for these classes, except for
@@ -191,7 +197,7 @@ def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
     if -component.net_buoyancy > 1.08 * weight:
         yield (
             f"weighs {say('load', -component.net_buoyancy)} in water; {component.mass:.4g} kg of "
-            f"{component.material} weigh {say('load', weight)} there"
+            f"{component.material} weigh {say('load', weight)} in water"
         )
 
 

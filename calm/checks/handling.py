@@ -77,9 +77,12 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     else:
         part = handling.leg.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
-        where = f"between a break below {worst.label} and the release"
+        where = f"between {worst.label} and the release"
     if not breaks and len(handling.losses) == 1:
-        message = f"{handling.losses[0].label} provides all the buoyancy, so there is no back-up."
+        message = (
+            f"{handling.losses[0].label} provides all the buoyancy, so there is no "
+            "back-up buoyancy."
+        )
         remedy = "Use several floats if the line must surface after the loss of one."
         yield verdict_on(handling.losses[0], State.NOT_JUDGED, message, remedy)
         return
@@ -123,7 +126,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
             load = "working load" if times == 1.0 else f"working load times {times:g}"
             source = cited(file, "launch_working_factor")
         else:
-            load = f"breaking load over {over:g}"
+            load = f"breaking load divided by {over:g}"
             source = cited(file, "launch_safety_factor")
         message = f"{carried}; its {load} is {say('load', limit)}."
         if tension > limit and not launch.anchor_drag_known:

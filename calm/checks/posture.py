@@ -63,7 +63,7 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
 
     Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 degrees for a
     single-point Doppler current meter, 45 degrees for a release, and 10 degrees for a sediment
-    trap. The limit for an ADCP is 20 degrees, and ADCP data are doubtful above 15 degrees.
+    trap. The limit for an ADCP is 20 degrees, and ADCP data are unreliable above 15 degrees.
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -79,7 +79,9 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
             yield Criterion(part, "tilt", warned, words, beyond=State.WARN)
 
 
-_STRAIGHTER = "Add buoyancy above it, or move it to a more upright part of the line."
+_STRAIGHTER = (
+    "Add buoyancy above this part, or move the part to a more upright position on the line."
+)
 THE_DESIGNS = "The design's own `maximum_tilt`"
 
 
@@ -88,7 +90,10 @@ def _tilt_words(
 ) -> tuple[str, str]:
     tilt = f"Tilt of {part.label} is {say('tilt', leaning)}"
     if limit is None:
-        return f"{tilt}; its limit is unknown.", "Set its `max_tilt`, or `90 deg` if it has none."
+        return (
+            f"{tilt}; its limit is unknown.",
+            "Set `max_tilt` of the part; use `90 deg` if the part has no limit.",
+        )
     return f"{tilt}; the limit is {say('tilt', limit)}.", _STRAIGHTER
 
 
@@ -96,7 +101,7 @@ def _doubtful_words(
     part: JudgedPart, warned: float, leaning: float, _: LegResult
 ) -> tuple[str, str]:
     tilt = f"Tilt of {part.label} is {say('tilt', leaning)}"
-    return f"{tilt}; above {say('tilt', warned)} its data are doubtful.", _STRAIGHTER
+    return f"{tilt}; above {say('tilt', warned)} its data are unreliable.", _STRAIGHTER
 
 
 @criteria("depth-rating")
@@ -125,7 +130,7 @@ def _rating_words(
 ) -> tuple[str, str]:
     deep, rating = f"Depth of {part.label} is {say('depth', depth)}", part.component.depth_rating
     if limit is None or rating is None:
-        return f"{deep}; its depth rating is unknown.", "Set its `depth_rating`."
+        return f"{deep}; its depth rating is unknown.", "Set the `depth_rating` of the part."
     return (
         f"{deep}; its depth rating of {say('depth_rating', rating)} less a margin of "
         f"{say('depth_rating', rating - limit)} allows {say('depth_rating', limit)}.",
@@ -158,9 +163,9 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
             )
             yield unknown(
                 piece,
-                f"{piece.label} is {component.material} of unknown stiffness and assumed "
-                f"inextensible. It {could}, so depths above it are unknown.",
-                "Set its `stiffness` or `elongation`.",
+                f"{piece.label} is {component.material} of unknown stiffness and is assumed "
+                f"inextensible. The rope {could}, so depths above it are unknown.",
+                "Set the `stiffness` or `elongation` of the rope.",
                 by,
                 lacks="stiffness",
             )
@@ -169,8 +174,8 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
         if piece.measured_load and bears and piece.measured_load > bears:
             what = "its working load" if component.working_load else "a fifth of its breaking load"
             message = (
-                f"{piece.label} is cut to length under {say('load', piece.measured_load)}, "
-                f"more than {what} ({say('load', bears)})."
+                f"{piece.label} is to be cut to length under a load of "
+                f"{say('load', piece.measured_load)}; this exceeds {what}, {say('load', bears)}."
             )
             remedy = "Check the load of its `length_at`: ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)
@@ -241,7 +246,7 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
         if isnan(sunk):
             return (
                 "The line is slack in still water, so its knockdown has no reference.",
-                "Limit its excursion instead: `maximum_excursion`.",
+                "Set a limit for the excursion instead (`maximum_excursion`).",
             )
         return (
             f"Knockdown of the top is {say('knockdown', sunk)}; the limit is {allowed}.",
@@ -316,7 +321,7 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
         yield unknown(
             top,
             "The freeboard of the float is unknown.",
-            "Set its `hull`, `mass` and `volume`, and set `buoy_drag: immersed`.",
+            "Set `hull`, `mass` and `volume` of the float, and set `buoy_drag: immersed`.",
         )
         return
     yield at_least(

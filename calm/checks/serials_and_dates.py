@@ -81,7 +81,7 @@ def _releases(file: MooringFile) -> Iterator[Verdict]:
     serials = [one.serial for one in file.releases if one.serial is not None]
     for serial in dict.fromkeys(one for one in serials if serials.count(one) > 1):
         message = f"`releases` gives codes for serial number {serial} twice."
-        yield _warning(None, message, "Keep the row with the right codes.")
+        yield _warning(None, message, "Keep only the row with the correct codes.")
     codes = [one.code_lines for one in file.releases if one.code_lines]
     if len(set(codes)) < len(codes):
         message = "Two releases have the same codes, so both would answer and open."
@@ -96,15 +96,19 @@ def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict
     for part in parts:
         battery, calibrated = part.equipment.battery_until, part.equipment.calibrated
         if battery and deployed and battery <= deployed:
-            message = f"The battery of {part.label} ends on {battery}; the deployment is on "
+            message = f"The battery of {part.label} runs out on {battery}; the deployment is on "
             message += f"{deployed}."
             yield _warning(part, message, "Check both dates, or replace the battery.")
         if battery and calibrated and battery <= calibrated:
-            message = f"The battery of {part.label} ends on {battery}, before its calibration on "
+            message = (
+                f"The battery of {part.label} runs out on {battery}, not after its calibration on "
+            )
             message += f"{calibrated}."
             yield _warning(part, message, "Check both dates.")
         if calibrated and deployed and calibrated > deployed:
-            message = f"{part.label} is calibrated on {calibrated}, after its deployment on "
+            message = (
+                f"The calibration of {part.label}, on {calibrated}, is after its deployment on "
+            )
             message += f"{deployed}."
             remedy = "Check both dates: this may be the calibration after recovery."
             yield _warning(part, message, remedy)
@@ -117,8 +121,8 @@ def _document(document: DocumentKeys) -> Iterator[str]:
     for earlier, later in pairwise(dated):
         if (later.date or "") < (earlier.date or ""):
             yield (
-                f"Revision {later.revision} of {later.date} follows revision {earlier.revision} of "
-                f"{earlier.date}."
+                f"Revision {later.revision} is dated {later.date}, before the preceding revision "
+                f"{earlier.revision}, dated {earlier.date}."
             )
     names = [one.revision for one in history]
     for name in dict.fromkeys(one for one in names if names.count(one) > 1):

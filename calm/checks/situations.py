@@ -212,7 +212,7 @@ def as_deployed(design: Design) -> Design:
     """
     file = design.file
     if file.deployed is None:
-        raise UsageError(f"{file.path} has no `deployed:` to compare its design with")
+        raise UsageError(f"{file.path} has no `deployed:` section to compare with its design")
     return Design(_deployed_file(design.legs[0].cut(file)))
 
 
@@ -274,8 +274,8 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     direction = "deeper" if moved > 0.0 else "shallower"
     message = (
         f"Deployed in {say('depth', depth)} of water instead of {say('depth', designed)}: "
-        f"{what} is {say('depth', abs(moved))} {direction} than designed; the error of a sounding "
-        f"is {say('depth', limit)}."
+        f"{what} is {say('depth', abs(moved))} {direction} than designed; a sounding may be in "
+        f"error by {say('depth', limit)}."
     )
     remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
@@ -365,8 +365,8 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     for leg, speed in zip(legs, speeds, strict=True):
         if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
             message = (
-                f"The strongest current is {speed:.2g} m/s here and {say('speed', max(speeds))} in "
-                "another environment: one of them may be in the wrong unit."
+                f"The strongest current is {speed:.2g} m/s in this environment and "
+                f"{say('speed', max(speeds))} in another; one of them may be in the wrong unit."
             )
             yield leg, verdict_on(None, State.WARN, message, "Check m/s and cm/s.", speed)
         if speed >= LEAST_CURRENT and (left := _left_out(leg)):

@@ -128,7 +128,7 @@ def _strength_words(
     else:
         allowed = (
             f"its breaking load of {say('load', component.breaking_load)} "
-            f"over {factor:g} allows {say('load', limit)}"
+            f"divided by {factor:g} allows {say('load', limit)}"
         )
     wanted = f"a breaking load of at least {say('load', factor * tension)}"
     if not is_synthetic(component):
@@ -155,7 +155,7 @@ def no_load_known(load: str) -> tuple[str, str]:
     `load` is the text of `load_text`.
     """
     message = f"{load}; its working load and breaking load are unknown."
-    return message, "Set its `working_load` or `breaking_load`."
+    return message, "Set the `working_load` or `breaking_load` of the part."
 
 
 @criteria("release-load")
@@ -186,7 +186,7 @@ def _release_words(
     if limit is None:
         return (
             f"{load}; its working load and opening load are unknown.",
-            "Set its `working_load` and `opening_load`.",
+            "Set the `working_load` and `opening_load` of the release.",
         )
     if not opens:
         allowed = f"the limit is {say('load', limit)}"
@@ -292,11 +292,12 @@ def _words(
     return (
         f"Minimum tension in {part.label} is {say('load', least)}; "
         f"a {name} needs {say('load', limit)} to stay taut.",
-        "Add buoyancy or remove weight above it, or allow it to be slack (`slack: allowed`).",
+        "Add buoyancy or remove weight above this piece, or allow it to be slack (`slack: "
+        "allowed`).",
     )
 
 
-_SET_WEIGHT = "Set its `weight` in water, or the `density` of its material."
+_SET_WEIGHT = "Set the `weight` of the anchor in water, or the `density` of its material."
 _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 
 
@@ -339,7 +340,7 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
         if limit is None:
             return f"{load}; {_UNKNOWN_WEIGHT}.", _SET_WEIGHT
         return (
-            f"{load}; the anchor's weight in water over {factor:g} is {say('load', limit)}.",
+            f"{load}; the anchor's weight in water divided by {factor:g} is {say('load', limit)}.",
             _heavier(leg, result.anchor_load.required_weight),
         )
 

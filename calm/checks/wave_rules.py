@@ -61,7 +61,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     if not isinstance(waves, WaveAnalysis):
         if waves is not None:
             message = f"The mooring has no solution in waves: {waves}."
-            yield unknown(None, message, "Set the missing values.")
+            yield unknown(None, message, "Set the values that are missing in `waves:`.")
         elif reaches_the_surface(leg):
             message = "The environment has no `waves:`, so loads in waves are not checked."
             yield unknown(None, message, _SET_WAVES)
@@ -129,7 +129,9 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         piece = leg.file.pieces[one.index]
         if one.unknown is not None:
             message = f"The fatigue life of {one.label} is unknown: {one.unknown}."
-            yield unknown(piece, message, "Set the `curve` of its `fatigue`, and its loads.")
+            yield unknown(
+                piece, message, "Set the `curve` under `fatigue` of the component, and its loads."
+            )
         elif one.life is not None and one.life_low is not None and one.life_high is not None:
             message = (
                 f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} to "
@@ -149,7 +151,7 @@ def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
         return ""
     tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
     low, high = (say("load", each) for each in tensions)
-    return f" Measurements at sea (SOFS) imply {low} to {high}."
+    return f" Measurements at sea (SOFS) imply a tension of {low} to {high}."
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:

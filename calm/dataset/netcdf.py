@@ -224,7 +224,7 @@ def of_net(
     for part, legs in (("component", components), ("clamp", clamps), ("node", nodes)):
         index_attributes = {
             "units": "1",
-            "long_name": f"index of the leg that the {part} is in, from 0",
+            "long_name": f"index of the leg that contains the {part} (the first is 0)",
         }
         values = np.array([*legs], np.int32)
         if len(values):
@@ -329,8 +329,8 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
     return [
         Variable(
             name, (name,), "<i4",
-            {"long_name": f"number of the {name} down the line, from 0", "units": "1", "axis": "Z",
-             "positive": "down"},
+            {"long_name": f"number of the {name} down the line (the first is 0)", "units": "1",
+             "axis": "Z", "positive": "down"},
             np.arange(sizes[name], dtype=np.int32),
         )
         for name in ("component", "clamp", "node", "sensor", "level")

@@ -143,7 +143,7 @@ class Mover:
             if slowest == SLOWEST and farthest > max(nearer, 0.1 * reach):
                 break
             nearer, slowest = farthest, max(0.2 * slowest, SLOWEST)
-        raise NoStep("the positions of the nodes could not be found")
+        raise NoStep("the positions of the nodes could not be computed")
 
     @cached_property
     def scale(self) -> float:

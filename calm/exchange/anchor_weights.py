@@ -35,10 +35,10 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
             continue
         anchor.figures.pop("mass", None)
         anchor.guesses.pop("mass", None)
-        reason = "the file has no weight; this is 1.5 × (V + H/0.6) in this current"
+        reason = "the file has no anchor weight; 1.5 × (V + H/0.6) in this current is used"
         anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
         if pull is None:
-            reason = "the file has no weight; this weight is enough for any line"
+            reason = "the file has no anchor weight; a weight that holds any line is used"
             anchor.figures["weight"] = _HOLDS
         elif given is not None:
             reason = (

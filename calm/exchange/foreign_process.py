@@ -47,7 +47,7 @@ def read_apart(
     except EOFError:
         child.join()
         raise ValueError(
-            f"the process that reads it ended with exit code {child.exitcode}"
+            f"the process that reads the file ended with exit code {child.exitcode}"
         ) from None
     finally:
         child.kill()

@@ -96,7 +96,7 @@ def import_file(
     if environment is not None:
         design.environment = environment_lines(environment, output)
         if design.water is not None:
-            what = f"the water of the file, which {environment.name} replaces"
+            what = f"the environment in the file: {environment.name} is used instead"
             design.dropped.append(model.Remark("environment", what))
         design.record = None
     elif design.water is None and design.tow is None:

@@ -51,7 +51,9 @@ def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
     if len(content) > LARGEST:
         raise refused(path, f"holds more than {LARGEST // 1_000_000} MB once it is decompressed")
     if content.startswith(_OCTAVE_BINARY):
-        raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
+        raise refused(
+            path, "is in Octave's binary format; save it in Octave with -v7, -hdf5 or -text"
+        )
     try:
         return MatVariables(read_apart(_variables, content, list(wanted)))
     except ValueError as error:

@@ -55,7 +55,7 @@ def read_moords(path: Path) -> model.ImportedDesign:
             guess = (
                 ""
                 if -_OFF <= at <= length + _OFF
-                else "its position in the file is beyond the end of the piece"
+                else "the position in the file is beyond the end of the piece"
             )
             host.clamp(rigid(element), min(max(at, 0.0), length), guess)
         else:

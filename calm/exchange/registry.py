@@ -158,6 +158,7 @@ def _added() -> dict[str, str]:
     added = {entry.name: entry.module for entry in entry_points(group=ENTRY_POINTS)}
     if taken := sorted(added.keys() & _OWN.keys()):
         raise CalmError(
-            f"{added[taken[0]]} adds a format `{taken[0]}`, which is the name of one of CALM's own"
+            f"{added[taken[0]]} adds a format `{taken[0]}`, but CALM itself has a format of "
+            "this name"
         )
     return added

@@ -346,7 +346,7 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
             continue
         for entry in _entries_of(document, problems):
             if entry.id in level:
-                message = f"`{entry.id}` is defined already, in {level[entry.id].place}"
+                message = f"`{entry.id}` is already defined, in {level[entry.id].place}"
                 problems.append(document.problem((entry.id,), message, key=True))
             else:
                 level[entry.id] = entry

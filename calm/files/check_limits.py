@@ -58,13 +58,13 @@ class SafetyFactors(definition.Model):
     """Required ratios of breaking load to tension, by material."""
 
     steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
-        "of steel, and of all materials except synthetic rope", 3, default=3.0
+        "factor for steel, and for all materials except synthetic rope", 3, default=3.0
     )
     synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
-        "of synthetic rope", 5, default=5.0
+        "factor for synthetic rope", 5, default=5.0
     )
     surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
-        "for all pieces of a surface mooring", 5, default=5.0
+        "factor for all pieces of a surface mooring", 5, default=5.0
     )
 
 
@@ -72,10 +72,10 @@ class MinimumTensions(definition.Model):
     """Minimum tensions above the release [N]."""
 
     wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
-        "in wire", "500 N", default=500.0
+        "minimum tension in wire", "500 N", default=500.0
     )
     rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
-        "in synthetic rope", "300 N", default=300.0
+        "minimum tension in synthetic rope", "300 N", default=300.0
     )
 
 
@@ -86,7 +86,7 @@ class Checks(definition.Model):
     """
 
     safety_factor: SafetyFactors = definition.described(
-        "least breaking load over tension, by the material of a piece",
+        "minimum ratio of breaking load to tension, by the material of a piece",
         {"steel": 3, "synthetic": 5},
         default_factory=SafetyFactors,
     )
@@ -99,25 +99,27 @@ class Checks(definition.Model):
         "default friction coefficient of an anchor on the seabed", 0.6, default=0.6
     )
     minimum_tension: MinimumTensions = definition.described(
-        "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
+        "minimum tensions above the release",
+        {"wire": "500 N", "rope": "300 N"},
+        default_factory=MinimumTensions,
     )
     backup_margin: Annotated[float, _SHARE, Limit(_URI)] = definition.described(
-        "remaining buoyancy after any break, as a share of the weight lifted", 0.1, default=0.1
+        "minimum buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
     )
     minimum_rise_speed: Annotated[float, _SPEED, Limit()] = definition.described(
-        "speed of the ascent after release", "0.3 m/s", default=0.3
+        "minimum speed of the ascent after release", "0.3 m/s", default=0.3
     )
     launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = definition.described(
-        "breaking load over tension during the anchor drop", 2, default=2.0
+        "minimum ratio of breaking load to tension during the anchor drop", 2, default=2.0
     )
     launch_working_factor: Annotated[float, _FACTOR, Limit()] = definition.described(
-        "working load over tension during the anchor drop", 1, default=1.0
+        "minimum ratio of working load to tension during the anchor drop", 1, default=1.0
     )
     waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = definition.described(
-        "breaking load over maximum tension in waves", 1.67, default=1.67
+        "minimum ratio of breaking load to maximum tension in waves", 1.67, default=1.67
     )
     fatigue_factor: Annotated[float, _SAFETY, Limit(_LIFE)] = definition.described(
-        "life in waves over `service_time`", 3, default=3.0
+        "minimum ratio of fatigue life in waves to `service_time`", 3, default=3.0
     )
     service_time: Annotated[float, definition.QuantityField("time", above=0), Limit()] = (
         definition.described(
@@ -145,17 +147,19 @@ class Checks(definition.Model):
         "minimum depth of the top of a subsurface line, also at low water", "10 m"
     )
     planned_depth_warning: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "distance from the planned depth above which the check warns, if above 2 % of that depth",
+        "difference from the planned depth that causes a warning, if it exceeds 2 % of that depth",
         "10 m",
         default=10.0,
     )
     planned_depth_limit: Annotated[float, _SHARE, Limit()] = definition.described(
-        "distance from the planned depth above which the check fails, as a share of that depth",
+        "difference from the planned depth that causes a failure, as a share of that depth",
         "10 %",
         default=0.1,
     )
     fishbite_depth: Annotated[float, definition.LENGTH, Limit(_BERTEAUX)] = definition.described(
-        "maximum depth at which fish bite synthetic rope; 0 m for none", "1500 m", default=1000.0
+        "maximum depth at which fish bite synthetic rope; 0 m if there is no fish bite",
+        "1500 m",
+        default=1000.0,
     )
     accept: tuple[AcceptKeys, ...] = definition.described(
         "findings that this design accepts, each with its reason",
@@ -263,7 +267,7 @@ class AcceptKeys(definition.Model):
         "reason for accepting the finding", "no load is published; the chain carries the load"
     )
     component: definition.Text | None = definition.optional(
-        "label of the line, or a pattern of labels; by default all", "glass *"
+        "label of a part, or a pattern of labels; by default all parts", "glass *"
     )
     by: definition.Text | None = definition.optional("who accepts it", "A. Martin")
     date: Day | None = definition.optional("day, e.g. 2026-11-20", "2026-11-22")

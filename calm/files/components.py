@@ -58,12 +58,12 @@ Elongation = Annotated[
 WeightPerMetre = Annotated[
     float | None,
     QuantityField("force per length"),
-    Field(description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
+    Field(description="weight in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
 ]
 MassPerMetre = Annotated[
     float | None,
     QuantityField("mass per length", at_least=0),
-    Field(description="in air (per metre of a cable or chain)"),
+    Field(description="mass in air (per metre of a cable or chain)"),
 ]
 
 
@@ -103,7 +103,7 @@ class Cable(Flexible):
         "true for a wire rope that does not rotate under load", True
     )
     elongation: Elongation | None = optional(
-        "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        "rows of load divided by breaking load, and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
     dynamic_stiffness: definition.PositiveForce = optional(
@@ -211,12 +211,12 @@ class Anchor(definition.Definition):
     kind: Literal["anchor"] = Field(description="kind of the component")
     mass: definition.Mass = None
     weight: Annotated[float | None, QuantityField("force", at_least=0)] = optional(
-        "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
+        "weight in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
     )
     density: definition.MaterialDensity = None
     length: definition.Length = 0.0
     friction: Annotated[float | None, QuantityField("number", above=0, at_most=10)] = optional(
-        "coefficient on the seabed", 0.6
+        "friction coefficient on the seabed", 0.6
     )
     kt: definition.TangentialDrag = Field(default=None, examples=["200 N/(m/s)^2"])
 
@@ -402,8 +402,8 @@ def odd_overrides(
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (
-            f"`mass` of {use} is overridden, but not its net force in water; override that as well "
-            "if it changes"
+            f"`mass` of {use} is overridden, but not its net force in water; override the net "
+            "force as well if it changes"
         )
     if isinstance(defined, Anchor) and isinstance(component, Anchor) and "weight" in given:
         share = 1.0 - CATALOGUE_DENSITY / (defined.material_density or STEEL_DENSITY)

@@ -192,10 +192,12 @@ class _Reader:
             elif not isinstance(event, events.ScalarEvent):
                 self._refused(event, depth, "a key must be plain text")
             elif (name := _shown(event.value)) in lines:
-                again = f"`{name}` is given twice (first in line {lines[name]})"
+                again = f"`{name}` is given twice (first on line {lines[name]})"
                 self._refusals.append(_refusal(event, again))
             elif not event.style and _DASHED.match(name):
-                self._refusals.append(_refusal(event, "the dash of a list needs a blank behind it"))
+                self._refusals.append(
+                    _refusal(event, "the dash of a list item needs a space after it")
+                )
             else:
                 mark = event.start_mark
                 lines[name] = line = mark.line + 1

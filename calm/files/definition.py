@@ -162,10 +162,16 @@ DENSITY = QuantityField("density", above=0)
 Length = Annotated[
     float,
     LENGTH,
-    described("along the line, unstretched; `fit` cuts a cable to reach a depth", "480 m"),
+    described("unstretched length along the line; `fit` cuts a cable to reach a depth", "480 m"),
 ]
-Diameter = Annotated[float, DIAMETER, described("e.g. 12 mm; of a chain, that of its bar", "12 mm")]
-Mass = Annotated[float | None, MASS, described("in air (per metre of a cable or chain)", "35 kg")]
+Diameter = Annotated[
+    float,
+    DIAMETER,
+    described("diameter; for a chain, the diameter of its bar, e.g. 12 mm", "12 mm"),
+]
+Mass = Annotated[
+    float | None, MASS, described("mass in air (per metre of a cable or chain)", "35 kg")
+]
 _ANY_QUANTITY = {"type": "string", "description": "with its unit"}
 MaterialDensity = Annotated[
     float | None,

@@ -33,10 +33,10 @@ class Position(Model):
     """The geographic position of the mooring [degrees]."""
 
     latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = described(
-        "north positive, or degrees and minutes: 48 18.0 N", "48.3 deg"
+        "latitude, north positive, or in degrees and minutes: 48 18.0 N", "48.3 deg"
     )
     longitude: Annotated[float, QuantityField("longitude", at_least=-360, at_most=360)] = described(
-        "east positive, or degrees and minutes: 5 12.0 W", "-5.2 deg"
+        "longitude, east positive, or in degrees and minutes: 5 12.0 W", "-5.2 deg"
     )
 
 
@@ -47,7 +47,7 @@ class SeabedKeys(Model):
         "from the horizontal", "3 deg"
     )
     toward: water.Toward = described(
-        "clockwise from north: direction in which it becomes deeper", "120 deg"
+        "direction in which the water becomes deeper, clockwise from north", "120 deg"
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
@@ -75,7 +75,9 @@ class SeabedKeys(Model):
 class SeabedFile(Model):
     """File with gridded seabed depths."""
 
-    file: Text = described("NetCDF over latitude and longitude: GEBCO, EMODnet", "gebco.nc")
+    file: Text = described(
+        "NetCDF grid over latitude and longitude, such as GEBCO or EMODnet", "gebco.nc"
+    )
 
 
 def _bed_form(value: object) -> str:
@@ -152,7 +154,7 @@ class UniformCurrent(Model):
 
     speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
-        "clockwise from north: direction in which it flows or moves, e.g. 90 deg", "90 deg"
+        "direction towards which it flows or moves, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
         "vertical speed, positive up", "0.01 m/s", default=0.0
@@ -185,7 +187,7 @@ def _current_form(value: object) -> str:
 
 def _water_only(value: object) -> object:
     if value == "air":
-        raise QuantityError("is for tows; a mooring is in water")
+        raise QuantityError("is only for tows; a mooring must be in water")
     return value
 
 
@@ -219,11 +221,13 @@ class TowEnvironmentKeys(Model):
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
     ] = described(
-        "a table, one speed for all depths, or a file",
+        "current: a table, one speed for all depths, or a file",
         {"speed": "0.5 m/s", "toward": "90 deg"},
         default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
     )
-    wind: water.Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
+    wind: water.Wind | None = optional(
+        "wind over the water", {"speed": "12 m/s", "toward": "90 deg"}
+    )
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
@@ -281,7 +285,9 @@ def read_environment(
     given = keys.density if "density" in keys.model_fields_set else water.USUAL_DENSITY[keys.fluid]
     density = water.read_density(given, keys.fluid, section)
     if isinstance(density, SeaWater) and keys.fluid == "air":
-        section.refuse(("density",), "temperature and salinity are those of the sea, not of air")
+        section.refuse(
+            ("density",), "temperature and salinity are for sea water; remove them for a tow in air"
+        )
     _check_wind(keys, section)
     if moored and open_files:  # otherwise the depth may be in another section
         _check_depth_range(moored, section)
@@ -405,7 +411,7 @@ def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
     if keys.wind is None:
         return
     if keys.fluid == "air":
-        message = "a tow in air has no `wind`; its wind is the `current`"
+        message = "a tow in air must not have a `wind`; set its wind as the `current`"
         section.refuse(("wind",), message, key=True)
     elif keys.wind.surface_drift and keys.wind.drift_depth is None and keys.depth is None:
         message = "`surface_drift` needs `drift_depth`, as `depth` is not given"

@@ -28,12 +28,13 @@ class Equipment(definition.Model):
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
-        "serial number; a list of as many as `count`, or as the releases of a pair", 12345
+        "serial number, or a list with one for each of `count` items or each release of a pair",
+        12345,
     )
     calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")
     sampling: Text | None = optional("sampling scheme as text, e.g. every 10 min", "every 10 min")
     battery_until: Day | None = optional(
-        "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31"
+        "day on which its battery runs out, e.g. 2027-06-30", "2028-01-31"
     )
     termination: Text | None = optional(
         "end fittings of a cable, e.g. swaged sockets", "swaged sockets"

@@ -68,7 +68,7 @@ class HeldKeys(Model):
     """Position of a held end, such as at a ship, a pier or a platform."""
 
     depth: _Offset = Field(
-        description="below the surface; negative: above it, in air", examples=["2 m", "-10 m"]
+        description="depth below the surface; negative above it, in air", examples=["2 m", "-10 m"]
     )
     at: _At = (0.0, 0.0)
 
@@ -245,7 +245,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
             "the upper end of a leg cannot be an anchor; list the leg in the opposite order",
         )
     for anchor in anchors[: len(anchors) - anchored]:
-        message = f"anchor `{anchor.use}` is not the last item of its leg"
+        message = f"anchor `{anchor.use}` must be the last item of its leg"
         own.refuse_at(anchor.line, anchor.column, message)
     if anchored and keys.bottom is None:
         lower = EndKeys(anchor=AnchoredKeys())
@@ -256,11 +256,11 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
     elif keys.bottom is None:
         refuse((), "`bottom` is missing: `{join: NODE}`, `free`, or an anchor as the last item")
     if len(anchors) == len(pieces) > 0:
-        refuse(("line",), "there is no piece above the anchor")
+        refuse(("line",), "a line needs at least one piece above its anchor")
     if upper.join is not None and upper.join == lower.join:
-        refuse(("bottom",), f"both ends join at `{upper.join}`")
+        refuse(("bottom",), f"the two ends of a leg must not join at the same node, `{upper.join}`")
     if upper == lower == FREE and (keys.bottom is not None or not anchored):
-        refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
+        refuse(("bottom",), "both ends are free; join one end to another leg, or hold it")
     for piece in pieces:
         here = piece.line, piece.column
         if piece.length is None:
@@ -275,7 +275,7 @@ def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float 
     for leg in legs:
         for name, end in zip(("top", "bottom"), leg.ends, strict=True):
             if end.held is not None and depth is not None and end.held.depth >= depth:
-                message = f"`depth` is not above the seabed, {depth:g} m deep"
+                message = f"`depth` must be above the seabed, which is {depth:g} m deep"
                 top.refuse(("legs", leg.name, name, "held", "depth"), message)
 
 
@@ -302,7 +302,7 @@ def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
             section.refuse(place, unknown(f"no other leg joins at `{join}`", join, others))
     for name, keys in (known or {}).items():
         if keys:
-            top.refuse(("nodes", name), "a node has no keys: `A: {}`")
+            top.refuse(("nodes", name), "a node must not have keys; write `A: {}`")
         if name not in meeting:
             top.refuse(("nodes", name), f"no leg joins at node `{name}`", key=True)
     if not top.problems:
@@ -332,7 +332,7 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
         if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"its anchor is at the position of the anchor of leg `{before}`; set its "
+                f"the anchor is at the same position as that of leg `{before}`; set another "
                 "position: `bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             section.refuse((leg.name,), message, key=True)

@@ -116,7 +116,7 @@ class LineReader:
         else:
             once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
-            item.refuse(("count",), f"{count} times makes more than {MOST_PIECES} pieces")
+            item.refuse(("count",), f"a count of {count} makes more than {MOST_PIECES} pieces")
             return ()
         if count > 1:  # several pieces cannot have the same planned depth
             once = tuple(map(unplanned, once))
@@ -206,7 +206,7 @@ class LineReader:
             return math.nan, 0.0
         breaking = component.breaking_load
         if breaking is not None and measured.load > breaking:
-            message = f"`load` is above the breaking load of {breaking:g} N"
+            message = f"`load` must not exceed the breaking load of {breaking:g} N"
             item.refuse(("length_at", "load"), message)
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
@@ -247,7 +247,7 @@ class LineReader:
             if entry is None or entry.section.data.get("kind") != "profiler":
                 at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
             elif "at" in clamp.data:
-                message = "a profiler has no `at`: it travels `between` two stops"
+                message = "a profiler must not have `at`, since it travels `between` two stops"
                 clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
                 message = (
@@ -316,8 +316,9 @@ class LineReader:
         firsts = [0, *accumulate(one.component.items or 1 for one in own)]
         total = firsts.pop()
         if len(numbers) != total * count:
-            named = ", ".join(dict.fromkeys(one.use for one in own)) or "no part"
-            message = f"`serial` has {len(numbers)} of the {total * count} numbers of {named}"
+            named = " and ".join(dict.fromkeys(one.use for one in own))
+            wanted = f"{total * count} number{'s' * (total * count != 1)}"
+            message = f"`serial` must have {wanted} for {named}, not {len(numbers)}"
             if not own:
                 message = "`serial`: no part is an instrument, a release or a float"
             item.refuse(("serial",), message)
@@ -357,8 +358,10 @@ class LineReader:
             source = (given.get("sources") or {}).get(key) or given.get("source")
             filled = tuple(_with_figure(piece, key, value, source) for piece in pieces)
             if filled == pieces and key in item.data:
-                message = f"no part of `{entry.id}` lacks a `{key}`"
-                item.refuse((key,), f"{message}; use its parts to change one", key=True)
+                message = f"all parts of `{entry.id}` already have a `{key}`"
+                item.refuse(
+                    (key,), f"{message}; to change one, list the parts separately", key=True
+                )
             pieces = filled
         return pieces
 

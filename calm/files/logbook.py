@@ -145,7 +145,7 @@ class ReleaseKeys(definition.Model):
 class ClockCheck(definition.Model):
     """Comparison of an instrument's clock with true time after recovery."""
 
-    checked: Moment = described("time of the check", "2028-03-02T10:40")
+    checked: Moment = described("time of the clock check", "2028-03-02T10:40")
     late: Annotated[float, definition.QuantityField("time")] = described(
         "delay of the clock; negative if it was ahead", "12 s"
     )

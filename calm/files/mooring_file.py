@@ -71,7 +71,7 @@ class Solver(Model):
         "drag of a surface float: at its draft, or fully immersed", "immersed", default="immersed"
     )
     seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = described(
-        "friction coefficient of line on the seabed", 0.3, default=0.0
+        "friction coefficient of the line on the seabed", 0.3, default=0.0
     )
 
 
@@ -196,9 +196,14 @@ def check_fit(
         here = piece.line, piece.column
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
             if depth is not None and seabed is not None and depth >= seabed:
-                top.refuse_at(*here, f"`{key}_depth` is below the seabed, {seabed:g} m deep")
+                top.refuse_at(
+                    *here, f"`{key}_depth` must not be below the seabed, which is {seabed:g} m deep"
+                )
         if tow and piece.fit_body_depth is not None and piece.fit_body_depth <= -tow.height:
-            message = f"`body_depth` is not below the tow point, {tow.height:g} m above the water"
+            message = (
+                f"`body_depth` must be below the tow point, which is {tow.height:g} "
+                "m above the water"
+            )
             top.refuse_at(*here, message)
 
 
@@ -231,7 +236,7 @@ def refuse_several(file: MooringFile) -> None:
 def refuse_tow(file: MooringFile) -> None:
     """Raise UsageError if a file is a tow; used by functions that need a mooring."""
     if file.tow is not None:
-        raise UsageError(f"{file.path} is a tow; this is for moorings")
+        raise UsageError(f"{file.path} is a tow; only a mooring can be used here")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:

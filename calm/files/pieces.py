@@ -276,7 +276,7 @@ def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp
         if label not in stops
     ]
     if not messages and between and not stops[between[0]] < stops[between[1]]:
-        messages = [f"`{between[0]}` is not above `{between[1]}`: give the upper stop first"]
+        messages = [f"`{between[0]}` must be above `{between[1]}`; give the upper stop first"]
     for message in messages:
         top.refuse(row, message, lacks=lacks)
     if messages or not between:
@@ -289,5 +289,8 @@ def check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
     """Check that at most one piece is cut to fit."""
     fits = [piece for piece in pieces if piece.length is None]
     for piece in fits[1:]:
-        message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
+        message = (
+            "only one piece can be cut to fit; the file already has one, on its "
+            f"line {fits[0].line}"
+        )
         top.refuse_at(piece.line, piece.column, message)

@@ -278,7 +278,10 @@ def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
         return
     for piece in pieces[:-1]:
         if isinstance(piece.component, Anchor):
-            message = f"anchor `{piece.use}` is not the last item; a line has one, at its end"
+            message = (
+                f"anchor `{piece.use}` must be the last item; a line has only one "
+                "anchor, at its end"
+            )
             top.refuse_at(piece.line, piece.column, message)
     last_is_known = pieces[-1].place.item == len(top.data["line"]) - 1
     if last_is_known and not _anchored(pieces):
@@ -286,7 +289,7 @@ def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
         top.refuse(("line",), message, key=True, lacks="no anchor")
     if len(pieces) == 1 and _anchored(pieces) and len(top.data["line"]) == 1:
         here, lacks = (pieces[0].line, pieces[0].column), "nothing above the anchor"
-        top.refuse_at(*here, "there is no piece above the anchor", lacks=lacks)
+        top.refuse_at(*here, "a line needs at least one piece above its anchor", lacks=lacks)
 
 
 def _anchored(pieces: Sequence[Piece]) -> bool:
@@ -317,7 +320,8 @@ def _check_slides(
         complaints = []
         if here.slope >= most:
             complaints.append(
-                f"with a friction of {math.tan(math.radians(most)):g} the anchor slides by its own "
+                f"with a friction coefficient of {math.tan(math.radians(most)):g} the anchor "
+                "slides by its own "
                 f"weight on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less "
                 f"than {most:.3g}°"
             )
@@ -325,11 +329,12 @@ def _check_slides(
             pass
         elif np.isnan(deeper):
             complaints.append(
-                "the grid of the seabed has no depth here; give the anchor its `depth`"
+                "the grid of the seabed has no depth at the anchor; set the `depth` of the anchor"
             )
         elif depth is not None and depth + deeper <= 0.0:
             complaints.append(
-                f"the seabed slope puts the seabed {-depth - deeper:.3g} m above the surface here"
+                f"the seabed slope puts the seabed {-depth - deeper:.3g} m above the surface at "
+                "this anchor"
             )
         for one in complaints:
             top.refuse_at(piece.line, piece.column, one)

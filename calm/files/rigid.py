@@ -51,7 +51,7 @@ class Displacement(Model):
         ],
         ...,
     ] = described(
-        "rows of draft, volume, area seen from the side; the last row is the whole hull",
+        "rows of draft, volume and side area; the last row is for the whole hull",
         [["0 m", "0 m^3", "0 m^2"], ["0.8 m", "2.4 m^3", "1.9 m^2"]],
     )
 
@@ -84,7 +84,7 @@ def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
             )
         if not isinstance(row, list) or len(row) not in (2, 4):
             raise ValueError(
-                "a row has two figures, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
+                "a row must have two numbers, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
             )
         try:
             figures = (reader.read(figure) for reader, figure in zip(_RESPONSE, row, strict=False))
@@ -92,7 +92,9 @@ def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
         except QuantityError as error:
             raise ValueError(f"`{key}`: {error}") from None
     if len(rows) < 2 or len({len(row) for row in rows}) > 1:
-        raise ValueError("`rao` needs two frequencies or more, with the pitch at all or at none")
+        raise ValueError(
+            "`rao` needs two frequencies or more, with the pitch at all of them or at none"
+        )
     return tuple(sorted(rows))
 
 
@@ -229,7 +231,7 @@ class Cylinder(Rigid, CylinderShape):
 
 def _two_stops(value: object) -> object:
     if value is not None and (not isinstance(value, list | tuple) or len(value) != 2):
-        raise ValueError("`between` names two stops: `between: [upper stop, lower stop]`")
+        raise ValueError("`between` must name two stops: `between: [upper stop, lower stop]`")
     return value
 
 
@@ -298,7 +300,7 @@ class Shaped(Rigid):
             raise ValueError("`inclination: follows` needs `kt`")
         if self.kt is not None and (self.made_of or self.inclination == "insensitive"):
             other = "`made_of`" if self.made_of else "`inclination: insensitive`"
-            raise ValueError(f"`kt` is not used with {other}")
+            raise ValueError(f"`kt` cannot be used with {other}")
         return self
 
 

@@ -39,22 +39,23 @@ _ONCE = "checked once for a mooring, by `calm check`"
 
 RULES = {
     "equilibrium": RuleText("Equilibrium", "",
-        "reported if the solver finds no equilibrium, with its status and advice",
+        "a finding, with the status and advice of the solver, if there is no equilibrium",
         "",
         "A mooring without an equilibrium cannot be checked"),
     "current": RuleText("Current", "speed",
-        "the strongest current of all environments; the levels of each profile",
-        "a warning below 0.2 m/s, below 0.9 times the strongest current of the record behind an "
+        "the strongest current of all environments, and the range of levels in each profile",
+        "a warning below 0.2 m/s, below 0.9 times the strongest current in the record used for an "
         "environment, below 1/50 of the strongest current of another environment, or if the levels "
-        "do not cover a tenth of the depth, and 25 m, at either end",
+        "leave more than 25 m and a tenth of the depth uncovered at the top or at the bottom",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
     "drag-coefficient": RuleText("Drag coefficient", "",
-        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "drag of spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond "
+        "the curve of "
         "`drag: reynolds`",
         "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
-        "surface, greater by 5 %; otherwise not judged, but the effect is reported",
+        "surface, more than 5 % greater; otherwise the effect is reported, but not judged",
         "Constant coefficients are valid up to 2e5; above this number the drag of smooth shapes "
         "falls",
         "the profiles of a record are solved with one law of drag"),
@@ -65,84 +66,91 @@ RULES = {
         "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
         "although a surface float has a `wind_area`",
         "a warning",
-        "Defaults of CALM: ranges found at sea, and common typing errors",
+        "CALM's own limits, from ranges found at sea and common typing errors",
         "environments are compared with each other, by `calm check`"),
     "missing": RuleText("Missing values", "",
-        "values that rules need but a component lacks: one finding per component id and value, "
-        "with the rules and the pieces concerned",
+        "values that rules need but a component lacks; one finding for each component id and value "
+        "lists the rules and the pieces concerned",
         "unknown",
         "The sources of the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
         "maximum tension of every piece; the top piece and the anchor are checked only if they "
         "have a load limit",
-        "the smaller of its working load and its breaking load over `safety_factor`: 3 for steel, "
-        "5 for synthetics, 5 for all pieces of a surface mooring; only the breaking load of a "
+        "the smaller of the working load and the breaking load divided by `safety_factor` (3 for "
+        "steel, 5 for synthetics, 5 for all pieces of a surface mooring); only the breaking "
+        "load of a "
         "synthetic rope counts if it is known, since rope tables give working loads for lifting",
-        "The smaller of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
-        "chain and wire), oceanographic practice MBL/3 to MBL/5",
+        "UFC 4-159-03, table 3-7: a factor of 3 for chain and wire; oceanographic practice: a "
+        "third "
+        "to a fifth of the breaking load",
         figures=("working_load", "breaking_load")),
     "release-load": RuleText("Release load", "load",
-        "maximum tension of every release, and the tension below it when it opens",
-        "the limit of `strength`, and its `opening_load` if given",
+        "maximum tension of every release, and the tension below the release when it opens",
+        "the limit of the rule `strength`, and the `opening_load` of the release if given",
         "Static load and opening load given by the manufacturer",
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Clamp grip", "load",
-        "weight in water and drag of every clamp, in the current, the fall and the rise",
-        "its `grip`, or its `breaking_load`; not judged if neither is given",
+        "load on every clamp from its weight in water and its drag, in the current, the anchor "
+        "drop "
+        "and the ascent",
+        "`grip` of the clamp, or its `breaking_load`; not judged if neither is given",
         "Values given by the manufacturer of the clamp",
         "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "load",
         "tension of the wire, obstacles on it and the force that the drive needs, at both "
         "stops and at the largest inclination of the wire",
-        "`minimum_tension` of the profiler, 2224 N; its `drive_force`; jacketed wire of 6.35 to "
-        "9.53 mm, and a profile of 6.4 h at most, else a warning",
+        "`minimum_tension` (2224 N) and `drive_force` of the profiler; a warning unless the wire "
+        "has a diameter of 6.35 to 9.53 mm, and for a profile of more than 6.4 h",
         "McLane Moored Profiler, user manual",
         "the profiles of a record are solved with the profiler at its upper stop",
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
-        "every piece, compared with the cables above and below it",
-        "a warning if it has less than half the strength of these cables, sources give both "
-        "strengths, and it carries more than half of its allowable load",
-        "A default of CALM: half the strength of the adjacent cables",
+        "strength of every piece, compared with the cables above and below it",
+        "a warning if the piece has less than half the strength of these cables, sources give both "
+        "strengths, and the piece carries more than half of its allowable load",
+        "CALM's own limit: half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
-        "every instrument, release and clamp",
-        "its own `max_tilt`, and `maximum_tilt` if given; a warning from its `warn_tilt`",
+        "tilt of every instrument, release and clamp",
+        "`max_tilt` of the component, and `maximum_tilt` if given; a warning above `warn_tilt`",
         "Limit given by the manufacturer: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to "
         "20°, release 45°, sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current; for a surface float, only if its rating is specified",
-        "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
+        "depth of every part in the current; for a surface float, only if its rating is specified",
+        "`depth_rating` less `rating_margin` (100 m), or half of a rating below 200 m",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
     "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
-        "`minimum_top_depth`: a failure; by default 10 m: a warning",
-        "A default of CALM: the top stays clear of waves, hulls and nets"),
+        "a failure above `minimum_top_depth`; if this is not given, a warning above 10 m",
+        "CALM's own limit: the top stays clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "difference between the planned depth and the depth in still water, for every piece and "
         "clamp with a `planned_depth` or a depth in its label",
-        "the larger of `planned_depth_warning`, 10 m, and 2 % of the planned depth: a warning; "
-        "`planned_depth_limit`, 10 % of the planned depth: a failure; parts without a planned "
-        "depth are not checked",
-        "A default of CALM: with a large difference, the instrument measures other water than "
+        "a warning above the larger of `planned_depth_warning` (10 m) and 2 % of the planned "
+        "depth; "
+        "a failure above `planned_depth_limit` (10 %) of the planned depth; parts without a "
+        "planned depth are not checked",
+        "CALM's own limit: with a large difference, the instrument measures other water than "
         "planned, or a length or the water depth is wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
-        "synthetic ropes without `stiffness` or `elongation`; the load of a `length_at`",
-        "unknown if published stiffnesses of such ropes mean a stretch of more than 2 % of the "
-        "water depth; a warning if the rope is measured under more than its working load, or a "
+        "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under "
+        "which a "
+        "rope with `length_at` is measured",
+        "unknown if, by published stiffnesses, the rope may stretch by more than 2 % of the water "
+        "depth; a warning if the rope is measured under more than its working load, or a "
         "fifth of its breaking load",
-        "A default of CALM: soundings have a similar error; ropes are measured under "
-        "a small load"),
+        "CALM's own limit: soundings have a similar error, and ropes are measured under a small "
+        "load"),
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
-        "`fishbite_depth`, 1000 m: a warning",
+        "a warning if the rope begins above `fishbite_depth` (1000 m)",
         "Berteaux, Prindle & May, OCEANS '87: fish bite ropes from the surface to 1000 m and "
-        "deeper, far from the shores; the limits of water depth and latitude are defaults of CALM",
+        "deeper, far from the shores; the limits of water depth and latitude are CALM's own",
         "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -153,160 +161,163 @@ RULES = {
         "`maximum_excursion`, if given",
         "The design's own `maximum_excursion`"),
     "anchor-weight": RuleText("Anchor weight", "load",
-        "weight in water",
-        "`anchor_factor` × (V + H / friction), 1.5 and 0.6",
+        "weight of the anchor in water",
+        "`anchor_factor` (1.5) times (V + H / friction), with a friction coefficient of 0.6",
         "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
         figures=("weight", "density")),
     "anchor-uplift": RuleText("Anchor uplift", "load",
-        "V",
-        "weight in water / 1.5",
+        "V, the vertical load on the anchor",
+        "weight of the anchor in water / `anchor_factor`",
         "Dewey's rule, vertical part: V ≤ weight in water / 1.5",
         figures=("weight", "density")),
     "anchor-sliding": RuleText("Anchor sliding", "load",
-        "H",
-        "friction × (weight in water / 1.5 − V)",
+        "H, the horizontal load on the anchor",
+        "friction × (weight of the anchor in water / `anchor_factor` − V)",
         "Dewey's rule, horizontal part: H ≤ friction (weight in water / 1.5 - V), with a friction "
         "coefficient of 0.6 for a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Minimum tension", "load",
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
-        "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
-        "Mooring groups keep 50 to 100 kgf above the release; no value is published, so the "
-        "limits are defaults of CALM"),
+        "`minimum_tension`: 500 N for wire, 300 N for rope; `slack: allowed` exempts a piece",
+        "Mooring groups keep 50 to 100 kgf above the release; no value is published, so CALM sets "
+        "its own limits"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
-        "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
-        "with the loads used for `strength`; unknown for a surface mooring without `waves:`",
+        "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
+        "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
+        "`waves:`",
         "API RP 2SK: 1.67 on the breaking strength of the intact mooring, with tensions from a "
         "dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
         "minimum tension of every piece in `waves:`: the most probable minimum in 3 h",
-        "above 0; `slack: allowed` on a piece exempts it",
-        "A slack line takes snap loads as it tightens, and linear tensions are not valid",
+        "a tension above 0; `slack: allowed` exempts a piece",
+        "A slack line takes snap loads as it tightens, and the linear wave model is not valid then",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
         "life of every piece below the float in the sea states of `waves: scatter:`",
-        "`fatigue_factor`, 3, × `service_time`, 365 days; not judged without a table of sea "
-        "states; unknown without a published curve",
+        "`fatigue_factor` (3) times `service_time` (365 days); not judged without a table of sea "
+        "states; unknown without a published fatigue curve",
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
         "(wire); a life of three times the service time",
         _WAVES),
     "reserve": RuleText("Reserve buoyancy", "used_buoyancy",
         "unused share of the surface float's buoyancy",
-        "`minimum_reserve`, 0.3",
+        "`minimum_reserve` (0.3)",
         "Dewey: a float that uses all its buoyancy submerges; the remaining share is for waves"),
     "freeboard": RuleText("Freeboard", "freeboard",
         "freeboard of the surface float",
         "above 0",
-        "The hull of a surface float extends above the water",
+        "The hull of a surface float must extend above the water",
         "the result does not contain the draft of the float"),
     "watch-circle": RuleText("Watch circle", "offset",
-        "radius √(L² − h²), with the stretched length L and the water depth h above the anchor's "
-        "top",
+        "radius of the watch circle, √(L² − h²), with the stretched length L and the water depth h "
+        "above the top of the anchor",
         "`maximum_excursion`; not judged if it is not given",
         "Worst case √(L² - h²), with the water depth h above the anchor, against the design's own "
         "`maximum_excursion`",
         "the result does not contain the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
-        "cut length over depth",
+        "ratio of cut length to water depth",
         "none; the scope is only reported",
         "Reported without a limit",
-        "it is reported, and has no limit"),
+        "the scope is only reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
         "change in top depth of the upright line due to the depth and lengths of `deployed`",
-        "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
-        "IHO S-44, order 2: the error of a sounding, 95 %",
+        "a warning above the error of a sounding, 1 m and 2.3 % of the depth",
+        "IHO S-44, order 2: maximum error of a sounding, at the 95 % level",
         _ONCE),
     "figures": RuleText("Component values",
         "",
         "values of pieces and clamps that are impossible for their size and material: buoyancy, "
         "mass, density, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; a warning if `warn_tilt` exceeds `max_tilt`, for an instrument that floats and "
-        "for a `wind_area` out of proportion; unknown if the line replaces a value by a more "
-        "favourable value without a `source`, and for a `material` that is unknown or contradicts "
-        "the `name`",
+        "a failure; only a warning if `warn_tilt` exceeds `max_tilt`, if an instrument floats or a "
+        "`wind_area` is out of proportion; unknown if the line replaces a value by a more "
+        "favourable value without a `source`, or a `material` is unknown or contradicts the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "unknown without such a piece, or if it is clamped or has the name of a shackle, swivel, "
-        "rope or the like; a failure without buoyancy above it; a warning for a single release in "
-        "more than 100 m of water (no name has double, dual, twin or pair), for less than 1 m "
-        "between release and anchor, and for a float below it",
-        "Defaults of CALM: a line that is recovered has a release",
+        "unknown if there is no such piece, or if it is clamped or has the name of a shackle, "
+        "swivel, "
+        "rope or the like; a failure if no buoyancy is above the release; a warning for a "
+        "single release in "
+        "more than 100 m of water (no name contains double, dual, twin or pair), for less than 1 m "
+        "between release and anchor, and for a float below the release",
+        "CALM's own rule: a line that will be recovered needs a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
-        "whether any piece of the line has `role: connector`",
-        "a warning if no piece has `role: connector`",
-        "A default of CALM: connectors have weight, drag and a strength",
+        "pieces of the line with `role: connector`",
+        "a warning if the line has none",
+        "CALM's own rule: connectors have weight, drag and a strength",
         _ONCE),
     "joints": RuleText("Joints", "",
         "whether a piece with `role: connector` joins every two adjacent pieces of different kinds "
         "(wire, chain, rigid); ropes, which are spliced, and wires with a `termination` are exempt",
-        "a warning, one for all joints of the line; not for a line without any hardware",
-        "A default of CALM: a shackle that is not listed is neither bought nor judged",
+        "one warning for all joints of the line; no warning for a line without any hardware",
+        "CALM's own rule: a shackle that is not listed is neither bought nor checked",
         _ONCE),
     "clamp-place": RuleText("Clamp positions", "",
         "clamps on a cable or chain that overlap, or extend beyond its end",
-        "5 cm: a failure",
+        "a failure above 5 cm",
         "Two parts cannot be in the same place",
         _ONCE),
     "serials-and-dates": RuleText("Serial numbers and dates", "",
         "labels that several rows share, except connectors; serial numbers that several items of "
         "one component share; codes of a release that is not in the line, or that two releases "
-        "share; batteries that end before the deployment or the calibration, calibrations after "
-        "the deployment; a document that is not its latest revision, revisions out of order",
+        "share; batteries that run out before the deployment or the calibration, calibrations "
+        "after the deployment; a document that is not its latest revision, revisions out of order",
         "a warning",
-        "A default of CALM: sheets and labels must not contradict each other",
+        "CALM's own rule: the deck sheets and the labels must agree",
         _ONCE),
     "swivel": RuleText("Swivel", "",
-        "steel wire that ends at a float with no chain or rope between",
+        "steel wire that ends at a float, with no chain or rope between them",
         "a warning, unless there is a swivel between them or at the other end of the wire, or the "
         "wire is torque-balanced according to `torque_balanced` or, without this key, its name, "
         "material or note",
-        "A default of CALM: wire that twists under load kinks when it is unloaded",
+        "CALM's own rule: wire that twists under load kinks when it is unloaded",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
         "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a metal "
         "as `material` and neither is `insulated`",
-        "0.2 V apart in sea water: a warning",
+        "a warning above a potential difference of 0.2 V in sea water",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "load",
         "minimum net buoyancy of the section with the release, over all breaks and float losses "
         "that are considered (see below)",
-        "the larger of `backup_margin`, 0.1, times the weight lifted and its drag at "
+        "the larger of `backup_margin` (0.1) times the weight lifted, and the drag at "
         "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
         "most 50 m above the release; a warning for a surface mooring without floats below its "
         "buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
-        "floats; the margin and the 50 m are defaults of CALM",
+        "floats; the margin and the 50 m are CALM's own",
         _ONCE),
     "launch-strength": RuleText("Strength in the launch", "load",
-        "tension of every piece as the line falls behind its anchor",
-        "the smaller of `launch_working_factor`, 1, times its working load and its breaking load "
-        "over `launch_safety_factor`, 2, with the loads used for `strength`",
-        "Anchor-last launch at terminal speed (URI GSO program); limits: working load, and "
-        "breaking load over 2",
+        "maximum tension of every piece during the anchor drop",
+        "the smaller of the working load times `launch_working_factor` (1) and the breaking load "
+        "divided by `launch_safety_factor` (2), with the loads used for `strength`",
+        "Anchor-last launch at terminal speed (URI GSO program); the limits are the working load "
+        "and half the breaking load",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",
-        "2.5 m/s: a warning",
-        "A default of CALM: a faster anchor may bury itself or break equipment on it",
+        "a warning above 2.5 m/s",
+        "CALM's own limit: a faster anchor may bury itself or break equipment on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise speed", "speed",
-        "rise speed without the anchor, for a line with a release or below the surface",
-        "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
-        "Defaults of CALM: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
+        "rise speed after release, for a line with a release or with its top below the surface",
+        "`minimum_rise_speed` (0.3 m/s); a warning below 0.7 m/s and above 3 m/s",
+        "CALM's own limits: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
         "above 3 m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "whether a part overtakes the parts ahead in the fall or the rise, in loops of 2 m or more",
+        "parts that overtake the parts ahead during the descent or the ascent, in loops of 2 m or "
+        "more",
         "a warning",
-        "A default of CALM: parts that overtake others may tangle with them",
+        "CALM's own rule: parts that overtake others may tangle with them",
         _ONCE),
 }  # fmt: skip
 """All rules by id, in the order of the report."""

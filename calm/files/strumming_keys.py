@@ -59,7 +59,7 @@ class BourgetMarichalKeys(Model):
         "the law", "bourget-marichal", default="bourget-marichal"
     )
     a1: Annotated[float, _NUMBER] = described(
-        "amplitude of the vibration over the diameter of the cable, for φ = 0",
+        "amplitude of the vibration divided by the cable diameter, for φ = 0",
         0.45,
         default=BourgetMarichal.a1,
     )
@@ -73,7 +73,7 @@ class BourgetMarichalKeys(Model):
         "Cn of the cable at rest", 1.2, default=BourgetMarichal.rest
     )
     strouhal: Annotated[float, _FACTOR] = described(
-        "frequency of the cable times diameter over the speed across it",
+        "(strumming frequency × cable diameter) / flow speed normal to the cable",
         0.2,
         default=BourgetMarichal.strouhal,
     )
@@ -107,8 +107,8 @@ def _written_out(value: object, info: ValidationInfo) -> object:
     law = value.get("model") if isinstance(value, dict) else value
     if law == "bourget-marichal" and info.context and not info.context["towed"]:
         raise ValueError(
-            "`bourget-marichal` is for towed cables; "
-            f"a mooring takes one of {', '.join(get_args(AmplitudeName))}"
+            "`bourget-marichal` is only for towed cables; "
+            f"for a mooring, use one of {', '.join(get_args(AmplitudeName))}"
         )
     if isinstance(value, dict):
         return _one_form(value)

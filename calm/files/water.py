@@ -52,12 +52,12 @@ class SeaWaterKeys(Model):
         Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = described("in situ, a constant or a table", "10 degC")
+    ] = described("in-situ temperature, a constant or a table", "10 degC")
     salinity: Annotated[
         Annotated[float, QuantityField(**vars(profile_tables.SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = described("practical, a constant or a table", 35)
+    ] = described("practical salinity, a constant or a table", 35)
 
 
 Density = Annotated[
@@ -245,7 +245,7 @@ class Wind(Model):
     """
 
     speed: Annotated[float, _SPEED] = described("wind speed at the height of the float", "12 m/s")
-    toward: Toward = described("clockwise from north: direction in which it blows", "90 deg")
+    toward: Toward = described("direction towards which it blows, clockwise from north", "90 deg")
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "drift of the surface water, as a share of the wind speed", "2 %", default=0.0
     )

@@ -45,7 +45,7 @@ class WaveKeys(Model):
         "Tp of the design sea state; not for pierson-moskowitz and ochi-hubble", "8.4 s"
     )
     spectrum: Text = described(
-        f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
+        f"{', '.join(SPECTRA)}, or a CSV or NetCDF file with a measured spectrum",
         "jonswap",
         default="bretschneider",
     )
@@ -53,7 +53,7 @@ class WaveKeys(Model):
         "peakedness of jonswap", 3.3, default=3.3
     )
     toward: Toward = described(
-        "clockwise from north: direction in which they travel", "90 deg", default=90.0
+        "direction towards which they travel, clockwise from north", "90 deg", default=90.0
     )
     swell: SwellKeys | None = optional(
         "swell in the same direction", {"significant_height": "2 m", "peak_period": "14 s"}
@@ -70,13 +70,13 @@ class WaveKeys(Model):
             raise ValueError(
                 f"`{shown(self.spectrum)}` is none of {', '.join(SPECTRA)}; did you mean `{near}`?"
                 if near
-                else "a measured `spectrum` has its own height and period; remove these keys"
+                else "a measured `spectrum` already defines height and period; remove these keys"
             )
         if named and height is None and (self.scatter is None or period is not None):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
         if self.swell is not None and height is None:
             raise ValueError(
-                "`swell` is added to a wind sea: set the `significant_height` of that sea, too"
+                "`swell` is added to a wind sea; also set the `significant_height` of the wind sea"
             )
         if height is not None and period is None and self.spectrum not in OF_HEIGHT:
             raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")

@@ -16,9 +16,9 @@ _OPENING = {"mapping": "{", "sequence": "["}
 
 
 def without_colon(text: str) -> str:
-    """Return the message about a key without a colon, or without a blank after the colon."""
+    """Return the message about a key without a colon, or without a space after the colon."""
     key, colon, value = text.partition(":") if ":" in text else text.partition(" ")
-    lacking = "blank after its colon" if colon == ":" else "colon"
+    lacking = "space after its colon" if colon == ":" else "colon"
     meant = f"{shown(key)}: {shown(value)}".strip()
     return f"`{shown(text)}` has no {lacking}; did you mean `{meant}`?"
 
@@ -80,9 +80,9 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
         if above is not None and same_indent and re.match(r"\s*[A-Za-z]\w*(?!.*: )", lines[above]):
             return _without_colon(lines, above)
         begin = f"line {begun.line + 1}, which begins this block"
-        others = f"{begin}, in column {begun.column + 1}"
+        others = f"{begin}, starts in column {begun.column + 1}"
         if above is not None and above != begun.line:
-            others = f"line {above + 1} above in column {_indent(lines[above]) + 1}, and {others}"
+            others = f"line {above + 1} starts in column {_indent(lines[above]) + 1}, and {others}"
         message = f"starts in column {mark.column + 1}, but {others}"
         return _at(mark, message)
     return None
@@ -103,7 +103,7 @@ def _colon(lines: list[str], mark: Mark) -> Mistake | None:
         return None
     if not _KEY.match(lines[above]):
         return _without_colon(lines, above)
-    message = f"is indented further than line {above + 1}, which has a value already"
+    message = f"is indented further than line {above + 1}, which already has a value"
     return mark.line + 1, _indent(line) + 1, message
 
 

@@ -324,7 +324,7 @@ def sample_notes(
         if abs(one.pressure - usual) > max(ANOTHER_PLACE, 0.1 * usual):
             yield (
                 f"{one.source}: the median of its pressures is {one.pressure:.0f} dbar, but "
-                f"{here}: check for exchanged files or a wrong unit"
+                f"{here}; check for exchanged files or a wrong unit"
             )
         if one.called in labels and one.called != labels[at]:
             yield (
@@ -346,4 +346,4 @@ def sample_notes(
         one, column = series[i], samples.label.index(labels[at])
         measured = one.dropped or np.isfinite(one.value).any()
         if measured and not np.isfinite(samples.value[:, column]).any():
-            yield f"{name}: {labels[at]} has no good value at any of the times"
+            yield f"{name}: {labels[at]} has no good value at any time step"

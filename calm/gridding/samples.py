@@ -83,7 +83,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     time = read_times(dataset, "time")
     whole = np.hstack(depth)
     if len(time) < 2 or not np.isfinite(whole).any():
-        raise UnreadableError("has no depths: none of its times is solved")
+        raise UnreadableError("has no depths, because no time step has a solution")
     axes = [a for a in ("latitude", "longitude") if a in dataset.variables]
     position = tuple(float(dataset[axis].values) for axis in axes) if len(axes) == 2 else ()
     seabed = float(np.nanmedian(whole[:, -1])) if np.isfinite(whole[:, -1]).any() else np.nan
@@ -158,7 +158,7 @@ def common_times(
         raise UsageError(f"--step makes more than {MOST} times; set a longer step")
     times: Times = np.arange(begin, last + np.timedelta64(1, "ns"), wide)
     if len(times) < 2:
-        raise UsageError("--step is longer than the time for which depths and values are known")
+        raise UsageError("--step is longer than the period for which depths and values are known")
     return times
 
 

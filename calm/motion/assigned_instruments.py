@@ -113,7 +113,8 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
         when = "" if date is None else f", which must be after the deployment ({date})"
         doubts.append(
             f"{list_of_instruments.name}: clock offsets of {len(timeless)} of {len(listed)} "
-            "instruments are remarks only and correct no times: add a column `clock checked` with "
+            "instruments are only reported and do not correct the times; to correct them, add a "
+            "column `clock checked` with "
             f"the time of the comparison{when}"
         )
     kept = [row for row in rows.values() if len(row) > 1]

@@ -55,8 +55,8 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
     "current_factor": ((), ("1", "estimated factor on the current", {})),
-    "current_doubt": (("level",), ("1", "probability that the current of the level is false", {})),
-    "residual": (("sensor",), ("m", "measured less estimated depth of the sensor", {})),
+    "current_doubt": (("level",), ("1", "probability that the current at the level is false", {})),
+    "residual": (("sensor",), ("m", "measured depth of the sensor minus its estimated depth", {})),
     "plain_depth": (
         ("sensor",),
         (

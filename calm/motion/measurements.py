@@ -231,7 +231,7 @@ def without_spikes(
     wrong = (off > SPIKE) & (others > 0) & (calm == others)
     notes = [
         f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are far from those before and "
-        f"after, unlike those of other sensors, and are left out: the first is "
+        f"after, unlike those of other sensors, and were excluded; the first is "
         f"{measured.depth[at, j]:.1f} m, at {np.datetime_as_string(measured.time[at], 's')}"
         for j, at in enumerate(wrong.argmax(axis=0).tolist())
         if wrong[at, j]
@@ -402,7 +402,9 @@ def read_currents(
             )
         if label:
             if len(mine.label) > 1:
-                raise UsageError(f"{path} has {len(mine.label)} levels; `{label}=` is for one")
+                raise UsageError(
+                    f"{path} has {len(mine.label)} levels; `{label}=` needs a file with one"
+                )
             mine = replace(mine, label=(label,), depth=np.full_like(mine.depth, np.nan))
         found.append(_plausible(mine, maximum_speed))
     return found

@@ -67,7 +67,9 @@ def read_sensors(
             mine = _from_csv(path, latitude)
         if label:
             if len(mine) > 1:
-                raise UsageError(f"{path} holds {len(mine)} sensors; `{label}=` is for one")
+                raise UsageError(
+                    f"{path} holds {len(mine)} sensors; `{label}=` needs a file with one"
+                )
             mine = [replace(mine[0], label=label)]
         found += mine
     labels = [one.label for one in found if one.label]
@@ -393,7 +395,7 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
     for j, label in enumerate(labels):
         known = depth[:, j][np.isfinite(depth[:, j])]
         if not known.size:
-            reasons[label] = "has no good pressure at any time of the currents"
+            reasons[label] = "has no good pressure at any time step of the currents"
             continue
         if known.size > 2 and np.ptp(known) <= CONSTANT:
             reasons[label] = f"is constant at {known[0]:.1f} m and was excluded"

@@ -182,7 +182,7 @@ def prepare(
             raise UsageError(unknown(what, label, measured.label))
     used = without(measured, hidden)
     if not used.label:
-        raise UsageError("--hold-out: no sensor remains for the estimate")
+        raise UsageError("--hold-out: at least one sensor must remain for the estimate")
     if used.u.shape[1]:
         smoother = CurrentSmoother(mooring, used, names)
         smoother.solve()

@@ -140,10 +140,13 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             sense = "clockwise" if mean > 0.0 else "anticlockwise"
             why = "its compass or its declination is wrong, or the current veers there"
             if abs(mean) > 180.0 - least - band:
-                why = "it gives the direction the current comes from, or both signs are wrong"
+                why = "it gives the direction from which the current comes, or both signs are wrong"
             what = f"its direction is rotated {abs(mean):.0f}° (± {band:.0f}°) {sense}; {why}"
         elif max(fast) * UNLIKE < min(1.0, usual) or min(fast) > UNLIKE * max(1.0, usual):
-            what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} times theirs; its unit is wrong"
+            what = (
+                f"its speeds are {np.sqrt(np.prod(fast)):.2g} times those of the other "
+                "two; its unit is wrong"
+            )
         else:
             continue
         remarks.append(

@@ -215,7 +215,7 @@ def locate(
         warnings.append(
             f"Another position fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
             f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, compared "
-            f"with {own:.1f} m here."
+            f"with {own:.1f} m for the position reported."
         )
     doubts += [undecided] if undecided else []
     if not freedom:
@@ -282,8 +282,8 @@ def _weighed(
         undecided = "two positions fit, {:.0f} and {:.0f} m from the planned position"
     elif square_sums[order[0]] > 4.0 * max(square_sums[order[1]], least):
         undecided = (
-            "two positions remain, {:.0f} and {:.0f} m from the planned one; the nearer one fits "
-            "worse"
+            "two positions remain, {:.0f} and {:.0f} m from the planned position; the nearer "
+            "of them fits worse"
         )
     return first, second, undecided.format(*(away[at] for at in order))
 
@@ -442,5 +442,7 @@ def _beside_the_plan(
     doubt = f"the position is {distance / 1000.0:.1f} km from the planned position"
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
         doubt += ", but close to it if the positions are in degrees and minutes (48 18 for 48.18)"
-    sentences.append("this is far from the planned position; do the ranges belong to this mooring?")
+    sentences.append(
+        "the result is far from the planned position; do the ranges belong to this mooring?"
+    )
     return tuple(sentences), (*doubts, doubt)

@@ -262,8 +262,8 @@ def _doubled(timed: bool, factor: float) -> str:
     meant = {
         (True, 2.0): "one-way times, but two-way times (there and back) are needed",
         (True, 0.5): "twice the two-way times",
-        (False, 2.0): f"half the distances: {instead}",
-        (False, 0.5): f"distances there and back: {instead}",
+        (False, 2.0): f"half the distances; {instead}",
+        (False, 0.5): f"distances there and back; {instead}",
     }
     return f"the {'times' if timed else 'ranges'} fit far better as {meant[timed, factor]}"
 

@@ -127,7 +127,7 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
     for line, *what in values:
         first = once.setdefault((what[0], what[1], what[2]), line)
         if first != line:
-            notices.append(f"line {line} repeats line {first} and was ignored")
+            notices.append(f"line {line} of the file repeats line {first} and was ignored")
     if silent:
         lines = ", ".join(map(str, silent))
         notices.append(f"rows without a reply were ignored: line{'s' * (len(silent) > 1)} {lines}")
@@ -156,7 +156,7 @@ def hemisphere_signs(letters: str) -> dict[str, float]:
     for letter in filter(None, (part.strip().upper() for part in letters.split(","))):
         name = next((name for name, both in HEMISPHERES.items() if letter in both), None)
         if name is None or name in signs:
-            raise UsageError(f"--hemisphere: `{letters[:20]}` is no pair such as S,W")
+            raise UsageError(f"--hemisphere: `{letters[:20]}` is not a pair of letters such as S,W")
         signs[name] = -1.0 if letter in ("S", "W") else 1.0
     return signs
 
@@ -181,7 +181,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
         unit = DIMENSIONS[_COLUMNS[name]].unit
-        farther = f"{LONGEST[name]:g} {unit}, beyond the reach of a transponder"
+        farther = f"{LONGEST[name]:g} {unit}, beyond the range of a transponder"
         raise ValueError(f"is more than {farther}{hint}")
     return value
 
@@ -201,7 +201,7 @@ def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> lis
         for line, latitude, longitude in places:
             away = kilometres_from(latitude, longitude, (float(north), float(east)))
             if away > WIDEST:
-                message = f"the position is {away:.0f} km from the others"
+                message = f"the position is {away:.0f} km from the other positions"
                 problems.append(Problem(str(path), line, 1, message))
     return problems
 

@@ -424,6 +424,6 @@ def _no_date(times: xr.DataArray) -> UnreadableError:
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(
-        f"`{times.name}` has {worst:.10g} among its times, in `{times.attrs['units']}`, which is "
+        f"`{times.name}` contains {worst:.10g}, in `{times.attrs['units']}`, which is "
         f"not a date between {_FIRST} and {_LAST}"
     )

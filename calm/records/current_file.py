@@ -122,7 +122,7 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
         if reason := current_terms.too_deep(level):
             raise UnreadableError(f"its {reason}")
         if reason := current_terms.too_fast(east, north, rise, terms.maximum_speed):
-            raise UnreadableError(f"its current at {level:g} m, {reason}")
+            raise UnreadableError(f"the current at {level:g} m is not valid: {reason}")
     order = np.argsort(depth[below])
     levels, *speeds = (tuple(values[below][order].tolist()) for values in (depth, u, v, w))
     if np.any(np.diff(levels) == 0):

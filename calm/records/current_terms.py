@@ -15,8 +15,9 @@ DEEPEST = 11_000.0
 """Depth that no sea exceeds [m]."""
 
 IMPOSSIBLE = (
-    "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
-    "another unit?"
+    "the speed is infinite or negative, or the direction is outside -360 to 360°; is it a fill "
+    "value, or "
+    "in another unit?"
 )
 """Message of `too_fast` for an infinite speed."""
 
@@ -57,8 +58,8 @@ def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
     if not speed > maximum_speed:
         return None
     return (
-        f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s: a fill value, or "
-        "another unit? (if it is true, raise `maximum_speed` of the environment)"
+        f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s; is it a fill "
+        "value, or in another unit? If it is correct, raise `maximum_speed` of the environment"
     )
 
 

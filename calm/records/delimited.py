@@ -132,7 +132,7 @@ class CellRow(NamedTuple):
         """Return a mistake for each number with a decimal point in a table with decimal commas."""
         if self.dialect.decimal != ",":
             return []
-        mixed = "has a decimal point, and the numbers before it have commas"
+        mixed = "has a decimal point, but earlier numbers have decimal commas"
         return [
             self.problem(f"`{shown(cell)}` {mixed}", j - self.skipped)
             for j, cell in enumerate(Dialect(self.dialect.separator).cells(self.line))
@@ -169,7 +169,7 @@ class TextTable:
             if count == needed:
                 whole.append(row)
                 continue
-            hint = "; a decimal comma? (write 48.2, not 48,2)" if count > needed else ""
+            hint = "; is there a decimal comma? Write 48.2, not 48,2" if count > needed else ""
             problems.append(row.problem(f"the row has {count} values, {needed} are needed{hint}"))
         return whole
 
@@ -267,7 +267,8 @@ def copied_table(text: str) -> CopiedTable:
     for number, row in rows:
         if len(row) != len(first):
             raise NoTableError(
-                f"line {number} has {len(row)} value{'s' * (len(row) != 1)}, the first {len(first)}"
+                f"line {number} of the file has {len(row)} value{'s' * (len(row) != 1)}, the "
+                f"first {len(first)}"
             )
     return CopiedTable(headings, tuple(row for _, row in rows))
 

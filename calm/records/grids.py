@@ -95,7 +95,8 @@ def choose_column(
         return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
     if wanted is None:
         raise cf_files.UnreadableError(
-            f"it has {count} columns of water, {_span(latitude.values, longitude.values)}; select "
+            f"the file has {count} columns of water, "
+            f"{_span(latitude.values, longitude.values)}; select "
             "one with `--at LAT,LON` or the `position` of the mooring file"
         )
     box = _box(latitude, longitude, horizontal, wanted)
@@ -106,7 +107,8 @@ def choose_column(
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
     if len(horizontal) > 1 and distance[nearest] > _spacing(lat, lon, nearest):
         raise cf_files.UnreadableError(
-            f"{written(wanted)} is outside its grid, {_span(latitude.values, longitude.values)}"
+            f"{written(wanted)} is outside the grid of the file, "
+            f"{_span(latitude.values, longitude.values)}"
         )
     wet = _wet(near, velocity, time, horizontal)
     if not wet.any():
@@ -239,7 +241,9 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
     latitude, longitude = (values[known] for values in found)
     first = float(latitude[0]), float(longitude[0])
     away = float(kilometres_from(latitude, longitude, first).max())
-    moved = f"its position changes with time, by up to {away:.0f} km; all profiles are used"
+    moved = (
+        f"the position in the file changes with time, by up to {away:.0f} km; all profiles are used"
+    )
     return (*([moved] if away > FAR else []), *_far(first, wanted))
 
 
@@ -249,7 +253,10 @@ def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
     distance = float(kilometres_from(np.array(place[0]), np.array(place[1]), wanted))
     if not distance > FAR:
         return ()
-    return (f"its only position, {written(place)}, is {distance:.0f} km from {written(wanted)}",)
+    return (
+        f"the only position in the file, {written(place)}, is {distance:.0f} km from "
+        f"{written(wanted)}",
+    )
 
 
 def _span(latitude: NDArray[Any], longitude: NDArray[Any]) -> str:
@@ -386,7 +393,7 @@ def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
         here = here.transpose(lat, lon)
         here = here[tuple(slice(None, None, -(-size // _MOST) or 1) for size in here.shape)]
         if min(here.shape) < 2:
-            raise cf_files.UnreadableError("has too few nodes about the position of the mooring")
+            raise cf_files.UnreadableError("has too few nodes around the position of the mooring")
         north, east = (np.asarray(here[each].values, float) for each in (lat, lon))
         attributes = dataset[name].attrs
         down = attributes.get("positive", "up" if name in _UP else "down") == "down"

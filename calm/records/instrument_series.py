@@ -166,7 +166,9 @@ def read_series(
             continue
         for name, series in mine.items():
             if label and len(series) > len({one.below for one in series}):
-                raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` is for one")
+                raise UsageError(
+                    f"{path} holds {len(series)} instruments; `{label}=` needs a file with one"
+                )
             found[name] += [replace(one, label=label or one.label) for one in series]
     if problems:
         raise InputError(problems)
@@ -270,8 +272,9 @@ def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
         count = dataset.sizes[instances]
         if whose.size != dataset.sizes[readings] or whose.max(initial=0.0) >= count:
             raise UnreadableError(
-                f"`{name}` must give one of its {count} instruments, numbered from 0, for each of "
-                f"{dataset.sizes[readings]} readings"
+                f"for each of the {dataset.sizes[readings]} readings, `{name}` must hold the "
+                "number of "
+                f"one of the {count} instruments (the first is 0)"
             )
         return [
             dataset.drop_vars([name]).isel({readings: whose == i, instances: i})
@@ -395,7 +398,7 @@ class _SeriesFile:
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
             raise UnreadableError(
-                f"`{along}` is a dimension of neither instruments nor profiler bins"
+                f"the dimension `{along}` is neither of instruments nor of profiler bins"
             )
         return np.asarray(known_values(levels.variable) * levels.factor)
 
@@ -453,11 +456,14 @@ _FRESH = 5.0
 def _salinity_notes(salinity: Floats, taken: Mapping[str, str]) -> Iterator[str]:
     """Yield remarks on the computed salinity, and any doubt about the unit of conductivity."""
     if not np.isfinite(salinity).any():
-        yield "salinity is not computed: there is neither a pressure nor a nominal depth"
+        yield "salinity is not computed, because there is neither a pressure nor a nominal depth"
         return
     yield f"salinity is computed from {', '.join(taken)}"
     if (middle := float(np.nanmedian(salinity))) < _FRESH:
-        yield f"its median is {middle:.2g}: is `{taken['conductivity']}` in another unit?"
+        yield (
+            f"the median of the salinity is {middle:.2g}: is `{taken['conductivity']}` "
+            "in another unit?"
+        )
 
 
 def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
@@ -475,11 +481,15 @@ def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> l
     known = [one for one in usual if one in (there or dataset.data_vars)]
     if len(there) > 1 and not known:
         standard = dataset[there[0]].attrs["standard_name"]
-        raise UnreadableError(f"several variables are {standard}: {', '.join(there)}")
+        raise UnreadableError(
+            f"several variables have the standard name {standard}: {', '.join(there)}"
+        )
     for name in known[:1]:
         standard = str(dataset[name].attrs.get("standard_name", ""))
         if standard and standard not in sought:
-            raise UnreadableError(f"`{name}` is {standard}, which is not {sought[0]}")
+            raise UnreadableError(
+                f"`{name}` has the standard name {standard} instead of {sought[0]}"
+            )
     return known or there
 
 
@@ -541,7 +551,9 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
     time = str(dataset[clock].dims[0])
     others = [str(dim) for dim, size in first.sizes.items() if dim != time and size > 1]
     if len(others) > 1 or time not in first.dims:
-        raise UnreadableError(f"`{first.name}` is not of times and instruments: {first.dims}")
+        raise UnreadableError(
+            f"`{first.name}` must have a time and an instrument dimension; it has {first.dims}"
+        )
     along = others[0] if others else None
     times = cf_files.read_times(dataset, clock)
     order = np.argsort(times, kind="stable")

@@ -144,7 +144,7 @@ def _rodb(path: Path) -> xr.Dataset:
         first += 1
     names = header["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
-        raise refused(path, "its `Columns` have no YY, MM and DD", line=first)
+        raise refused(path, "`Columns` has no YY, MM and DD", line=first)
     values = _numbers(path, lines, first, len(names))
     of = dict(zip(names, values.T, strict=True))
     year, month, day = (of[name].astype(np.int64) for name in _DATE[:3])
@@ -159,7 +159,7 @@ def _rodb(path: Path) -> xr.Dataset:
             plain_degrees(latitude, "latitude"),
         )
     except ValueError:
-        raise refused(path, "its `InstrDepth` or `Latitude` is not a number") from None
+        raise refused(path, "`InstrDepth` or `Latitude` is not a number") from None
     if nominal in _MISSING or nominal < 0.0:
         nominal = math.nan
     serial = header.get("serialnumber", "")
@@ -172,7 +172,7 @@ def _cnv(path: Path) -> xr.Dataset:
     head = "\n".join(lines[:first])
     names = {int(one[1]): (one[2], one[3]) for one in map(_CNV_NAME.match, lines[:first]) if one}
     if not names:
-        raise refused(path, "its header names no columns")
+        raise refused(path, "the header names no columns")
     values = _numbers(path, lines, first, len(names))
     columns: dict[tuple[str, str], Floats] = {}
     for j, (name, title) in names.items():
@@ -186,7 +186,9 @@ def _cnv(path: Path) -> xr.Dataset:
     clock = next(((j, name) for j, (name, _) in names.items() if name in _CNV_TIMES), None)
     start = re.search(r"(?m)^# start_time = (\w{3} \d+ \d{4}(?: [\d:]+)?)", head)
     if clock is None or (start is None and clock[1] not in _CNV_EPOCHS):
-        raise refused(path, f"has no times: none of {', '.join(_CNV_TIMES)}, or no start_time")
+        raise refused(
+            path, f"has no times: one of {', '.join(_CNV_TIMES)} and a start_time are needed"
+        )
     seconds = values[:, clock[0]] * _CNV_TIMES[clock[1]]
     if clock[1] in _CNV_EPOCHS:
         epoch = np.datetime64(_CNV_EPOCHS[clock[1]], "us")
@@ -257,7 +259,7 @@ def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:
-        named = f"its header names {count} columns"
+        named = f"the header names {count} columns"
         try:
             rows.append([float(word) for word in lines[i].replace(",", " ").split()])
             wrong = f"the row has {len(rows[-1])} numbers; {named}"
@@ -268,7 +270,7 @@ def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats
             problems.append(Problem(str(path), i + 1, 1, wrong))
     widths = {len(row) for row in rows}
     if len(problems) == len(rows) > 1 and len(widths) == 1 and widths != {0}:
-        wrong = f"its header names {count} columns; every row has {widths.pop()} numbers"
+        wrong = f"the header names {count} columns; every row has {widths.pop()} numbers"
         raise refused(path, wrong, line=there[0] + 1)
     if problems or not rows:
         raise InputError(problems[:20] or [Problem(str(path), first, 1, "has no rows")])

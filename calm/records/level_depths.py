@@ -121,7 +121,7 @@ def find_levels(
             unusable.append(error)
         else:
             return _Levels(dataset, variable, factor, time, water_depth).placed()
-    raise (unusable or [UnreadableError("its levels have no depth")])[0]
+    raise (unusable or [UnreadableError("the levels have no depth")])[0]
 
 
 @dataclass(frozen=True)

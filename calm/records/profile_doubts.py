@@ -92,8 +92,9 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
         across = [_between(toward[i], toward[j]) for j in (i - 1, i + 1)]
         if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_DIRECTION:
             yield (
-                f"the current at {say('depth', float(depth[i]))} is opposite to those above and "
-                "below it, with a speed between theirs: is its direction, or a sign, wrong?"
+                f"the current at {say('depth', float(depth[i]))} is opposite to the currents "
+                "above and below it, with a speed between theirs; is the direction, or a sign, "
+                "wrong?"
             )
 
 
@@ -120,7 +121,7 @@ def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterato
         strongest = float(speed[there].max(initial=0.0))
         if strongest > limit:
             yield (
-                f"the current reaches {say('speed', strongest)} {where}; measured currents there "
-                f"are below {limit:g} m/s: cm/s, or knots, written as m/s?"
+                f"the current reaches {say('speed', strongest)} {where}; currents measured there "
+                f"are below {limit:g} m/s: were cm/s or knots written as m/s?"
             )
             return

@@ -71,7 +71,9 @@ def read_columns(
         table.refuse(("rows",), "the table has no rows")
     whole = [i for i, row in enumerate(rows) if len(row) == len(columns)]
     for i in sorted({*range(len(rows))} - {*whole}):
-        hint = "; a decimal comma? (write 0.8, not 0,8)" if len(rows[i]) > len(columns) else ""
+        hint = (
+            "; is there a decimal comma? Write 0.8, not 0,8" if len(rows[i]) > len(columns) else ""
+        )
         message = f"the row has {len(rows[i])} values, {len(columns)} are needed{hint}"
         table.refuse(("rows", i), message)
     if len(units) < len(columns):
@@ -129,7 +131,7 @@ def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> 
         if name.lower() in _AMBIGUOUS and "toward" in known:
             message = (
                 f"`{shown(column)}` has an ambiguous sense: call it `toward` if the current "
-                "flows to this direction, or `from` if it comes from there"
+                "flows towards this direction, or `from` if it comes from this direction"
             )
             table.refuse(("columns", j), message)
         elif name not in known:
@@ -175,7 +177,7 @@ def check_depths(
     for start, stop in pairwise([0, *ends.tolist(), len(depths)]):
         mine = depths[start:stop]
         if len(mine) > 1 and (mine <= 0.0).all() and mine.any():
-            message = "the depths are negative; depth is positive down, so remove the signs"
+            message = "the depths are negative; depths must be positive down, so remove the signs"
             first = int(rows[start + int(np.argmax(mine < 0.0))])
             table.refuse(("rows", first, column), message)
             continue

@@ -37,8 +37,7 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 RULES = (
     "levels without a current or a depth are excluded from their profile",
     "levels above the surface are excluded",
-    "levels below the seabed are used if they have a value, to interpolate the current at the "
-    "seabed",
+    "levels below the seabed that have a value are used to interpolate the current at the seabed",
     "the current is linear in depth between levels, and constant above the first and below the "
     "last",
 )
@@ -149,7 +148,7 @@ def choose_profiles(
         No profile is in the period, or `every` is not positive.
     """
     if every < 1:
-        raise UsageError(f"every {every} profiles is not possible; use a number of at least 1")
+        raise UsageError(f"one profile in {every} is not possible; the number must be at least 1")
     if not len(times):
         raise refused(path, "has no times")
     notes = []

@@ -185,7 +185,9 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3
     """
     if kind == "ochi-hubble":
         if period is not None:
-            raise UsageError("ochi-hubble derives its periods from the height; remove the period")
+            raise UsageError(
+                "the ochi-hubble spectrum derives its periods from the height; remove the period"
+            )
         return _most_probable(height)
     period = full_sea_period(height) if period is None else period
     if wrong := _impossible(height, period):
@@ -198,12 +200,16 @@ def _impossible(height: float, period: float) -> str | None:
     """Return a message if a height [m] and peak period [s] are impossible or unsupported."""
     length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
-        return f"{waves}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
+        return (
+            f"{waves}: the wave height must not exceed {HIGHEST:g} m, nor the period "
+            f"{LONGEST_PERIOD:g} s"
+        )
     if period < SHORTEST_PERIOD:
         return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
         highest = (
-            f"with a length of {length:.1f} m, they can be {STEEPEST * length:.2f} m high at most"
+            f"with a wavelength of {length:.1f} m, they can be {STEEPEST * length:.2f} m high "
+            "at most"
         )
         return f"{waves} would break: {highest}"
     return None
@@ -259,7 +265,9 @@ def _most_probable(height: float) -> SeaState:
     original article. Raise UsageError if the height exceeds that of any real sea.
     """
     if height > HIGHEST:
-        raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
+        raise UsageError(
+            f"waves of {height:g} m are not possible; the wave height must not exceed {HIGHEST:g} m"
+        )
     swell = 0.84 * height, 2.0 * pi / (0.70 * exp(-0.046 * height)), 3.0
     sea = 0.54 * height, 2.0 * pi / (1.15 * exp(-0.039 * height)), 1.54 * exp(-0.062 * height)
     form = ochi_hubble((swell, sea))
@@ -292,7 +300,7 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
         Problem(str(path), lines[int(row)] if lines else 0, column, message)
         for wrong, column, message in (
             (falls, 1, "frequencies must increase and must not be negative"),
-            (~(density >= 0.0), 2, "a density must not be negative"),
+            (~(density >= 0.0), 2, "a spectral density must not be negative"),
         )
         for row in np.flatnonzero(wrong)
     ]
@@ -307,9 +315,12 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     wrong = _impossible(height, 1.0 / max(float(frequency[int(density.argmax())]), 1e-9))
     beyond = float(parts[omega[1:] > LARGEST_FREQUENCY].sum() / parts.sum())
     if wrong is None and beyond > BEYOND:
-        wrong = f"{beyond:.0%} of its variance is above {LARGEST_FREQUENCY / (2.0 * pi):.2g} Hz"
+        wrong = (
+            f"{beyond:.0%} of the variance of the spectrum is above "
+            f"{LARGEST_FREQUENCY / (2.0 * pi):.2g} Hz"
+        )
     if density[-1] > CUT_OFF * density.max():
-        wrong = wrong or f"it is cut off at {frequency[-1]:.3g} Hz, near its peak"
+        wrong = wrong or f"the spectrum is cut off at {frequency[-1]:.3g} Hz, near its peak"
     if wrong is not None:
         raise refused(path, f"{wrong}; check its units")
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
@@ -333,7 +344,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
         ]
         if not names:
             raise UnreadableError(
-                "no spectrum of waves: none of its variables has the standard name "
+                "no spectrum of waves: no variable has the standard name "
                 f"{' or '.join(_STANDARD_NAMES)}, nor is called {', '.join(_SPECTRAL_NAMES)}"
             )
         spectrum = data[names[0]]
@@ -351,7 +362,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
             frequency, density = frequency / (2.0 * pi), density * 2.0 * pi
     density = density[:, np.isfinite(density).all(axis=0)]
     if not density.size:
-        raise refused(path, "every spectrum in it has gaps")
+        raise refused(path, "every spectrum in the file has gaps")
     return frequency, density[:, int(np.trapezoid(density, frequency, axis=0).argmax())]
 
 
@@ -364,7 +375,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":
         raise UsageError(
-            "ochi-hubble defines its own periods and cannot use those of a scatter table"
+            "the ochi-hubble spectrum has its own periods and cannot use those of a scatter table"
         )
     problems, states = [], []
     shares = [max(share, 0.0) for _, (*_, share) in rows]
@@ -382,10 +393,10 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
         if share > 0.0:
             states.append(SeaState(height, period, sea.density, share / whole))
     if not problems and not states:
-        problems.append(Problem(str(path), 1, 1, "no sea has a share above 0"))
+        problems.append(Problem(str(path), 1, 1, "no sea state has a share above 0"))
     counts = all(share == round(share) for share in shares)
     if not counts and min(abs(whole - 1.0), abs(whole / 100.0 - 1.0)) > SHARES:
-        message = f"shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"
+        message = f"the shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"
         problems.append(Problem(str(path), 1, 1, message))
     if problems:
         raise InputError(problems)
@@ -412,7 +423,7 @@ def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float,
             figures = (nan,)
         rows.append((row.number, figures))
         if not all(isfinite(each) for each in figures):
-            problems.append(row.problem(f"not numbers as in {example}"))
+            problems.append(row.problem(f"the row must contain numbers, as in {example}"))
     if problems:
         raise InputError(problems)
     return rows

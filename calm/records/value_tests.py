@@ -162,7 +162,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
         return ""
     return (
         f"the {what} is not given {' and '.join(gaps)}: the value of the nearest level is "
-        f"used there, in {say('depth', water_depth)} of water"
+        f"used there; the water depth is {say('depth', water_depth)}"
     )
 
 
@@ -215,7 +215,7 @@ def _recurring(values: Floats, side: str) -> Iterator[str]:
     if beyond and filled.sum() >= _RECURS and np.unique(others).size >= _VARIED:
         yield (
             f"{filled.sum()} of {values.size} currents to the {side} are "
-            f"{values[filled][0]:.5g} m/s, far beyond all others: a fill value?"
+            f"{values[filled][0]:.5g} m/s, far beyond all others: is this a fill value?"
         )
 
 
@@ -234,8 +234,8 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
     # rounded currents have 20 nonzero values within 2.5 steps of zero, more common than zero
     if zeros > max(int((speed[moving] <= 2.5 * smallest).sum()), _VARIED):
         yield (
-            f"{zeros} of {u.size} currents are exactly 0, and hardly any are nearly 0: a fill "
-            "value, or a stalled rotor?"
+            f"{zeros} of {u.size} currents are exactly 0, and hardly any are nearly 0: is 0 a "
+            "fill value, or did the rotor stall?"
         )
 
 
@@ -247,7 +247,7 @@ def _equal_levels(u: Floats, v: Floats) -> Iterator[str]:
     if same.any():
         yield (
             f"{same.sum()} of {u.shape[1]} levels have the same currents at all times as the level "
-            "above: a mean over depth, or a level repeated?"
+            "above: are these means over depth, or was a level repeated?"
         )
 
 
@@ -302,7 +302,8 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     again = int((times[1:] == times[:-1]).sum())
     if 2 * again >= len(times) > 1:
         yield (
-            f"{again} of {len(times)} times repeat the time before: does the file combine several "
+            f"{again} of {len(times)} times are equal to the time before: does the file combine "
+            "several "
             "instruments?"
         )
     elif len(times) > 2:
@@ -321,7 +322,7 @@ def step_doubts(times: Times) -> Iterator[str]:
     """Yield a doubt if the time between profiles is too long to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
-            f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
+            f"the {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
             "and peaks between them are missing"
         )
 
@@ -372,12 +373,12 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
     ]  # fmt: skip
     meant = f": is it in {likely[0]}?" if likely else ""
     if not fraction and 2 * wrong.sum() <= known.size and np.unique(doubted).size == 1:
-        meant = ": a fill value?"
+        meant = ": is this a fill value?"
     count, span = int((known < _FRACTION).sum()), f"below {_FRACTION:g}"
     if not fraction:
         allowed = f"{limits.least:g} to {limits.greatest:g} {limits.unit}".rstrip()
-        count, span = int(wrong.sum()), f"no {name} of sea water, {allowed}"
-    sentence = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
+        count, span = int(wrong.sum()), f"outside the range of {name} in sea water, {allowed}"
+    sentence = f"{count} of {known.size} values are {span}, with a median of {middle:.4g}{meant}"
     return wrong, sentence, bool(2 * wrong.sum() > known.size)
 
 
@@ -472,10 +473,12 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
                 longest = most, int(edges[::2][runs.argmax()]), k
     if stuck:
         most, first, k = longest
-        which = f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "it keeps"
+        which = (
+            f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "the record keeps"
+        )
         yield (
             f"{which} one value for a tenth of the record, or for most pairs of readings: the "
-            f"longest stretch{names[k]}, {most} readings from {time_text(times[first])} to "
+            f"longest stretch{names[k]} is {most} readings, from {time_text(times[first])} to "
             f"{time_text(times[first + most - 1])}"
         )
 

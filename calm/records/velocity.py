@@ -131,7 +131,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         units = {factor_of(dataset[name], "speed"): name for name in (east, north)}
         if len(units) > 1:
             units_text = " and ".join(f"`{dataset[name].attrs['units']}`" for name in (east, north))
-            notes.append(f"its components have different units, {units_text}")
+            notes.append(f"the velocity components have different units, {units_text}")
         true = attributes.is_true(dataset[east], dataset.attrs)
         return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)
@@ -175,7 +175,9 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
         true = [name for name in found if not attributes.is_magnetic(dataset[name])]
         if len(true or found) > 1:
             listed = ", ".join(true or found)
-            raise UnreadableError(f"several variables are {standard_name}: {listed}")
+            raise UnreadableError(
+                f"several variables have the standard name {standard_name}: {listed}"
+            )
         if found:
             return _checked(dataset, (true or found)[0])
     name = next((name for name in sought.usual if name in dataset.data_vars), None)
@@ -189,10 +191,13 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
     if regular and _ALONG_THE_GRID.get(own) is sought:
         sense = "east" if sought is _EAST else "north"
         notes.append(
-            f"`{name}`, {own}, is used as {sense}ward, because the grid runs along latitudes"
+            f"`{name}`, with the standard name {own}, is used as {sense}ward, because the grid "
+            "runs along latitudes"
         )
     elif own and own not in sought.standard and not _only_marked(own, sought):
-        raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
+        raise UnreadableError(
+            f"`{name}` has the standard name {own} instead of {sought.standard[0]}"
+        )
     return _checked(dataset, name)
 
 

@@ -329,7 +329,7 @@ terminal speeds follow, of a vertical (*plumb*) line and of a heavy sphere. Each
              Kind.INDEPENDENT),
         Case("fall-back", 64.1, "m", 0.08 * 64.1, _INERTIA,
              lambda: -float(_fall().states[-1].node[-1, 1]), Kind.INDEPENDENT),
-        Case("way of the float", 431.0, "m", 0.03 * 431.0, _INERTIA,
+        Case("distance travelled by the float", 431.0, "m", 0.03 * 431.0, _INERTIA,
              lambda: float(_fall().states[-1].node[0, 1] - _start().node[0, 1]), Kind.INDEPENDENT),
         Case("maximum tension at the anchor", 6245.0, "N", 0.03 * 6245.0, _INERTIA,
              lambda: _pull(-1, 1), Kind.INDEPENDENT),

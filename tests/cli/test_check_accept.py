@@ -153,8 +153,10 @@ def test_an_accept_that_nothing_needs_is_a_notice(calm, accepting):
         "{rule: strength, component: top float, reason: a test}",
     )
     done = calm("check", file, "--json", "-")
-    assert "accepting.yaml: line 17: `accept` for anchor-weight is not needed" in done.err
-    assert "line 18: `accept` for strength of rope is not needed" in done.err
+    assert (
+        "accepting.yaml: line 17 of the file: `accept` for anchor-weight is not needed" in done.err
+    )
+    assert "line 18 of the file: `accept` for strength of rope is not needed" in done.err
     assert "line 19" not in done.err
 
 
@@ -165,7 +167,7 @@ def test_an_accept_counts_through_its_last_day(calm, accepting, until, counts):
     file = accepting(f"{{rule: strength, component: top float, reason: a test, until: {until}}}")
     done, _, states = checked(calm, file)
     assert states["strength", "top float"] == ["accepted" if counts else "unknown"]
-    ended = f"line 17: `accept` for strength of top float expired on {until}"
+    ended = f"line 17 of the file: `accept` for strength of top float expired on {until}"
     assert (ended in done.err) is not counts
 
 
@@ -216,7 +218,7 @@ def test_the_more_particular_accept_is_the_one_that_counts(calm, accepting):
     done, document, _ = checked(calm, file)
     reasons = {one["component"]: one["reason"] for one in document["accepted"]}
     assert reasons == {"top float": "this one", "ball": "all of it"}
-    assert "line 19: `accept` for strength of t* is not needed" in done.err
+    assert "line 19 of the file: `accept` for strength of t* is not needed" in done.err
 
 
 def test_a_warning_cannot_be_accepted(calm, accepting, folder):

@@ -144,7 +144,7 @@ def test_the_mistakes_of_both_files_at_once(calm, broken, write_mooring, folder)
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("m.yaml",), "m.yaml has no `deployed:` to compare its design with"),
+        (("m.yaml",), "m.yaml has no `deployed:` section to compare with its design"),
         (("m.yaml", "tow.yaml"), "a mooring cannot be compared with a tow"),
         (("tow.yaml",), "tow.yaml is a tow; name a second tow to compare it with"),
         (("m.yaml", "none.yaml"), "none.yaml"),

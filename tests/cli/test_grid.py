@@ -152,9 +152,9 @@ def both(calm, depths, make, *words):
 
 
 @pytest.mark.parametrize(("unit", "told", "likely"), [
-    (lambda t: t + 273.15, "median 28", "K"),
-    (lambda t: 1.8 * t + 42.0, "of 60 values are no", "degF"),
-    (lambda t: 1e3 * t, "°C, their median", "0.001 degC"),
+    (lambda t: t + 273.15, "median of 28", "K"),
+    (lambda t: 1.8 * t + 42.0, "of 60 values are outside", "degF"),
+    (lambda t: 1e3 * t, "°C, with a median", "0.001 degC"),
 ])  # fmt: skip
 def test_temperatures_of_another_unit_are_refused(calm, depths, unit, told, likely):
     run = both(calm, depths, lambda label, t: one_file("TEMP", unit(t), *WATER, label))
@@ -169,7 +169,7 @@ def test_units_are_converted_and_other_quantities_refused(calm, depths):
         assert abs(float(result["temperature"].median()) - 14.0) < 5.0
     air = ("air_temperature", "degree_Celsius")
     run = both(calm, depths, lambda label, t: one_file("TEMP", t, *air, label))
-    assert run.code == 2 and "`TEMP` is air_temperature, which is not" in run.err
+    assert run.code == 2 and "`TEMP` has the standard name air_temperature instead of" in run.err
 
 
 def test_what_is_doubtful_is_said_with_a_count(calm, depths):
@@ -177,7 +177,9 @@ def test_what_is_doubtful_is_said_with_a_count(calm, depths):
     assert run.code == 2 and "all 60 values are 0 and were excluded" in run.err
     fresh = ("sea_water_practical_salinity", "1")
     run = both(calm, depths, lambda label, t: one_file("PSAL", 0.0345 + 1e-4 * t, *fresh, label))
-    assert "60 of 60 values are below 0.05, their median 0.03" in run.err and "kg/kg?" in run.err
+    assert (
+        "60 of 60 values are below 0.05, with a median of 0.03" in run.err and "kg/kg?" in run.err
+    )
 
     def exchanged(label, t):
         pressure = {"PRES": (0.0 * t + 900.0, {"units": "dbar"})}
@@ -229,10 +231,13 @@ def test_salinity_without_a_pressure_is_that_of_the_depth_on_the_line(calm, dept
         assert float(abs(result["salinity"] - 35.2).max()) < 0.01
     run = calm("grid", "depths.nc", *(f"{one}.nc" for one in LABELS[:2]), "-o", "out.nc",
                "--levels", "100:25:300")  # fmt: skip
-    assert "salinity is not computed: there is neither a pressure nor a nominal depth" in run.err
+    assert (
+        "salinity is not computed, because there is neither a pressure nor a nominal depth"
+        in run.err
+    )
     unit = (10.0, "mS/cm")
     run = both(calm, depths, cell)
-    assert "its median is 2.9: is `CNDC` in another unit?" in run.err
+    assert "the median of the salinity is 2.9: is `CNDC` in another unit?" in run.err
 
 
 @pytest.mark.parametrize("make", [
@@ -254,7 +259,9 @@ def test_ragged_arrays_of_instruments_are_split(calm, depths, make):
     run = calm("grid", "depths.nc", "all.nc", "-o", "out.nc", "--levels", "100:25:150")
     if index[1][0] == 1:  # counted from 1
         assert run.code == 2
-        assert "`INDEX` must give one of its 2 instruments, numbered from 0" in run.err
+        assert (
+            "`INDEX` must hold the number of one of the 2 instruments (the first is 0)" in run.err
+        )
         return
     assert run.code == 0, run.err
     assert f"TEMP [degree_Celsius]: {values.min():.4g} to {values.max():.4g}, median" in run.err

@@ -359,14 +359,15 @@ MISTAKES = {
     "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "exactly one"),
     "      - {use: anchor-wheels-4}\n": ("", "`bottom` is missing"),
     "      - {use: release-ar861}\n": (
-        "      - {use: anchor-wheels-1}\n", "is not the last item of its leg"),
+        "      - {use: anchor-wheels-1}\n", "must be the last item of its leg"),
     "length: 60 m": ("length: fit, top_depth: 100 m", "cannot be cut to fit"),
     "legs:\n": ("nodes: {A: {}, X: {}}\nlegs:\n", "no leg joins at node `X`"),
     "name: Two floats and a pennant\n": (
         "line: [{use: anchor-wheels-1}]\n", "`line` and `legs` exclude each other"),
     "  pennant:\n    line:": ("  pennant:\n    lin:", "did you mean `line`?"),
     "top: {join: A}\n    bottom: fr": (
-        "top: {held: {depth: 600 m}}\n    bottom: fr", "not above the seabed, 500 m deep"),
+        "top: {held: {depth: 600 m}}\n    bottom: fr",
+        "must be above the seabed, which is 500 m deep"),
 }  # fmt: skip
 
 
@@ -789,7 +790,7 @@ def test_an_anchor_up_the_slope_stands_in_water(tmp_path: Path) -> None:
     text = SLOPE.replace("slope: 10 deg", "slope: 25 deg")
     at = re.search(r"at: \[.*?\]", text)
     assert at is not None
-    with pytest.raises(InputError, match=r"the seabed \d+ m above the surface here"):
+    with pytest.raises(InputError, match=r"the seabed \d+ m above the surface at this anchor"):
         load(tmp_path / "slope.yaml", text=text.replace(at[0], "at: [-500 m, 0 m]"))
 
 
@@ -888,8 +889,11 @@ legs:
 
 BROKEN_GRIDS = [
     (GRIDDED[GRIDDED.index("environment") :], "a grid needs the `position`"),
-    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes about the position"),
-    (GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"), "the grid of the seabed has no depth here"),
+    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes around the position"),
+    (
+        GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"),
+        "the grid of the seabed has no depth at the anchor",
+    ),
     (GRIDDED.replace("grid.nc", "grid.tif"), "gdal_translate -of netCDF grid.tif grid.nc"),
     (GRIDDED.replace("grid.nc", "absent.nc"), "no such file"),
     (GRIDDED.replace("grid.nc", "words.nc"), "cannot be read as NetCDF"),
@@ -912,7 +916,9 @@ def test_a_grid_that_cannot_be_used_is_a_mistake(tmp_path: Path, text: str, told
 
 def test_a_leg_from_a_node_to_itself_is_a_mistake(tmp_path: Path) -> None:
     text = NET.replace("  main:\n", "  main:\n    top: {join: A}\n")
-    with pytest.raises(InputError, match="both ends join at `A`"):
+    with pytest.raises(
+        InputError, match="the two ends of a leg must not join at the same node, `A`"
+    ):
         load(tmp_path / "net.yaml", text=text)
 
 
@@ -920,7 +926,7 @@ def test_two_anchors_in_one_place_are_a_mistake(tmp_path: Path) -> None:
     pieces = "[{use: glass-17in}, {use: wire-jacketed-8, length: 10 m}, {use: anchor-wheels-4}]"
     more = f"  other:\n    line: {pieces}\n"
     with pytest.raises(
-        InputError, match="its anchor is at the position of the anchor of leg `stem`"
+        InputError, match="the anchor is at the same position as that of leg `stem`"
     ):
         load(tmp_path / "net.yaml", text=NET + more)
 

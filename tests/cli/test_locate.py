@@ -96,7 +96,7 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert "deployed" not in (folder / "m.yaml").read_text()
     assert "m.yaml was not changed: the depth, 1997 m, is far from the planned 1500 m; " in done.err
     assert "; the position is 11.1 km from the planned position. Use --accept" in done.err
-    assert "this is far from the planned position" in done.err
+    assert "the result is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
     assert "latitude and longitude appear to be exchanged" in done.err
@@ -202,7 +202,7 @@ def test_three_ranges_on_one_course_have_two_places(calm, ranges, write_mooring,
     assert document["latitude"] == pytest.approx(48.2919, abs=1e-3)
     assert document["longitude"] == pytest.approx(-5.1879, abs=1e-3)
     assert document["second"]["distance"] == pytest.approx(2520.0, rel=0.05)
-    assert re.search(r"two positions remain, \d+ and 25\d\d m from the planned one", done.err)
+    assert re.search(r"two positions remain, \d+ and 25\d\d m from the planned position", done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
     done = calm("locate", name, "--update", "m.yaml", "--json", "-")  # of unknown depth
     assert done.code == 1 and "two positions remain" in done.err
@@ -223,7 +223,7 @@ def test_positions_without_letters_have_those_that_are_given(calm, ranges, hemis
     assert json.loads(signed.out)["longitude"] == pytest.approx(-5.2, abs=1e-4)
     for wrong in ("S,S", "X", "S,N"):
         done = calm("locate", ranges(text), "--hemisphere", wrong)
-        assert done.code == 2 and "is no pair such as S,W" in done.err
+        assert done.code == 2 and "is not a pair of letters such as S,W" in done.err
 
 
 def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_mooring, folder):
@@ -305,8 +305,8 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "has minutes or seconds of 60 or more",
             "is no number",
             "must be above 0",
-            "km from the others",
-            "beyond the reach of a transponder",
+            "km from the other positions",
+            "beyond the range of a transponder",
         ],
         strict=True,
     ):
@@ -344,7 +344,7 @@ def test_what_was_not_answered_and_what_repeats_is_left_out(calm, ranges):
     text = "\n".join(["# night of the 3rd", *lines[:6], lines[1], "48.3,-5.2,nan", "48.3,-5.2,"])
     done = calm("locate", ranges(text), "--json", "-")
     assert done.code == 0
-    assert "line 8 repeats line 3 and was ignored" in done.err
+    assert "line 8 of the file repeats line 3 and was ignored" in done.err
     assert "rows without a reply were ignored: lines 9, 10" in done.err
     assert json.loads(done.out)["lines"] == [3, 4, 5, 6, 7]
 

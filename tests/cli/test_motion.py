@@ -261,7 +261,7 @@ def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):
     [
         (("--hold-out", "upper,middle", "--cross-validate"), "at least two sensors are needed"),
         (("--hold-out", "uper"), "did you mean `upper`"),
-        (("--hold-out", "upper,middle,lower"), "no sensor remains"),
+        (("--hold-out", "upper,middle,lower"), "at least one sensor must remain"),
         (("--flags", "1,8"), "not measurements"),
         (("--gap", "2"), "--gap: `2` needs a unit: `2 h`?"),
         (("--gap", "2 km"), "is a length; a time (s, ms, min, h, d) is needed"),

@@ -114,4 +114,4 @@ def test_tows_are_refused(calm, folder):
     )
     done = calm("size", "tow.yaml", *TARGET)
     assert done.code == 2
-    assert done.err == "calm: tow.yaml is a tow; this is for moorings\n"
+    assert done.err == "calm: tow.yaml is a tow; only a mooring can be used here\n"

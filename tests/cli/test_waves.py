@@ -123,8 +123,8 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
         (("--hs", "2 m"), "missing: --tp"),
         (("--hs", "2", "--tp", "6 s"), "--hs"),
         (("--hs", "5 m", "--tp", "4 s"), "would break"),
-        (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
-        (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
+        (("--hs", "40 m", "--tp", "25 s"), "the wave height must not exceed 30 m"),
+        (("--hs", "3 m", "--tp", "60 s"), "nor the period 30 s"),
         ((*SEA, "--duration", "2 s"), "--duration must be at least one minute"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
         ((*SEA, "--scatter", "none.csv"), "a --scatter file already contains heights"),
@@ -209,7 +209,7 @@ def test_a_sea_steeper_than_seas_are_is_doubted(calm, buoy):
         ('rao: {"1": [1, 0 deg]}', "two frequencies or more"),
         (
             'rao: {"1": [1, 0 deg], "2": [1, 0 deg, 5 deg, 0 deg]}',
-            "with the pitch at all or at none",
+            "with the pitch at all of them or at none",
         ),
         ('rao: {"1": [1, 0 deg, 5 deg], "2": [1, 0 deg]}', "four with the pitch"),
         ("centre_of_mass: 0.4 m", "needs both its `centre_of_mass` and `radius_of_gyration`"),
@@ -297,8 +297,8 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "remove the period"),
         ("{spectrum: sea.csv, significant_height: 2 m}", "remove these keys"),
         ("{scatter: none.csv}", "no such file"),
-        ("{scatter: bad.csv}", "not numbers"),
-        ("{scatter: seas.csv, spectrum: ochi-hubble}", "defines its own periods"),
+        ("{scatter: bad.csv}", "the row must contain numbers"),
+        ("{scatter: seas.csv, spectrum: ochi-hubble}", "has its own periods"),
     ],
 )
 def test_seas_of_the_file_that_cannot_be(calm, buoy, tmp_path, waves, message):
@@ -346,7 +346,7 @@ def test_the_check_judges_the_waves_of_the_file(calm, buoy, tmp_path):
         (state["components"][1] for state in told["states"]), key=lambda one: one["greatest"]
     )
     low, high = (greatest[f"measured_{end}"]["greatest"] for end in ("low", "high"))
-    band = f"Measurements at sea (SOFS) imply {low:.0f} N to {high:.0f} N."
+    band = f"Measurements at sea (SOFS) imply a tension of {low:.0f} N to {high:.0f} N."
     assert strength["message"].endswith(band)
     assert found["fatigue", "rope"]["state"] == "unknown"  # no curve of nylon is published
     chain = found["fatigue", "chain"]
@@ -369,4 +369,4 @@ def test_the_check_says_what_falls_slack(calm, buoy):
     assert "fail" in states
     slack = [one for one in found.values() if one["rule"] == "wave-slack"]
     assert all((one["value"] < 0.0) == (one["state"] == "fail") for one in slack)
-    assert all("Measurements at sea (SOFS) imply " in one["message"] for one in slack)
+    assert all("Measurements at sea (SOFS) imply a tension of " in one["message"] for one in slack)

@@ -250,7 +250,9 @@ class Editor:
 
 def has_comments_in_brackets(text: str, refusal: str) -> bool:
     """Whether an edit is refused since it would lose a comment between entries in brackets."""
-    found = re.fullmatch(r"line (\d+): .* comments; change it in the text", refusal)
+    found = re.fullmatch(
+        r"line (\d+) of the file: .* items or comments; change it in the text", refusal
+    )
     if found is None:
         return False
     inside = "\n".join(text.splitlines()[int(found[1]) - 1 :])

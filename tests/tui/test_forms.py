@@ -170,5 +170,5 @@ def test_a_form_of_a_component_begins_with_what_it_needs():
     assert keys[:4] == ["name", "manufacturer", "role", "diameter"]
     takes = {each.key: each.takes for each in form_fields("cable")}
     assert takes["working_load"] == "maximum load in use"
-    assert takes["diameter"] == "of a chain, that of its bar"
+    assert takes["diameter"] == "diameter; for a chain, the diameter of its bar"
     assert "kind" not in keys and keys.index("elongation") < keys.index("breaking_load")

@@ -402,7 +402,7 @@ def test_wind_needs_a_direction_and_goes_without_a_speed(drive, small):
         await driver.press("w")
         await enter(driver, "wind-speed", "12")
         assert value(driver, "wind") == {"speed": "12 m/s"}
-        assert "is needed: clockwise" in driver.screen
+        assert "is needed: direction" in driver.screen
         assert driver.app.focused is field(driver, "wind-toward").input
         await driver.type("45")
         await driver.press("enter")

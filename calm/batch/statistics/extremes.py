@@ -156,7 +156,7 @@ def _unfit(time: Times, values: Column) -> str:
     if count < 2:
         return f"there are too few values ({count})"
     if not bool((time[1:] > time[:-1]).all()):
-        return "the times do not increase"
+        return "the times must increase"
     if np.fmax.reduce(values) == np.fmin.reduce(values):
         return "all values are equal"
     return ""

@@ -90,7 +90,7 @@ class ComponentMaker:
         if not stiffness and tension is not None:
             stiffness = tension.at(0.01) / 0.01
             component.guesses["stiffness"] = (
-                "the file has a curve; this is its tension at a strain of 0.01, over 0.01"
+                "the file has a curve; this is the tension at a strain of 0.01, divided by 0.01"
             )
         if stiffness > 0.0:
             component.figures["stiffness"] = stiffness

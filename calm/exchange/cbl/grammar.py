@@ -357,5 +357,5 @@ def _nodes(words: TokenStream, token: Token) -> list[int]:
     if not spaced:
         return numbers
     if len(numbers) != 3 or numbers[1] < 1 or numbers[2] > _MOST_NODES:
-        raise token.refuse("nodes are given as [first, step, last]")
+        raise token.refuse("nodes must be given as [first, step, last]")
     return list(range(numbers[0], numbers[2] + 1, numbers[1]))

@@ -62,7 +62,7 @@ class CableLayout:
             raise upper.token.refuse("the layout must begin at the anchor and end at the buoy")
         depth, anchor = self.depth, self._anchor(lower)
         if upper.buoy is None:
-            raise upper.token.refuse("the upper end is not a buoy")
+            raise upper.token.refuse("the upper end must be a buoy")
         reaches = self.problem.kind == "general" and self.problem.length >= _REACHES * depth
         buoy = self._buoy(upper, afloat=reaches or self.problem.kind == "surface")
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
@@ -86,11 +86,11 @@ class CableLayout:
             east, north = 0.0 - drift_east, 0.0 - drift_north
             moved = [(d, u + east, v + north, w) for d, u, v, w in self.water.current]
             self.water.current = tuple(moved) if any(any(row[1:]) for row in moved) else ()
-            note = "In the file the ship is at rest in a current; here the ship moves instead."
+            note = "In the file the ship is at rest in a current; in CALM the ship moves instead."
             self.design.notes.append(note)
         speed = math.hypot(east, north)
         if speed == 0.0:
-            raise ship.token.refuse("the ship of this tow does not move")
+            raise ship.token.refuse("the ship of this tow must move")
         self.design.tow = model.ImportedTow(speed, bearing_of(east, north))
         self.design.items = [*items[::-1], self._buoy(body, afloat=False)]
 
@@ -169,7 +169,9 @@ class CableLayout:
                 if start <= height < end or (item is made[-1] and height >= end):
                     item.clamp(clamped, min(max(end - height, 0.0), item.extent))
             item.guess = (
-                "its drag is that at its depth in the upright line" if len(made) > 1 else ""
+                "the drag was computed at the depth of this part in the upright line"
+                if len(made) > 1
+                else ""
             )
             start = end
         for key in ("cdn", "cdt"):
@@ -178,7 +180,8 @@ class CableLayout:
                 speed = f"{self._speed(lower - length / 2.0):.3g} m/s"
                 for item in made:
                     item.guess = (
-                        item.guess or f"{key} is a table over speed; this is its value at {speed}"
+                        item.guess
+                        or f"the file has a table of {key} over speed; this is the value at {speed}"
                     )
         return made
 

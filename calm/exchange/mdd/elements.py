@@ -114,8 +114,9 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
         component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
         if _HARD.search(element.name) and modulus < _SOFT:
             component.guesses["stiffness"] = (
-                f"from the modulus in the file, {modulus / 1e9:g} GPa, which is that of a rope; is "
-                "it left from another material?"
+                f"from the modulus in the file, {modulus / 1e9:g} GPa, which is that of a rope; "
+                "was "
+                "it left over from another material?"
             )
     if component.kind == "chain":
         component.comment = (

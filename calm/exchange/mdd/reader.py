@@ -27,7 +27,8 @@ _WANTED = frozenset(
 _STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
-    "cn and cx are Cd of that program, which neglects drag along lines and cylinders, so ct is 0. "
+    "cn and cx are Cd of Mooring Design & Dynamics, which neglects drag along lines and "
+    "cylinders, so ct is 0. "
     "See `calm docs import-mdd`."
 )
 
@@ -46,11 +47,14 @@ def read_mdd(path: Path) -> model.ImportedDesign:
     if not sized and any(group in variables for group in GROUPS):
         raise refused(
             path,
-            "is the element library of that program, not a mooring; use it with --elements FILE "
+            "is an element library of Mooring Design & Dynamics, not a mooring; use it with "
+            "--elements FILE "
             "when you import a list",
         )
     if not sized:
-        raise refused(path, "contains neither a mooring (`H`) nor a tow (`Ht`) of that program")
+        raise refused(
+            path, "contains neither a mooring (`H`) nor a tow (`Ht`) of Mooring Design & Dynamics"
+        )
     towed = sized[0] == "Ht"
     elements, problems = read_elements(variables, "t" if towed else "")
     clamped, more = read_elements(variables, "CO")
@@ -63,7 +67,9 @@ def read_mdd(path: Path) -> model.ImportedDesign:
     except ValueError as error:
         raise refused(path, str(error)) from None
     if design.record is not None:
-        design.notes.append("The current is the first profile of the record beside this file.")
+        design.notes.append(
+            "The current is the first profile of the record in the folder of this file."
+        )
     if towed:
         _lay_tow(design, elements, variables, path)
     else:
@@ -99,11 +105,11 @@ def _lay_tow(
     east, north = variables.first("Usp"), variables.first("Vsp")
     speed = math.hypot(east, north)
     if speed == 0.0:
-        raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
+        raise refused(path, "the ship of this tow must move (`Usp`, `Vsp`)")
     design.tow = model.ImportedTow(speed, bearing_of(east, north))
     height = variables.first("afh")
     if height > 0.0:
-        what = f"the A-frame of {height:g} m, which that program only draws"
+        what = f"the A-frame of {height:g} m, which Mooring Design & Dynamics only draws"
         design.dropped.append(model.Remark("afh", what))
 
 

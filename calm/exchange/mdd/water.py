@@ -33,7 +33,7 @@ def read_water(
     if not np.any(levels > 0.0):
         return None, None
     if not np.all(np.isfinite(levels)) or np.any(levels < 0.0):
-        raise ValueError("the heights in `z` must be numbers of at least 0")
+        raise ValueError("the heights in `z` must be zero or more")
     seabed = float(levels.max())
     profiles = [_profiles(variables, name, levels.size) for name in "UVW"]
     if profiles[0] is None and profiles[1] is None:
@@ -87,7 +87,9 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
     if values is None:
         return np.zeros((levels, times))
     if values.shape[1] not in (1, times):
-        raise ValueError(f"`{name}` has {values.shape[1]} profiles, the others {times}")
+        raise ValueError(
+            f"`{name}` has {values.shape[1]} profiles, but the other variables have {times}"
+        )
     if not np.all(np.isfinite(values[:, 0])):
         raise ValueError(f"`{name}` has gaps in its first profile")
     return np.broadcast_to(values, (levels, times))
@@ -99,11 +101,16 @@ def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[Rea
         guessed.append(
             model.Remark(
                 "record.time",
-                "the file has no time for each profile; hourly from 2000-01-01 is assumed",
+                "the file has no time for each profile; hourly profiles from 2000-01-01 are "
+                "assumed",
             )
         )
         return np.arange(times) / 24.0, "2000-01-01"
     if np.all((time > _EARLIEST) & (time < _LATEST)):
         return time - _MATLAB_EPOCH, "1970-01-01"
-    guessed.append(model.Remark("record.time", "not dates; taken as days from 2000-01-01"))
+    guessed.append(
+        model.Remark(
+            "record.time", "the times are not dates and were read as days since 2000-01-01"
+        )
+    )
     return time - time[0], "2000-01-01"

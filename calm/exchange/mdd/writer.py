@@ -36,7 +36,10 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         names = [*names[::-1], "Top of Tow Rope"]
         variables |= {"Usp": design.tow.east, "Vsp": design.tow.north, "afh": design.tow.height}
         if design.tow.height:
-            lost.append("the height of the sheave: in that program the wire begins at the water")
+            lost.append(
+                "the height of the sheave: in Mooring Design & Dynamics the wire "
+                "begins at the water"
+            )
     else:
         assert design.anchor is not None
         anchor, weight = design.anchor
@@ -62,7 +65,8 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         lost.append("wind")
     if design.afloat:
         lost.append(
-            "the hull of the float: in that program draft and drag are proportional to the used "
+            "the hull of the float: in Mooring Design & Dynamics draft and drag are "
+            "proportional to the used "
             "buoyancy; its Cd gives the same drag as in CALM in this current"
         )
     losses = design.losses(lost)

@@ -42,7 +42,7 @@ def _anchor(row: ListRow) -> _Definition:
 def _rigid(row: ListRow) -> _Definition:
     figures, guesses = row.figures, row.guesses
     if "buoyancy" not in figures:
-        row.refuse(f"its weight in water or its buoyancy is missing{row.hint}")
+        row.refuse(f"the weight in water or the buoyancy is missing{row.hint}")
     lift, length = row.figure("buoyancy"), row.figure("length")
     kind, across = _shape(row)
     kept: dict[str, model.FigureOrWord] = {"length": length}
@@ -81,7 +81,9 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
         f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces only {most / KILOGRAM_FORCE:.4g} kg"
     )
     if row.count > 1 and lift <= row.count * most:
-        row.refuse(f"one {kilograms}; if the value is for all {row.count}, name the column `total`")
+        row.refuse(
+            f"a piece {kilograms}; if the value is for all {row.count}, name the column `total`"
+        )
     else:
         row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"
 
@@ -107,13 +109,13 @@ def _line(row: ListRow) -> _Definition:
     if row.figure("length") <= 0.0:
         row.refuse("the length of the line is missing")
     if "buoyancy" not in row.figures:
-        row.refuse(f"its weight in water is missing{row.hint}")
+        row.refuse(f"the weight in water is missing{row.hint}")
     across, lift = row.figure("diameter") or row.figure("width"), row.figure("buoyancy")
     kind = "chain" if lift <= 0.0 and is_called(f"{row.name} {row.kind}", "chain") else "cable"
     if across <= 0.0:
         across = size_in(row.name)
         if across <= 0.0:
-            row.refuse("its diameter is missing")
+            row.refuse("the diameter is missing")
             across = 0.01
         row.guesses["diameter"] = "read from the name of the piece"
     kept: dict[str, model.FigureOrWord] = {"diameter": across}
@@ -139,7 +141,7 @@ def _line(row: ListRow) -> _Definition:
 def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
     """Return the drag coefficient in the list, else guess a typical value for the kind."""
     key = "cx" if kind == "sphere" else "cn"
-    guess = f"not in the list; the usual value for a {kind}"
+    guess = f"the list has no value; the usual value for a {kind} is used"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 

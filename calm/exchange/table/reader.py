@@ -258,7 +258,7 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
         raise refused(
             path,
             "neither end of the list is a float or an anchor; a list of a tow cannot be read, "
-            "because it has no speed of the ship",
+            "because the speed of the ship is missing",
         )
     if lifts[0] < lifts[1]:
         design.notes.append(

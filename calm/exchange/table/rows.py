@@ -126,7 +126,7 @@ def rows_of(
         if not name:
             held = [cell_of(each, column) for what, column in known.items() if what in _ENOUGH]
             if any(re.search(r"\d", cell) for cell in held):
-                dropped.append(model.Remark(f"row {place}", "it has values but no name"))
+                dropped.append(model.Remark(f"row {place}", "the row has values but no name"))
             continue
         if TOTAL.match(name):
             dropped.append(model.Remark(f"row {place}", f"`{name}`, a sum"))
@@ -139,7 +139,7 @@ def rows_of(
         fixed = row.is_line or row.is_anchor or row.role in ROLES or is_called(row.kind, "rigid")
         if not fixed and is_long(name, row.figure("length"), size):
             row.line = True
-            guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
+            guessed.append(model.Remark(row.where, "read as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
             remark = f"read as one piece with the values of its row, not as {several[1]} pieces"
@@ -180,14 +180,14 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
             several = _METRES.search(f"{column.heading} {found.rest}")
             if several and not row.is_line:
                 figure *= int(several[1])
-                row.guesses[what] = "taken for the whole piece, because it is not a line"
+                row.guesses[what] = "read as the value of the whole piece, because it is not a line"
         row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
     count = row.figures.pop("count", 1.0)
     row.count = round(count)
     if not 1 <= row.count <= _MOST:
-        row.refuse(f"its count is {count:.12g}; it must be from 1 to {_MOST}")
+        row.refuse(f"the count is {count:.12g}; it must be from 1 to {_MOST}")
         row.count = 1
     return row
 
@@ -281,9 +281,10 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
             if what == "buoyancy" and not column.whole:
                 row.guesses.setdefault(
                     what,
-                    "taken per metre, because lines of different lengths have the same value"
+                    "read as values per metre, because lines of different lengths have the same "
+                    "value"
                     if per_metre
-                    else "taken for the whole length of the line",
+                    else "read as the value of the whole length",
                 )
 
 

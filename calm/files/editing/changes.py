@@ -52,7 +52,8 @@ class Page:
                     return [self._add_entry(node, name, new_value, open=opened)]
                 if outer is None or node.kind == "sequence":
                     raise EditError(
-                        f"`{'.'.join(map(str, location))}` cannot be set: there is a list above it"
+                        f"`{'.'.join(map(str, location))}` cannot be set, because it would lie "
+                        "inside a list"
                     )
                 return self._set(outer, location[depth - 1], new)
             outer, node = node, child
@@ -67,7 +68,7 @@ class Page:
             return writing.set_value(self.text, outer, at, value, self.style, open=open)
         old = outer.children[int(step)]
         if old.kind != "scalar" or not isinstance(value, str):
-            raise EditError(f"line {old.line}: only a plain value can be changed here")
+            raise EditError(f"line {old.line} of the file: only a plain value can be changed here")
         return [writing.set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
@@ -100,8 +101,8 @@ class Page:
     def _items(self, node: Node) -> Items:
         items = items_of(self.text, node)
         if items is None:
-            message = f"line {node.line}: this list or mapping shares lines with other items or"
-            raise EditError(f"{message} comments; change it in the text")
+            message = f"line {node.line} of the file: this list or mapping shares lines with other"
+            raise EditError(f"{message} items or comments; change it in the text")
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:

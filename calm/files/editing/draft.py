@@ -293,10 +293,12 @@ class Draft:
         page = self._page
         node = page.node(location)
         if node is not None and node.kind != "sequence" and node.data is not None:
-            raise changes.EditError(f"line {node.line}: `{location[-1]}` is not a list")
+            raise changes.EditError(f"line {node.line} of the file: `{location[-1]}` is not a list")
         data = list(node.data or ()) if node else []
         if not 0 <= index <= len(data):
-            raise changes.EditError(f"position {index} does not exist in a list of {len(data)}")
+            raise changes.EditError(
+                f"position {index} does not exist in a list of {len(data)} items"
+            )
         patches = page.add(location, index, values)
         data[index:index] = changes.data_of(values)
         return self._changed(patches, location, data)

@@ -247,7 +247,7 @@ def state_folder() -> Path:
 
 def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
     if target.exists() and not target.is_file():
-        raise ValueError("it is not a regular file")
+        raise ValueError("the path is not a regular file")
     put(target, content, like=like, durable=True)
 
 
@@ -257,9 +257,9 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
         return ""
     losses = []
     if (before.st_uid, before.st_gid) != (after.st_uid, after.st_gid):
-        losses.append("its owner or group could not be preserved")
+        losses.append("the owner or group of the file could not be preserved")
     if before.st_nlink > 1:
-        losses.append("its other hard links keep the old text")
+        losses.append("other hard links to the file keep the old text")
     return "; ".join(losses)
 
 

@@ -114,7 +114,7 @@ def test_a_scheduler_killed_on_the_way_leaves_nothing(tmp_path, started):
 
     with (
         dask.config.set({"distributed.comm.timeouts.connect": "1s"}),
-        pytest.raises(UsageError, match="the scheduler or its workers were lost"),
+        pytest.raises(UsageError, match="the connection to the scheduler or its workers was lost"),
     ):
         run_batch(mooring, record, tmp_path / "r.nc", block=16, scheduler=address, progress=kill)
     assert not (tmp_path / "r.nc").exists()
@@ -127,7 +127,9 @@ def test_calm_missing_there_is_told(tmp_path, started):
     address = address_of(started(*SCHEDULER, calm=hidden))
     started(*worker_of(address), calm=hidden)
     mooring, record = made_mooring(tmp_path), MadeRecord(20)
-    with pytest.raises(UsageError, match=r"install calm-mooring \d.* there, too"):
+    with pytest.raises(
+        UsageError, match=r"install calm-mooring \d.* on the scheduler and on every worker"
+    ):
         run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
     assert [path.name for path in tmp_path.glob("*.nc*")] == []
 

@@ -178,7 +178,7 @@ def test_gaps_do_not_count_as_record():
     [
         (times(5), np.ones(5), "all values are equal"),
         (times(5), np.full(5, np.nan), "there are too few values (0)"),
-        (times(5)[::-1], np.arange(5.0), "do not increase"),
+        (times(5)[::-1], np.arange(5.0), "must increase"),
     ],
 )
 def test_what_cannot_be_fitted_is_said(time, values, reason):

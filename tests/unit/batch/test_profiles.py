@@ -145,13 +145,13 @@ def test_what_is_masked_is_a_gap(subsurface: Design) -> None:
 def test_what_is_no_mooring_and_no_current_is_refused(subsurface: Design) -> None:
     depth, u, v, _ = drawn(13, 1, subsurface.water.depth)
     tow = load(shipped_folder("lines") / "helicopter-bird.yaml")
-    with pytest.raises(UsageError, match="is a tow; this is for moorings"):
+    with pytest.raises(UsageError, match="is a tow; only a mooring can be used here"):
         solve_profiles(tow, u, v, depth)
     for wrong in (u.astype(complex), u > 0.0, u.astype(str)):
         with pytest.raises(TypeError, match="the current must be numeric, not "):
             solve_profiles(subsurface, wrong, v, depth)
     for workers in (0, -1):
-        with pytest.raises(ValueError, match="at least one is needed"):
+        with pytest.raises(ValueError, match="must be at least 1"):
             solve_profiles(subsurface, u, v, depth, workers=workers)
 
 

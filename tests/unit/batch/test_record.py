@@ -121,7 +121,7 @@ def test_a_place_that_drifts_is_told(tmp_path: Path) -> None:
     with opened(path) as record:
         # 0.6 degrees of latitude are 66.7 km
         assert record.notes[0] == (
-            "its position changes with time, by up to 67 km; all profiles are used"
+            "the position in the file changes with time, by up to 67 km; all profiles are used"
         )
 
 
@@ -184,13 +184,13 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
     with opened(write("oceansites", tmp_path)) as record:
         assert record.notes == (
             "the current is not given above 40.0 m and below 250.0 m: the value of the nearest "
-            "level is used there, in 300.0 m of water",
+            "level is used there; the water depth is 300.0 m",
             "the strongest of 20 currents is 0.0092 m/s in the declared unit, cm/s; are they in "
             "m/s or kn?",
             "levels without a current or a depth are excluded from their profile",
             "levels above the surface are excluded",
-            "levels below the seabed are used if they have a value, to interpolate the current at "
-            "the seabed",
+            "levels below the seabed that have a value are used to interpolate the current at the "
+            "seabed",
             "the current is linear in depth between levels, and constant above the first and below "
             "the last",
         )

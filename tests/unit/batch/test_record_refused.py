@@ -73,10 +73,13 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
             "its `standard_name` should be sea_water_velocity_to_direction or "
             "sea_water_velocity_from_direction",
         ),
-        (along_a_turned_grid, "`uo` is sea_water_x_velocity, which is not eastward_sea_water_v"),
+        (
+            along_a_turned_grid,
+            "`uo` has the standard name sea_water_x_velocity instead of eastward_sea_",
+        ),
         (
             lambda: with_attributes(adcp(), "u", standard_name="eastward_wind"),
-            "`u` is eastward_wind, which is not eastward_sea_water_velocity",
+            "`u` has the standard name eastward_wind instead of eastward_sea_water_velocity",
         ),
         (
             lambda: with_attributes(adcp(), "time", units="months since 2026-03-01"),
@@ -89,7 +92,7 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (lambda: with_attributes(adcp(), "u", units="kg"), "`u`: its unit, `kg`, is a mass; a spe"),
         (lambda: with_attributes(adcp(), "u", units=""), "`u` has no `units`"),
-        (lambda: adcp().drop_vars("bin_depths"), "its levels have no depth"),
+        (lambda: adcp().drop_vars("bin_depths"), "the levels have no depth"),
         (
             lambda: with_attributes(adcp(), "bin_depths", units="dbar"),
             "`bin_depths`: its unit, `dbar`, is a pressure; a length",
@@ -103,7 +106,10 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
             "`u` is not a single profile; it has the dimensions member (3), time (7), bin (5)",
         ),
         (lambda: adcp().isel(time=0).drop_vars("time"), "has no times: it is one profile, for"),
-        (lambda: glorys().assign_coords(latitude=glorys()["latitude"] + 9), "outside its grid"),
+        (
+            lambda: glorys().assign_coords(latitude=glorys()["latitude"] + 9),
+            "outside the grid of the file",
+        ),
         (
             lambda: glorys().where(glorys()["latitude"] < 0),
             "no column of 12 around 48.3° N 5.2° W has a current",
@@ -133,9 +139,9 @@ def test_reasons(tmp_path: Path, make: Callable[[], xr.Dataset], reason: str) ->
 
 def test_several_columns_and_no_place(tmp_path: Path) -> None:
     assert refusal(glorys(), tmp_path, None).startswith(
-        "it has 12 columns of water, 48.22° N 5.29° W to 48.38° N 5.04° W; select one with `--at "
-        "LAT,LON` or the `position` of the mooring file; it holds uo (time 7, depth 5, latitude "
-        "3, "
+        "the file has 12 columns of water, 48.22° N 5.29° W to 48.38° N 5.04° W; select one "
+        "with `--at LAT,LON` or the `position` of the mooring file; it holds uo (time 7, depth "
+        "5, latitude 3, "
     )
 
 
@@ -146,7 +152,8 @@ def test_x_is_east_along_latitudes(tmp_path: Path) -> None:
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
         note = (
-            "`uo`, sea_water_x_velocity, is used as eastward, because the grid runs along latitudes"
+            "`uo`, with the standard name sea_water_x_velocity, is used as eastward, because the "
+            "grid runs along latitudes"
         )
         assert note in record.notes
 
@@ -157,7 +164,10 @@ def test_a_single_place_far_away_is_told(tmp_path: Path) -> None:
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
         # 0.7 degrees of 111.2 km
-        assert record.notes[0] == "its only position, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
+        assert (
+            record.notes[0]
+            == "the only position in the file, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
+        )
 
 
 def test_land_of_zeros_is_land(tmp_path: Path) -> None:

@@ -69,7 +69,7 @@ def test_it_is_judged_and_its_launch_is_refused(net):
     }
     with pytest.raises(calm.UsageError, match="a single line with one free end"):
         calm.drop_plan(net)
-    with pytest.raises(calm.UsageError, match="is a tow; this is for moorings"):
+    with pytest.raises(calm.UsageError, match="is a tow; only a mooring can be used here"):
         calm.check(calm.load(shipped_folder("lines") / "helicopter-bird.yaml"))
 
 

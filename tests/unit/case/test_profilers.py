@@ -124,7 +124,7 @@ def test_a_profiler_in_the_line_is_refused(tmp_path):
             ("      - {use: bumper, at: 1380", "      - {use: bumper, at: 600 m}\n"
              "      - {use: bumper, at: 1380"),
             "fail",
-            "bumper blocks MMP, 600 m down the wire",
+            "bumper, 600 m down the wire, blocks MMP",
         ),
     ],
 )  # fmt: skip

@@ -173,7 +173,7 @@ COMPACT += FILE[FILE.index("  - {use: opener, label: release}") :].replace("50 m
 def test_a_compact_line_of_one_float_has_no_back_up_to_judge(tmp_path):
     (found,) = backup_of(tmp_path, COMPACT)
     assert (found.state, found.component) == ("not-judged", "top")
-    assert found.message == "top provides all the buoyancy, so there is no back-up."
+    assert found.message == "top provides all the buoyancy, so there is no back-up buoyancy."
 
 
 @pytest.mark.parametrize("lead, judged", [(49.0, False), (51.0, True)])

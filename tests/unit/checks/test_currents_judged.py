@@ -61,8 +61,8 @@ def test_centimetres_beside_a_storm_are_told(tmp_path):
     state, message = said(small, storm)[0]
     assert state == "warn"
     assert message == (
-        "The strongest current is 0.004 m/s here and 0.80 m/s in another environment: one of them "
-        "may be in the wrong unit."
+        "The strongest current is 0.004 m/s in this environment and 0.80 m/s in another; "
+        "one of them may be in the wrong unit."
     )
     still = of(tmp_path, UNIFORM.replace("SPEED", "0"))
     assert said(still, storm) == [("pass", "The strongest current checked is 0.80 m/s.")]

@@ -247,7 +247,7 @@ FLAWS = (
         "tilt",
         "meter 1500 m",
         "warn",
-        "its data are doubtful",
+        "its data are unreliable",
     ),
     Flaw(
         "a tilt that the design forbids",
@@ -352,7 +352,7 @@ FLAWS = (
         "launch-strength",
         "parafil 1",
         "fail",
-        "its breaking load over 2 is 6.00 kN",
+        "its breaking load divided by 2 is 6.00 kN",
     ),
     Flaw(
         "an anchor that falls like a stone",
@@ -558,7 +558,7 @@ FLAWS = (
         "release-present",
         "release",
         "fail",
-        "No piece above release is buoyant: once released, it stays on the seabed.",
+        "No piece above release is buoyant: after release, it stays on the seabed.",
     ),
     Flaw(
         "a release that is clamped",
@@ -608,7 +608,7 @@ FLAWS = (
         "missing",
         "Kevlar 3",
         "unknown",
-        "is nylon of unknown stiffness and assumed inextensible. It could stretch by",
+        "is nylon of unknown stiffness and is assumed inextensible. The rope could stretch by",
     ),
     Flaw(
         "a rope measured under most of what it bears",
@@ -622,7 +622,7 @@ FLAWS = (
         "stretch",
         "wire",
         "warn",
-        "wire is cut to length under 22.00 kN, more than",
+        "wire is to be cut to length under a load of 22.00 kN; this exceeds",
     ),
     Flaw(
         "a float that leaps",
@@ -786,7 +786,7 @@ FLAWS = (
         "profiler",
         "MMP",
         "fail",
-        "CTD 295 m blocks MMP, 80 m down the wire",
+        "CTD 295 m, 80 m down the wire, blocks MMP",
     ),
     Flaw(
         "a shackle of nobody knows what",
@@ -894,7 +894,7 @@ FLAWS = (
         "serials-and-dates",
         "CTD 295 m",
         "warn",
-        "The battery of CTD 295 m ends on 2026-01-31; the deployment is on 2026-05-01.",
+        "The battery of CTD 295 m runs out on 2026-01-31; the deployment is on 2026-05-01.",
     ),
     Flaw(
         "a current that no line stands",

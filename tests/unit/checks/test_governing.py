@@ -138,7 +138,7 @@ def test_a_tension_beyond_the_accepted_load_is_not_accepted(tmp_path: Path) -> N
     accept = "{rule: missing, component: frame, reason: proof-loaded, by: EXAMPLE, load: 1 kN}"
     _, found = _accepting(tmp_path, accept)
     assert found.state is State.UNKNOWN
-    assert "allows at most 1.00 kN" in found.message
+    assert "of the file allows at most 1.00 kN" in found.message
 
 
 def test_an_accepted_failure_passes_by_acceptance(tmp_path: Path) -> None:

@@ -159,7 +159,7 @@ def test_good_components_pass(good):
             {"breaking_load": "15 MN"},
             "a body of its mass and length has at most",
         ),
-        (GOOD_SHACKLE, {"buoyancy": "-0.7 N"}, "of its material would weigh 6.82 N in water"),
+        (GOOD_SHACKLE, {"buoyancy": "-0.7 N"}, "mass and material would weigh 6.82 N in water"),
         (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "with the same volume, 0.068 m³, has 0.0033 m²"),
     ],
 )
@@ -220,9 +220,9 @@ def test_parts_of_an_assembly_must_exist():
 @pytest.mark.parametrize(
     ("prefer", "told"),
     [
-        ("nothing", "which is in no catalogue"),
-        ("x", "prefers `x`, which is in no catalogue"),
-        ("y", "itself prefers `z`"),
+        ("nothing", "which must be the id of another component"),
+        ("x", "has `prefer: x`, which must be the id of another"),
+        ("y", "itself has `prefer: z`"),
     ],
 )
 def test_what_is_preferred_must_be_there_and_be_final(prefer, told):

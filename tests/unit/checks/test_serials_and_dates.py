@@ -61,14 +61,17 @@ def test_what_agrees_passes(tmp_path: Path) -> None:
     [
         ({"serial": "1"}, "upper and lower have the same serial number, 1 of sbe37"),
         ({"label": "upper"}, "2 rows of the line have the label `upper`"),
-        ({"battery": "2026-01-31"}, "ends on 2026-01-31; the deployment is on 2026-05-01"),
-        ({"calibrated": "2027-03-01"}, "upper is calibrated on 2027-03-01, after its deployment"),
+        ({"battery": "2026-01-31"}, "runs out on 2026-01-31; the deployment is on 2026-05-01"),
+        ({"calibrated": "2027-03-01"}, "upper, on 2027-03-01, is after its deployment"),
         ({"other": "81"}, "no release of the line has the serial number 81"),
         ({"other": "17"}, "codes for serial number 17 twice"),
         ({"codes": "0A55"}, "Two releases have the same codes"),
         ({"revision": "A"}, "is revision A, but its `history` ends with revision B"),
         ({"dated": "2026-01-05"}, "dated 2026-01-05, before its revision B of 2026-02-01"),
-        ({"second": "2025-02-01"}, "Revision B of 2025-02-01 follows revision A of 2026-01-05"),
+        (
+            {"second": "2025-02-01"},
+            "Revision B is dated 2025-02-01, before the preceding revision A, dated 2026-01-05",
+        ),
     ],
 )
 def test_what_contradicts_itself_is_a_warning(

@@ -248,7 +248,7 @@ def test_a_drag_that_changes_with_depth_cuts_the_segment(tmp_path):
         middle += piece.length
     assert len(ropes) == 12
     assert all(
-        "guessed: its drag is that at its depth" in each
+        "guessed: the drag was computed at the depth" in each
         for each in made.text.splitlines()
         if "use: rope" in each
     )

@@ -192,7 +192,7 @@ def test_a_record_stands_beside_the_mooring(turned, tmp_path):
 def test_times_that_are_no_dates_are_guessed(tmp_path):
     u = np.ones((3, 4))
     design = read(tmp_path, mooring(U=u, V=u, W=u, time=np.arange(4.0)))
-    assert "days from 2000-01-01" in str(design.guessed[0])
+    assert "days since 2000-01-01" in str(design.guessed[0])
 
 
 def test_a_modulus_counts_on_lines_alone(tmp_path):
@@ -300,7 +300,7 @@ REFUSED = {
         mooring(Jobj=np.array([[40]])),
         "clamped on element 40, which does not exist",
     ),
-    "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "does not move"),
+    "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "must move"),
 }
 
 

@@ -118,7 +118,7 @@ def test_an_added_format_is_tried_before_any_list(gear):
             r"`x` of broken_format cannot be loaded",
         ),
         ("", {"x": "broken_format"}, "broken_format registers no format `x`"),
-        ("", {"mdd": "broken_format"}, "broken_format adds a format `mdd`, which is the name of"),
+        ("", {"mdd": "broken_format"}, "broken_format adds a format `mdd`, but CALM itself has"),
     ],
     ids=["does not import", "registers nothing", "takes a name"],
 )

@@ -269,7 +269,9 @@ def test_a_library_of_that_program_is_read(read, tmp_path):
     ball, rope, _ = pieces(made, tmp_path)
     assert ball.component.diameter == 0.91
     assert rope.component.stiffness == pytest.approx(6.9e10 * 3.14159265 / 4 * 0.009**2)
-    with pytest.raises(InputError, match="is the element library of that program, not a mooring"):
+    with pytest.raises(
+        InputError, match="is an element library of Mooring Design & Dynamics, not a mooring"
+    ):
         import_file(library, tmp_path / "m.yaml")
 
 
@@ -345,7 +347,7 @@ def test_a_number_with_words_is_told(read):
 REFUSED = {
     "words for a number": (ENGLISH.replace(",22,1.2", ",heavy,1.2"), "`heavy` is not a number"),
     "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "the length of the"),
-    "no weight": (ENGLISH.replace(",-433,", ",,"), "its buoyancy is missing"),
+    "no weight": (ENGLISH.replace(",-433,", ",,"), "the buoyancy is missing"),
     "nothing floats": (
         "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "neither end of the list is a float"
     ),
@@ -358,7 +360,7 @@ REFUSED = {
     "more than a line has": (ENGLISH.replace(",1.3,2", ",1.3,990" ).replace(
         "AR861", "8 mm wire,1,8,1,1.3,990\n8 mm wire,1,8,1,1.3,990\nAR861"
     ), "has more than 2000 pieces"),
-    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "its count is 1000000"),
+    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "the count is 1000000"),
 }  # fmt: skip
 
 
@@ -468,7 +470,7 @@ def test_the_weight_of_a_piece_is_that_of_the_whole_whatever_that_of_lines_is(re
     made = read(with_cell("Weight in water (kg/100 m)", "30"))
     ball = pieces(made, tmp_path)[0].component
     assert ball.net_buoyancy == pytest.approx(4330 * 9.80665)
-    assert "taken for the whole piece" in " ".join(map(str, made.guessed))
+    assert "read as the value of the whole piece" in " ".join(map(str, made.guessed))
 
 
 @pytest.mark.parametrize(
@@ -646,7 +648,7 @@ def test_totals_are_divided_by_their_count(read, tmp_path):
 
 def test_a_weight_of_all_that_is_given_as_of_one_is_refused(read):
     with pytest.raises(
-        InputError, match=r"Glass ball: one lifts 300 kg.*if the value is for all 12"
+        InputError, match=r"Glass ball: a piece lifts 300 kg.*if the value is for all 12"
     ):
         read(SHORT.replace("-25", "-300"))
 

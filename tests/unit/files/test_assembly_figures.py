@@ -58,7 +58,9 @@ def test_other_figures_count_for_the_parts_that_they_concern(tmp_path: Path) -> 
 
 
 def test_a_figure_that_no_part_lacks_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no part of `glass-cluster-4` lacks a `depth_rating`"):
+    with pytest.raises(
+        InputError, match="all parts of `glass-cluster-4` already have a `depth_rating`"
+    ):
         path = tmp_path / "m.yaml"
         text = FILE.format(given="", own="").replace("use: set", "use: glass-cluster-4")
         path.write_text(text.replace("glass-cluster-4", "glass-cluster-4, depth_rating: 9 m", 1))

@@ -66,7 +66,7 @@ ONE_MISTAKE = {
     ),
     "duplicate key": (
         changed("  depth: 1100 m\n", "  depth: 1100 m\n  depth: 900 m\n"),
-        (4, 3, "`depth` is given twice (first in line 3)"),
+        (4, 3, "`depth` is given twice (first on line 3)"),
     ),
     "unknown key": (
         changed("name:", "nmae:"),
@@ -96,21 +96,29 @@ ONE_MISTAKE = {
     ),
     "anchor not last": (
         GOOD + "  - {use: plate}\n",
-        (13, 5, "anchor `deadweight` is not the last item; a line has one, at its end"),
+        (
+            13,
+            5,
+            "anchor `deadweight` must be the last item; a line has only one anchor, at its end",
+        ),
     ),
     "two anchors": (
         GOOD + ANCHORED,
-        (13, 5, "anchor `deadweight` is not the last item; a line has one, at its end"),
+        (
+            13,
+            5,
+            "anchor `deadweight` must be the last item; a line has only one anchor, at its end",
+        ),
     ),
     "nothing but an anchor": (
         GOOD[: GOOD.index("  - {use: ball")] + ANCHORED,
-        (10, 5, "there is no piece above the anchor"),
+        (10, 5, "a line needs at least one piece above its anchor"),
     ),
     "two fits": (
         changed("480 m", "fit, top_depth: 90 m").replace(
             "  - {use: plate}", "  - {use: rope-16, length: fit, top_depth: 90 m}"
         ),
-        (12, 5, "only one piece can be cut to fit; line 11 has one already"),
+        (12, 5, "only one piece can be cut to fit; the file already has one, on its line 11"),
     ),
     "fit without a depth": (
         changed("480 m", "fit"),
@@ -122,7 +130,7 @@ ONE_MISTAKE = {
     ),
     "fit below the seabed": (
         changed("480 m", "fit, top_depth: 1100 m"),
-        (11, 5, "`top_depth` is below the seabed, 1100 m deep"),
+        (11, 5, "`top_depth` must not be below the seabed, which is 1100 m deep"),
     ),
     "fit of a rigid piece": (
         changed("{use: plate}", "{use: plate, length: fit}"),
@@ -167,7 +175,7 @@ ONE_MISTAKE = {
     ),
     "decimal comma in a row": (
         changed("[200, 0.35, 80]", "[200, 0,35, 80]"),
-        (8, 9, "the row has 4 values, 3 are needed; a decimal comma? (write 0.8, not 0,8)"),
+        (8, 9, "the row has 4 values, 3 are needed; is there a decimal comma? Write 0.8, not 0,8"),
     ),
     "column of another unit": (
         changed("speed m/s", "speed kg"),
@@ -222,7 +230,7 @@ ONE_MISTAKE = {
     ),
     "decimal comma in braces": (
         re.sub(r"  current:\n(    .*\n)+", "  current: {speed: 0,8 m/s, toward: 9 deg}\n", GOOD),
-        (4, 22, "`8 m/s` is not a key; a decimal comma? (write 0.8, not 0,8)"),
+        (4, 22, "`8 m/s` is not a key; is there a decimal comma? Write 0.8, not 0,8"),
     ),
     "tab": (changed("  depth:", "\tdepth:"), (3, 1, "a tab; YAML is indented with spaces")),
     "invalid YAML": (

@@ -98,7 +98,7 @@ def test_an_id_defined_twice(shipped: Path, users: Path) -> None:
     with pytest.raises(InputError) as caught:
         Catalogue.load()
     assert str(caught.value) == (
-        f"{users}/b.yaml:2:1: `own` is defined already, in {users}/a.yaml:1"
+        f"{users}/b.yaml:2:1: `own` is already defined, in {users}/a.yaml:1"
     )
 
 

@@ -82,5 +82,5 @@ def test_mistakes_come_all_when_one_is_met(tmp_path: Path) -> None:
 
 
 def test_an_id_given_twice(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"ropes\.yaml:3:1: `ball` is defined already, in .*:4"):
+    with pytest.raises(InputError, match=r"ropes\.yaml:3:1: `ball` is already defined, in .*:4"):
         UnreadLevel(files(tmp_path, BALL, BALL))

@@ -188,11 +188,11 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
         ),
         (
             {"kn": "1 N/(m/s)^2", "kt": "1 N/(m/s)^2", "inclination": "insensitive"},
-            "`kt` is not used with `inclination: insensitive`",
+            "`kt` cannot be used with `inclination: insensitive`",
         ),
         (
             {"made_of": [{"kind": "sphere", "diameter": "1 m"}], "kt": "1 N/(m/s)^2"},
-            "`kt` is not used with `made_of`",
+            "`kt` cannot be used with `made_of`",
         ),
         ({"made_of": [{"kind": "cone"}]}, "`kind: cone` must be one of sphere, cylinder"),
         ({"made_of": [{"kind": ["cone"]}]}, "`kind: …` must be one of sphere, cylinder"),

@@ -153,12 +153,12 @@ REFUSED = {
     "a: !foo b": [(1, 4, "tags (`!foo`) are not allowed")],
     "a: [!!set {b}]": [(1, 5, "tags (`tag:yaml.org,2002:set`) are not allowed")],
     "? [a]\n: b\nc: d": [(1, 3, "a key must be plain text")],
-    "a: 1\nb: 2\na: 3": [(3, 1, "`a` is given twice (first in line 1)")],
-    "{a: 1, 'a': 2}": [(1, 8, "`a` is given twice (first in line 1)")],
+    "a: 1\nb: 2\na: 3": [(3, 1, "`a` is given twice (first on line 1)")],
+    "{a: 1, 'a': 2}": [(1, 8, "`a` is given twice (first on line 1)")],
     "a: {b: {b: 1, b: 2}, b: {c: 1, c: 1}, b: 4}": [
-        (1, 15, "`b` is given twice (first in line 1)"),
-        (1, 22, "`b` is given twice (first in line 1)"),
-        (1, 39, "`b` is given twice (first in line 1)"),
+        (1, 15, "`b` is given twice (first on line 1)"),
+        (1, 22, "`b` is given twice (first on line 1)"),
+        (1, 39, "`b` is given twice (first on line 1)"),
     ],
     "a: b\n---\nc: d": [
         (
@@ -173,14 +173,14 @@ REFUSED = {
         (2, 6, "`use shackle-16` has no colon; did you mean `use: shackle-16`?")
     ],
     "line:\n  - {use:a, b: c}": [
-        (2, 6, "`use:a` has no blank after its colon; did you mean `use: a`?")
+        (2, 6, "`use:a` has no space after its colon; did you mean `use: a`?")
     ],
     "line\n  - {use: a}": [(1, 1, "`line` has no colon; did you mean `line:`?")],
     "a:\n  depth 3 m # low\n  c: d": [
         (2, 3, "`depth 3 m` has no colon; did you mean `depth: 3 m`?")
     ],
     "a:\n  depth:3 m\n  c: d": [
-        (2, 3, "`depth:3 m` has no blank after its colon; did you mean `depth: 3 m`?")
+        (2, 3, "`depth:3 m` has no space after its colon; did you mean `depth: 3 m`?")
     ],
     "a:\n  - use: b\n    label: wire 2: lower": [
         (3, 18, 'a text with a colon must be in quotes: `label: "wire 2: lower"`')
@@ -193,15 +193,15 @@ REFUSED = {
     ],
     "a:\n  - {b: c\n  - {b: c}": [(2, 5, "the `{` that begins here is not closed")],
     "a:\n  - {b: c}}": [(2, 11, "`}` closes nothing")],
-    "a: 1\n  b: 2": [(2, 3, "is indented further than line 1, which has a value already")],
+    "a: 1\n  b: 2": [(2, 3, "is indented further than line 1, which already has a value")],
     "a:\n    b: 1\n  c: 2": [
         (
             *(3, 3),
-            "starts in column 3, but line 2 above in column 5, and line 1, which begins this "
-            "block, in column 1",
+            "starts in column 3, but line 2 starts in column 5, and line 1, which begins this "
+            "block, starts in column 1",
         )
     ],
-    "-{use: a}": [(1, 1, "the dash of a list needs a blank behind it")],
+    "-{use: a}": [(1, 1, "the dash of a list item needs a space after it")],
     "a:\n\t- b\n\t- c": [(2, 1, TAB), (3, 1, TAB)],
     "a: b\tc": [(1, 5, f"{NO_YAML}found character '\\t' that cannot start any token")],
     "a: \x07": [

@@ -211,7 +211,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     unit["uo"].attrs["units"] = "kg"
     assert problem(unit, tmp_path).startswith("`uo`: its unit, `kg`, is a mass; a speed")
     unplaced = problem(profile().drop_vars("depth"), tmp_path)
-    assert unplaced.startswith("its levels have no depth; it holds uo (depth 3) [m s-1] eastward")
+    assert unplaced.startswith("the levels have no depth; it holds uo (depth 3) [m s-1] eastward")
     unclear = profile().rename(depth="z")
     unclear["z"].attrs = {"units": "m"}
     assert problem(unclear, tmp_path).startswith(
@@ -225,7 +225,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     assert problem(twice, tmp_path) == "two levels have the same depth"
     both = profile(u2=("depth", U, EAST))
     assert problem(both, tmp_path).startswith(
-        "several variables are eastward_sea_water_velocity: u2, uo; it holds "
+        "several variables have the standard name eastward_sea_water_velocity: u2, uo; it holds "
     )
 
 
@@ -245,7 +245,7 @@ def test_column_of_a_place(tmp_path: Path) -> None:
     assert table.u == pytest.approx([1.1 * u for u in U])
     assert notices == ["the column nearest to 48.28° N 5.31° W is at 48.3° N 5.3° W, 2.3 km away"]
     assert problem(grid(), tmp_path).startswith(
-        "it has 4 columns of water, 48.2° N 5.3° W to 48.3° N 5.2°"
+        "the file has 4 columns of water, 48.2° N 5.3° W to 48.3° N 5.2°"
     )
 
 
@@ -258,7 +258,7 @@ def test_a_grid_is_read_at_the_position_of_the_mooring(
     place = "position: {latitude: 48.19 deg, longitude: -5.2 deg}\n"
     assert read(place + text).environment.current.u == pytest.approx([1.1 * u for u in U])
     with pytest.raises(
-        InputError, match=r"it has 4 columns of water, .* or the `position` of the mooring"
+        InputError, match=r"the file has 4 columns of water, .* or the `position` of the mooring"
     ):
         read(text)
 

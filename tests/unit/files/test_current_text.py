@@ -55,7 +55,10 @@ def test_headings_give_columns_units_and_the_way() -> None:
             "`u` is relative to magnetic north, `v` is not",
         ),
         ("depth m,speed m/s,toward deg\n0,1,400\n", "`toward: 400` must be at most 360 deg"),
-        ("depth m,speed m/s,toward deg\n-5,1,4\n-9,1,4\n", "the depths are negative; depth is po"),
+        (
+            "depth m,speed m/s,toward deg\n-5,1,4\n-9,1,4\n",
+            "the depths are negative; depths must be po",
+        ),
         ("depth m,speed m/s,toward deg\n5,1,4\n12000,1,4\n", "depth 12000 m is deeper than any se"),
         (
             "depth m,speed m/s,toward deg\n5,99.99,4\n",
@@ -85,7 +88,7 @@ def test_columns_from_magnetic_north_are_turned() -> None:
     [
         ("", "the text has no numbers"),
         ("depth,u,v\n", "the text has no numbers"),
-        ("0,1,2\n3,4\n5,6,7", "line 2 has 2 values, the first 3"),
+        ("0,1,2\n3,4\n5,6,7", "line 2 of the file has 2 values, the first 3"),
     ],
 )
 def test_texts_that_are_no_table(text: str, message: str) -> None:

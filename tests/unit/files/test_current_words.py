@@ -165,13 +165,13 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
         ({"coordinate_system": "instrument XYZ"}, "is in other coordinates, `coordinate_system:"),
         (
             {"standard_name": "baroclinic_eastward_sea_water_velocity"},
-            "`u` is baroclinic_eastward_sea_water_velocity, which is not eastward_sea_water_vel",
+            "`u` has the standard name baroclinic_eastward_sea_water_velocity instead of eastward",
         ),
         (
             {"standard_name": "eastward_sea_water_velocity standard_error"},
-            "`u` is eastward_sea_water_velocity standard_error, which is not",
+            "`u` has the standard name eastward_sea_water_velocity standard_error instead of",
         ),
-        ({"standard_name": "surface_geostrophic_eastward_sea_water_velocity"}, "which is not"),
+        ({"standard_name": "surface_geostrophic_eastward_sea_water_velocity"}, "instead of"),
     ],
 )
 def test_other_frames_and_quantities_are_refused(
@@ -200,8 +200,8 @@ def test_speeds_and_directions_that_cannot_be(tmp_path: Path, name: str, value: 
     dataset = directions(long_name="to direction")
     dataset[name][1] = value
     assert refusal(dataset, tmp_path) == (
-        "its current at 50 m, an infinite or negative speed, or a direction outside -360 to 360°: "
-        "a fill value, or another unit?"
+        "the current at 50 m is not valid: the speed is infinite or negative, or the direction is "
+        "outside -360 to 360°; is it a fill value, or in another unit?"
     )
 
 
@@ -290,7 +290,7 @@ def test_files_that_mhkit_wrote(which: str) -> None:
     assert table.v == pytest.approx([-0.25, -0.2, -0.15, -0.1, -0.05], rel=1e-6)
     assert notices == [
         "the current is not given above 43.5 m and below 59.5 m: the value of the nearest level "
-        "is used there, in 100.0 m of water"
+        "is used there; the water depth is 100.0 m"
     ]
 
 
@@ -365,7 +365,9 @@ def test_fill_values_not_marked_as_such_are_named(tmp_path: Path, fill: float) -
     dataset = currents()
     dataset["u"][1] = fill
     message = refusal(dataset, tmp_path, Terms(300.0, maximum_speed=5.0))
-    assert message.startswith(f"its current at 50 m, {np.hypot(fill, 0.25):.5g} m/s is faster than")
+    assert message.startswith(
+        f"the current at 50 m is not valid: {np.hypot(fill, 0.25):.5g} m/s is faster than"
+    )
     in_air = currents().assign_coords(depth=("depth", [5.0, -3.0, 200.0], DEPTH[2]))
     in_air["u"][1] = fill
     assert read(in_air, tmp_path, Terms(300.0, maximum_speed=5.0))[0].depth == (5.0, 200.0)

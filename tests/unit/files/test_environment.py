@@ -202,7 +202,7 @@ WIND = "wind: {speed: 9 m/s, toward: 0, "
             ],
             (6, 74, "depth 3 m comes after 9 m; depths must increase"),
         ),
-        (["fluid: air"], (4, 10, "`fluid: air` is for tows; a mooring is in water")),
+        (["fluid: air"], (4, 10, "`fluid: air` is only for tows; a mooring must be in water")),
         (
             ["fluid: ari"],
             (4, 10, "`fluid: ari` must be one of water"),
@@ -270,11 +270,11 @@ def test_a_tow_may_be_in_air(towed: Towed) -> None:
     [
         (
             "{fluid: air, density: {temperature: 10 degC, salinity: 35}}",
-            "temperature and salinity are those of the sea, not of air",
+            "temperature and salinity are for sea water; remove them for a tow in air",
         ),
         (
             "{fluid: air, wind: {speed: 5 m/s, toward: 0}}",
-            "a tow in air has no `wind`; its wind is the `current`",
+            "a tow in air must not have a `wind`; set its wind as the `current`",
         ),
         (
             "wind: {speed: 5 m/s, toward: 0, surface_drift: 2 %}",
@@ -347,8 +347,8 @@ def test_density_that_falls_with_depth_is_a_warning(
             (
                 8,
                 13,
-                "0.8 m/s is faster than `maximum_speed`, 0.5 m/s: a fill value, or another unit? "
-                "(if it is true, raise `maximum_speed` of the environment)",
+                "0.8 m/s is faster than `maximum_speed`, 0.5 m/s; is it a fill value, "
+                "or in another unit? If it is correct, raise `maximum_speed` of the environment",
             ),
         ),
         (

@@ -112,7 +112,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
         ),
         (
             with_rope("  - {use: rope-12, length_at: {load: 31 kN, length: 480 m}}\n"),
-            (11, 38, "`load` is above the breaking load of 30000 N"),
+            (11, 38, "`load` must not exceed the breaking load of 30000 N"),
         ),
         (
             with_rope(f"  - {{use: meter, {AT}}}\n"),

@@ -55,8 +55,8 @@ def test_each_item_gets_its_number(tmp_path, item, expected):
     ("item", "complaint"),
     [
         ("use: pair, serial: [1, 2, 3]", "has 3 numbers for a count of 1 of 2 items each"),
-        ("use: set, serial: [1, 2]", "has 2 of the 3 numbers of pair, logger"),
-        ("use: set, serial: 5", "has 1 of the 3 numbers of pair, logger"),
+        ("use: set, serial: [1, 2]", "must have 3 numbers for pair and logger, not 2"),
+        ("use: set, serial: 5", "must have 3 numbers for pair and logger, not 1"),
         ("use: set, serial: [1, 1, 2]", "lists 1 twice"),
     ],
 )

@@ -99,7 +99,7 @@ NAMES = "none, bourget-marichal, vandiver, blevins, skop-griffin"
         ("{factor: }", 22, "`factor` has no value"),
         ("{facter: 1.5}", 22, "unknown key `facter`; did you mean `factor`?"),
         ("{cn: -1}", 26, "`cn: -1` must be at least 0"),
-        ("{cn: 1,85}", 28, "`85` is not a key; a decimal comma? (write 0.8, not 0,8)"),
+        ("{cn: 1,85}", 28, "`85` is not a key; is there a decimal comma? Write 0.8, not 0,8"),
         ("{factor: 1.5, a1: 2}", 35, "unknown key `a1`; allowed: factor"),
         (
             "{model: vandiver}",
@@ -140,7 +140,7 @@ def test_bourget_and_marichal_moored(mistakes: Mistakes, written: str) -> None:
         (
             14,
             21,
-            "`bourget-marichal` is for towed cables; "
-            "a mooring takes one of vandiver, blevins, skop-griffin",
+            "`bourget-marichal` is only for towed cables; "
+            "for a mooring, use one of vandiver, blevins, skop-griffin",
         )
     ]

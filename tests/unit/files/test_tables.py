@@ -120,7 +120,7 @@ def test_places_are_right_after_a_row_of_the_wrong_width() -> None:
     )
     assert problems == [
         "rows.0: the row has 2 values, 3 are needed",
-        "rows.3: the row has 4 values, 3 are needed; a decimal comma? (write 0.8, not 0,8)",
+        "rows.3: the row has 4 values, 3 are needed; is there a decimal comma? Write 0.8, not 0,8",
         "rows.1.1: `speed` -1 m/s is negative; reverse `toward` instead",
         "rows.2.0: depth 10 m comes after 20 m; depths must increase",
     ]

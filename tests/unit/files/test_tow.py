@@ -194,15 +194,15 @@ ONE_MISTAKE = {
     ),
     "depth below the seabed": (
         FIT + "environment: {depth: 70 m}\n",
-        (4, 5, "`body_depth` is below the seabed, 70 m deep"),
+        (4, 5, "`body_depth` must not be below the seabed, which is 70 m deep"),
     ),
     "depth of the ship": (
         FIT.replace("70 m", "0").replace(", height: 4 m", ""),
-        (4, 5, "`body_depth` is not below the tow point, 0 m above the water"),
+        (4, 5, "`body_depth` must be below the tow point, which is 0 m above the water"),
     ),
     "two fits": (
         FIT + "  - {use: rope-16, length: fit, body_depth: 80 m}\n",
-        (6, 5, "only one piece can be cut to fit; line 4 has one already"),
+        (6, 5, "only one piece can be cut to fit; the file already has one, on its line 4"),
     ),
     "clamp beyond its piece": (
         changed("at: 90 m", "at: 101 m"),
@@ -345,7 +345,7 @@ def test_in_air_the_end_may_be_above_the_water(read: Read, mistakes: Mistakes) -
     text = HELICOPTER.replace("length: 30 m", "length: fit, body_depth: -40 m")
     assert read(text).pieces[0].fit_body_depth == -40.0
     assert mistakes(text.replace("-40 m", "-60 m")) == [
-        (4, 5, "`body_depth` is not below the tow point, 60 m above the water")
+        (4, 5, "`body_depth` must be below the tow point, which is 60 m above the water")
     ]
 
 
@@ -379,4 +379,4 @@ def test_in_water_a_mass_is_not_enough(mistakes: Mistakes) -> None:
 
 def test_a_mooring_stands_in_water(mistakes: Mistakes) -> None:
     text = GOOD.replace("  depth:", "  fluid: air\n  depth:")
-    assert mistakes(text) == [(3, 10, "`fluid: air` is for tows; a mooring is in water")]
+    assert mistakes(text) == [(3, 10, "`fluid: air` is only for tows; a mooring must be in water")]

@@ -106,7 +106,7 @@ def out_of_time():
     (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
     (with_ids, "2 instruments one after the other (`sensor_id` gives the instrument"),
-    (out_of_time, "-712224.4 among its times"),
+    (out_of_time, "contains -712224.4"),
     (lambda: instrument(units=""), "unit"),
     (lambda: instrument(units="degC"), "unit"),
     (lambda: instrument("TEMP", "sea_water_temperature"), "has no pressures"),
@@ -221,9 +221,9 @@ def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["x=two.nc"], "holds 2 sensors; `x=` is for one"),
+        (["x=two.nc"], "holds 2 sensors; `x=` needs a file with one"),
         (["a=one.nc", "two.nc"], "two sensors are called `a`"),
-        (["wide.nc"], "is not of times and instruments"),
+        (["wide.nc"], "must have a time and an instrument dimension"),
     ],
 )
 def test_labels_name_one_sensor_each(tmp_path, monkeypatch, given, said):

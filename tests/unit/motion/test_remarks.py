@@ -60,9 +60,12 @@ def test_all_sensors_off_alike_are_named(datum, named):
         ),
         (lambda flow: flow * np.exp(1j * np.radians(15.0)), "rotated 14° (± 4°) anticlockwise"),
         (lambda flow: flow * np.exp(1j * np.radians(8.0)), None),
-        (lambda flow: -flow, "it gives the direction the current comes from"),
+        (lambda flow: -flow, "it gives the direction from which the current comes"),
         (lambda flow: 1j * flow.conj(), "its east and north components are exchanged"),
-        (lambda flow: 0.1 * flow, "its speeds are 0.11 times theirs; its unit is wrong"),
+        (
+            lambda flow: 0.1 * flow,
+            "its speeds are 0.11 times those of the other two; its unit is wrong",
+        ),
     ],
 )
 def test_a_meter_that_the_two_nearest_do_not_agree_with_is_named(change, said):

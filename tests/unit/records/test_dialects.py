@@ -213,7 +213,7 @@ def test_a_point_after_many_decimal_commas_is_not_taken_for_one(tmp_path: Path) 
     path = tmp_path / "a.csv"
     rows = [f"2026-03-{1 + i // 24:02d}T{i % 24:02d}:00;5;0,5;0,25\n" for i in range(300)]
     path.write_text("time;depth[m];u[m/s];v[m/s]\n" + "".join(rows) + "2026-04-01;5;1.234;0\n")
-    with pytest.raises(InputError, match=r":302:14: `1.234` has a decimal point, and the"):
+    with pytest.raises(InputError, match=r":302:14: `1.234` has a decimal point, but earlier"):
         open_record(path, Terms(100.0))
     path.write_text("time;depth[m];u[m/s];v[m/s]\n" + "".join(rows))
     with open_record(path, Terms(100.0)) as record:

@@ -27,7 +27,7 @@ def test_usual_profiles_pass(rows):
 @pytest.mark.parametrize(
     ("rows", "says"),
     [
-        ([*SLOPE[:2], (500, 0.2, 265), SLOPE[3]], "at 500.0 m is opposite to those above"),
+        ([*SLOPE[:2], (500, 0.2, 265), SLOPE[3]], "at 500.0 m is opposite to the currents above"),
         ([(row[0], speed, 90) for row, speed in zip(SLOPE, (0.08, 0.2, 0.4, 0.6), strict=True)],
          "from 0.08 m/s to 0.60 m/s at the seabed"),
         ([(0, 3.5, 90), (1000, 0.5, 90)], "reaches 3.50 m/s in 1000.0 m of water"),

@@ -34,7 +34,7 @@ def test_swell_and_sea_of_ochi_and_hubble():
     assert sea.frequencies(64)[0] < 0.6 * 0.70 * np.exp(-0.184)
     with pytest.raises(UsageError, match="remove the period"):
         sea_states.spectrum_of("ochi-hubble", 4.0, 9.0, 3.3)
-    with pytest.raises(UsageError, match="higher than"):
+    with pytest.raises(UsageError, match="must not exceed"):
         sea_states.spectrum_of("ochi-hubble", 40.0, None, 3.3)
 
 
@@ -54,7 +54,7 @@ def test_a_swell_under_a_sea():
     assert solved[-1] == pytest.approx(min(12.0 * 2.0 * pi / 7.0, 10.0))
     for height, period, message in (
         (2.0, 6.0, "a longer period"),
-        (40.0, 14.0, "no sea is higher"),
+        (40.0, 14.0, "must not exceed"),
     ):
         with pytest.raises(UsageError, match=message):
             sea_states.with_swell(sea, height, period)
@@ -108,14 +108,17 @@ def test_a_measured_spectrum(tmp_path):
             "0.1,2\n0.05,1\n0.2,-1",
             "sea.csv:3:1: frequencies must increase and must not be negative",
         ),
-        ("0.1,2\n0.05,1\n0.2,-1", "sea.csv:4:2: a density must not be negative"),
-        ("0.1,2\n0.2,nan\n0.3,1", "sea.csv:3:1: not numbers"),
+        ("0.1,2\n0.05,1\n0.2,-1", "sea.csv:4:2: a spectral density must not be negative"),
+        ("0.1,2\n0.2,nan\n0.3,1", "sea.csv:3:1: the row must contain numbers"),
         ("0.1,0\n0.2,0\n0.3,0", "densities that are not all zero"),
         ("0.1,0", "needs three frequencies or more"),
         ("1,0\n2,0.01\n3,0", "that can be solved is 2 s; check its units"),
-        ("0.1,0\n0.2,1\n0.3,0\n4,.02\n9,.02", "of its variance is above 1.6 Hz; check its units"),
+        (
+            "0.1,0\n0.2,1\n0.3,0\n4,.02\n9,.02",
+            "of the variance of the spectrum is above 1.6 Hz; check its units",
+        ),
         ("0.1,0\n0.3,9\n0.5,0", "would break"),
-        ("0,9\n0.1,1\n0.2,0", "no sea is higher than 30 m or longer than 30 s"),
+        ("0,9\n0.1,1\n0.2,0", "the wave height must not exceed 30 m, nor the period 30 s"),
     ],
 )
 def test_spectra_that_cannot_be(tmp_path, rows, message):
@@ -129,7 +132,10 @@ def test_spectra_that_cannot_be(tmp_path, rows, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("significant_wave_height[m],peak_period[s],share\n# calm\n2,nan,1\n", ":3:1: not numbers"),
+        (
+            "significant_wave_height[m],peak_period[s],share\n# calm\n2,nan,1\n",
+            ":3:1: the row must contain numbers",
+        ),
         ("significant_wave_height[m],peak_period[s],share\n2,7,.3\n4,9,.1\n", "add up to 0.4"),
         (
             "significant_wave_height[ft],peak_period[s],share\n6,7,1\n",

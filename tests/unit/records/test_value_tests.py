@@ -90,13 +90,15 @@ def test_levels_that_repeat_and_times_that_repeat():
     several = np.repeat(TIMES[: COUNT // 2], 2)
     notes = [*series_doubts(np.random.default_rng(2).random((COUNT, 1, 1)), several)]
     assert notes == [
-        "360 of 720 times repeat the time before: does the file combine several instruments?"
+        "360 of 720 times are equal to the time before: does the file combine several instruments?"
     ]
 
 
 def test_a_few_impossible_values_of_one_size_are_fill_values():
     values = np.where(np.arange(90) % 9 == 0, -999.0, 8.0 + np.arange(90) / 90.0)
-    assert impossible_values("temperature", values)[1].endswith("median -999: a fill value?")
+    assert impossible_values("temperature", values)[1].endswith(
+        "median of -999: is this a fill value?"
+    )
 
 
 def test_levels_without_a_depth_and_a_clock_that_was_not_set():
@@ -127,7 +129,7 @@ def test_a_tenth_without_change(length, told):
     assert len(said) == told
     if told:
         assert "1 of 3 levels keep one value for a tenth" in said[0]
-        assert f"at 120 m, {length} readings from 2026-03-01T10:00" in said[0]
+        assert f"at 120 m is {length} readings, from 2026-03-01T10:00" in said[0]
 
 
 def test_levels_against_the_water():
@@ -192,7 +194,9 @@ def test_series_may_be_short_or_empty():
 def test_values_of_no_sea_water():
     wrong, said, most = impossible_values("temperature", np.array([10.0, 99.0, 11.0, np.nan]))
     assert (wrong.tolist(), most) == ([False, True, False, False], False)
-    assert said.startswith("1 of 3 values are no temperature of sea water, -6 to 40 °C")
+    assert said.startswith(
+        "1 of 3 values are outside the range of temperature in sea water, -6 to 40 °C"
+    )
     assert impossible_values("salinity", np.array([0.0, 35.0]))[1] == ""
     assert impossible_values("salinity", np.array([44.0, 46.0]))[2]
 

@@ -237,7 +237,7 @@ def test_put_component() -> None:
 def test_what_cannot_be_taken_apart_is_refused_and_nothing_is_lost() -> None:
     draft = Draft("line:\n  use: ball\n")
     assert not draft.items and not draft.problems
-    with pytest.raises(EditError, match="line 2: `line` is not a list"):
+    with pytest.raises(EditError, match="line 2 of the file: `line` is not a list"):
         draft.insert(0, {"use": "ball"})
     with pytest.raises(EditError):
         Draft(TEXT).put(0, "label", "\x07")
@@ -313,7 +313,9 @@ def test_a_copy_in_brackets_keeps_its_quotes_and_lines() -> None:
 def test_comments_between_items_in_brackets_are_not_lost() -> None:
     draft = Draft("line: [\n  {use: a},   # one\n  {use: c}\n]\n")
     for change in (lambda: draft.delete([1]), lambda: draft.insert(0, {"use": "x"})):
-        with pytest.raises(EditError, match=r"line 1: .* comments; change it in the text"):
+        with pytest.raises(
+            EditError, match=r"line 1 of the file: .* items or comments; change it in the text"
+        ):
             change()
     assert draft.put(0, "use", "b").text == draft.text.replace("use: a", "use: b")
     assert Draft("line:\n  - use: d\n").paste(1, draft.copy([0])).text.endswith("  - {use: a}\n")

@@ -63,7 +63,7 @@ def test_what_a_new_file_cannot_take_over_is_told(
     file = WorkingFile(path)
     other = path.with_name("other.yaml")
     os.link(path, other)
-    assert "hard links keep the old text" in file.save("name: a\n")
+    assert "hard links to the file keep the old text" in file.save("name: a\n")
     assert other.read_text() != "name: a\n"
 
     really = Path.stat
@@ -76,7 +76,7 @@ def test_what_a_new_file_cannot_take_over_is_told(
 
     monkeypatch.setattr(Path, "stat", foreign)
     monkeypatch.setattr(os, "chown", refuse)
-    assert "owner or group could not be preserved" in file.save("name: b\n")
+    assert "owner or group of the file could not be preserved" in file.save("name: b\n")
 
 
 def refuse(*_: object) -> None:
