@@ -295,7 +295,7 @@ def is_taut(known: Mapping[str, float]) -> bool:
 
 
 def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
-    """Explain why no cable has the given quantities, which do not contradict each other.
+    """Explain why no cable has the given quantities, although they do not contradict each other.
 
     Parameters
     ----------

@@ -129,7 +129,7 @@ class Assessment:
 
     @property
     def file(self) -> MooringFile:
-        """Mooring file in the first environment; for a net, that of the first leg alone."""
+        """Mooring file as resolved for the first environment; for a net, that of its first leg."""
         return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:

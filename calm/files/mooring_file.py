@@ -85,10 +85,10 @@ class MooringFile:
     `notices` are remarks for the user, for instance that a component of the user hides one in the
     shipped catalogue, or that levels of a measured current were discarded. `variants` are the named
     environments before validation. `accepts` are the accepted findings of the design check, and
-    `uncertainty` is the uncertainty of the inputs. `looser` are limits that items of the line set
-    less strictly than the definitions of their components. `document` is the title block,
-    `releases` are the releases with their codes, `deployed` is the deployment, and `units` are the
-    display units.
+    `uncertainty` is the uncertainty of the inputs. `looser` are the limits for which an item of
+    the line has a less strict value than the definition of its component. `document` is the title
+    block, `releases` are the releases with their codes, `deployed` is the deployment, and `units`
+    are the display units.
     """
 
     path: str

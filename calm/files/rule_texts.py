@@ -149,8 +149,8 @@ RULES = {
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
         "a warning if the rope begins above `fishbite_depth` (1000 m)",
-        "Berteaux, Prindle & May, OCEANS '87: fish bite ropes from the surface to 1000 m and "
-        "deeper, far from the shores; the limits of water depth and latitude are CALM's own",
+        "Berteaux, Prindle & May, OCEANS '87: far from the shores, fish attack ropes from the "
+        "surface to 1000 m and deeper; the limits of water depth and latitude are CALM's own",
         "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -225,7 +225,8 @@ RULES = {
         "the scope is only reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
         "change in top depth of the upright line due to the depth and lengths of `deployed`",
-        "a warning above the error of a sounding, 1 m and 2.3 % of the depth",
+        "a warning if the change exceeds the error of a sounding, "
+        "√((1 m)² + (2.3 % of the depth)²)",
         "IHO S-44, order 2: maximum error of a sounding, at the 95 % level",
         _ONCE),
     "figures": RuleText("Component values",

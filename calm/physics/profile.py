@@ -120,8 +120,8 @@ def distance_to_bend(
 
     The next kink is usually at the next level. If the flow almost vanishes before that level,
     within the length of a segment, |V| V has a kink at the depth of minimum flow. A level nearer
-    than the fraction `LEAST_PART` of the length is skipped, unless a segment with this length has
-    to be split at the level.
+    than `LEAST_PART` times the segment length is skipped, unless a segment of the full length has
+    to be split there.
 
     Parameters
     ----------

@@ -191,7 +191,7 @@ def strummed(vibration: Vibration, across: float) -> float:
     """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to `vibration.greatest`.
 
     λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow, and `across` is sin
-    φ. For flow along the cable, the ratio has this largest value.
+    φ. For flow along the cable, the ratio is `vibration.greatest`.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 

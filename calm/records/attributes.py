@@ -99,8 +99,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 def moving_platform(dataset: xr.Dataset) -> str | None:
     """Return a message if a dataset comes from a moving ship, else None.
 
-    A ship is recognised by the attribute `source_program`, or by a median speed of the platform
-    over the ground, from bottom track or position, that no mooring reaches.
+    A ship is recognised by the attribute `source_program`, or by a median speed over
+    the ground that is too high for a mooring. This speed is taken from bottom track or positions.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:

@@ -283,9 +283,9 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
             turned.append(depth[i])
     if turned:
         yield (
-            f"currents at {', '.join(f'{one:g}' for one in turned)} m have other directions than "
-            "those above and below, which agree: is a compass, a sign or the order of the "
-            "components wrong?"
+            f"currents at {', '.join(f'{one:g}' for one in turned)} m differ in "
+            "direction from those above and below, which agree with each other: is a compass, a "
+            "sign or the order of the components wrong?"
         )
 
 

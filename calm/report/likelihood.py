@@ -16,7 +16,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """Yield the table of probabilities, if any were computed, most critical design first."""
+    """Yield the table of the probabilities of each design, if any; the most critical is first."""
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):

@@ -178,7 +178,7 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
 
 
 def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
-    """Select the case with the largest knockdown in each environment, and still water."""
+    """Select still water, and from each environment the case with the largest knockdown."""
     kept: dict[str, LoadCase] = {}
     for one in cases:
         key = one.code if one.code.startswith("0") else one.environment

@@ -330,7 +330,9 @@ def verdict_sentence(assessment: Assessment) -> str:
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
-    beyond = f" Over 100\u00a0% without failure: {', '.join(dict.fromkeys(over))}." if over else ""
+    beyond = (
+        f" Above 100\u00a0%, but not a failure: {', '.join(dict.fromkeys(over))}." if over else ""
+    )
     return f"{_capital(', '.join(filter(None, parts)))}.{beyond}"
 
 

@@ -167,7 +167,7 @@ class NetSearch:
         return trace
 
     def solution(self, x: Floats) -> NetSolution:
-        """Return the equilibrium settled last, after the audit of every leg and every node.
+        """Audit all legs and nodes of the last settled equilibrium, and return the equilibrium.
 
         Raise NoEquilibrium if the solution fails a check.
         """

@@ -44,8 +44,8 @@ def table_rows(
     """Return the rows of the line table, one for each item and clamp.
 
     An item of several pieces shows, in each column, the least favourable value of these pieces. If
-    the view belongs to an earlier text, its values are shown in rows with the same component and
-    label, but not in the rows `added` since then.
+    `view` was computed from an earlier text, a row shows values only if its component and label are
+    the same as in that text. The rows `added` since then show none.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)

@@ -13,7 +13,7 @@ def test_a_folder_that_is_none_is_refused(calm, folder):
     (folder / "site").write_text("a file")
     done = calm("page", "-o", "site")
     assert done.code == 2
-    assert "the output is a folder" in done.err
+    assert "the output must be a folder" in done.err
 
 
 def test_a_runtime_that_is_not_there(calm):

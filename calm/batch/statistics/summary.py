@@ -370,7 +370,7 @@ class Distribution:
         quantile has the rank 1 + (n - 1) p (definition 7 of Hyndman and Fan 1996)
     maximum, time : the maximum, and the time at which it is first reached
     share, value : exceedance curve. A fraction `share` of the profiles reaches or exceeds `value`,
-        which is the quantile 1 - share. The shares are those in `SHARES` that exceed 1/n, and 1/n
+        which is the quantile 1 - share. The shares are 1/n and all values in `SHARES` above 1/n.
     """
 
     count: int

@@ -54,7 +54,7 @@ def test_levels_whose_components_are_exchanged_or_of_the_other_sign():
         one, other = u.copy(), v.copy()
         one[:, 1], other[:, 1] = own_u[:, 1], own_v[:, 1]
         (said,) = doubts(one, other)
-        assert said.startswith("currents at 60 m have other directions than those above and below")
+        assert said.startswith("currents at 60 m differ in direction from those above and below")
         assert doubts(one[:, :2], other[:, :2], depth=DEPTH[:2], water_depth=60.0) == []
 
 
