@@ -205,9 +205,9 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Return the findings with load-case codes added to those on currents and drag coefficients.
+    """Return all findings, with a load-case code for those about currents or drag coefficients.
 
-    Each code is that of the unchanged mooring in the environment of the finding.
+    The code is that of the mooring as designed in the environment of the finding.
     """
     numbers = _numbers(in_environments)
     return [

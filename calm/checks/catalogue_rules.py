@@ -153,7 +153,7 @@ def _sources(component: Component | Outline) -> Iterator[str]:
     if found := [name for name in searched if name in given]:
         yield f"lists {_listed(found)} under `searched`, but also has a value"
     if strange := [name for name in searched if name not in known]:
-        yield f"lists {_listed(strange)} under `searched`, which a {component.kind} does not have"
+        yield f"lists {_listed(strange)} under `searched`, but a {component.kind} has no such key"
 
 
 def impossible(component: Component) -> Iterator[str]:

@@ -407,7 +407,7 @@ def with_one_weight(
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
-    """Return for each anchor that is too light the finding with the largest required weight.
+    """For each anchor that is too light, return the finding that requires the largest weight.
 
     The keys of the result are the places of the anchors.
     """

@@ -27,7 +27,7 @@ class Drawing(NamedTuple):
     ----------
     alone : whether the report is about one mooring and has all its pages; otherwise it has a
         summary and one page for each mooring
-    full : whether all pages of each of several moorings are also written as a separate PDF
+    full : with several moorings, whether a PDF with all pages is also written for each mooring
     page_size : page size
     """
 

@@ -106,7 +106,7 @@ def numbers(low: float, high: float, most: int) -> list[Tick]:
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return about `most` ticks or fewer at whole numbers from `first` to `last`.
+    """Return ticks at whole numbers from `first` to `last`, about `most` at the most.
 
     The steps between the ticks are equal, round numbers.
     """
@@ -454,7 +454,7 @@ class Axes:
             pen.draw("g", transform=turned).letters(0.0, 0.0, text, size=size, anchor="middle")
 
     def scale_above(self, ticks: Sequence[Tick], label: str) -> None:
-        """Draw a second scale above the frame; the ticks are at values of the horizontal axis."""
+        """Draw a second scale above the frame, with ticks at values of the horizontal axis."""
         pen, size = self.graph.pen, self.graph.size
         for tick in ticks:
             x = float(self.x(tick.value))

@@ -197,7 +197,7 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def no_drag(name: str, value: float) -> bool:
-    """True if a drag factor is too far from 1 to describe drag, and must absorb another error."""
+    """True if a drag factor is so far from 1 that it probably compensates for another error."""
     far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name]
     return name.endswith("drag") and far
 

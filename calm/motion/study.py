@@ -53,8 +53,8 @@ class HeldOut:
     bias : mean of estimated minus measured depth [m]
     rms : root mean square of estimated minus measured depth, after subtraction of its mean over the
         calm times [m]
-    linear_rms, pchip_rms : `rms` of depths that are interpolated between the sensors in use by
-        `linear` and `pchip` of `calm.motion.remarks`, instead of estimated [m]
+    linear_rms, pchip_rms : as `rms`, but for depths interpolated between the sensors in use, with
+        the functions `linear` and `pchip` of `calm.motion.remarks` [m]
     coverage : share of the differences within the 95 % interval of the estimate
     """
 

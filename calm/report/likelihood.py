@@ -10,8 +10,9 @@ from calm.report.blocks import number, words
 from calm.report.open_items import limit_text
 
 _NOTE = (
-    "Each rule is shown for the component that exceeds its limit most often. Launch, rise and "
-    "breaks are counted in the first 64 samples. A sample without equilibrium exceeds every limit."
+    "Each rule is shown for the component that exceeds its limit most often. The rules about "
+    "launch, ascent and breaks use the first 64 samples only. A sample without equilibrium exceeds "
+    "every limit."
 )
 
 

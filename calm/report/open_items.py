@@ -228,9 +228,8 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
         passes = "passes" if len(labels) == 1 else "pass"
-        return (
-            f"{_capital(short(named_components(_once(group)), 90))}: {passes} on an estimated value"
-        )
+        named = _capital(short(named_components(_once(group)), 90))
+        return f"{named}: {passes} with an estimated value"
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"

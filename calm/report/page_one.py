@@ -296,7 +296,9 @@ def governing_table(signed: SignedMooring) -> Table:
     )
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
-    note = "✓ passes  ≈ passes on an estimated value  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
+    note = (
+        "✓ passes  ≈ passes with an estimated value  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
+    )
     note += "Cases: L launch, R rise, B break."
     if rest:
         most = percent_text(rest[0].utilisation)

@@ -354,7 +354,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
 
 
 def reach_of(limits: Limits, step: float) -> float:
-    """Return the largest allowed length of a segment at a given angle step [m]."""
+    """Return the largest allowed length [m] of a segment for a given angle step."""
     reach = ROUGH_REACH if limits.near > 0.0 else REACH
     return reach * degrees(step) * limits.span
 

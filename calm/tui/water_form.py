@@ -153,7 +153,7 @@ class WaterForm:
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return the initial value of a property in another form, from known or typical values.
+        """Return the first value of a property in a new form, from known or typical values.
 
         None means that the key can be omitted.
         """

@@ -117,10 +117,10 @@ class Waves:
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity (f, n, 3) of the water at positions (n, 3) [m] in waves [1/s].
+        """Return the velocity of the water per metre of wave elevation [1/s].
 
-        The velocity is per metre of wave elevation. The elevation is the real part of e^(i(ωt -
-        ks)), where s is the distance in the direction of travel.
+        The result (f, n, 3) is for f frequencies and n positions (n, 3) [m]. The elevation is the
+        real part of e^(i(ωt - ks)), where s is the distance in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]

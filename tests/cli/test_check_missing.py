@@ -152,7 +152,7 @@ def test_a_missing_value_is_not_also_optional(calm, folder):
     assert "#   rcm11:  # meter\n#     mass:" in block
     shown = calm("check", "m.yaml").out
     assert "? rcm11: working load estimate too low" in shown
-    assert "Meter: passes on an estimated value" not in shown
+    assert "Meter: passes with an estimated value" not in shown
 
 
 @pytest.mark.parametrize(

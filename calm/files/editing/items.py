@@ -180,7 +180,8 @@ class Items:
     column : column of the dashes, or of the keys of a mapping, counted from 1
     texts : text of each item: its lines including comments, or for a collection in brackets the
         text between two commas
-    gaps : text before each item that belongs to no item, such as a less indented comment
+    gaps : for each item, the text before it that is part of no item, such as a less indented
+        comment
     rest : text after the last item
     separator : text between two items in brackets
     on_a_dash : whether the first entry of the mapping is on the line of a dash or of a `?`

@@ -133,7 +133,7 @@ FLAWS = (
         "strength",
         "wire",
         "fail",
-        "its breaking load of 15.00 kN over 3 allows 5.00 kN",
+        "its breaking load of 15.00 kN divided by 3 allows 5.00 kN",
     ),
     Flaw(
         "a rope that needs 5, not 3",
@@ -142,7 +142,7 @@ FLAWS = (
         "strength",
         "Kevlar 1",
         "fail",
-        "over 5 allows 6.00 kN",
+        "divided by 5 allows 6.00 kN",
     ),
     Flaw(
         "no load known",
@@ -546,7 +546,7 @@ FLAWS = (
         "release-present",
         "releases pair",
         "warn",
-        "releases pair is 0.1 m above the anchor; 1 m keeps a release clear of mud",
+        "releases pair is 0.1 m above the anchor; at least 1 m keeps a release clear of mud",
     ),
     Flaw(
         "a release above every float",

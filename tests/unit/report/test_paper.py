@@ -229,7 +229,7 @@ def test_items_are_causes_and_not_findings(tmp_path):
     places = [order.index(item.state) for item in items if item.state in order]
     assert places == sorted(places)
     heads = [item.head for item in items]
-    assert "Meter 500 m, meter 900 m, meter 1500 m: pass on an estimated value." in heads
+    assert "Meter 500 m, meter 900 m, meter 1500 m: pass with an estimated value." in heads
     assert len(items) < len([one for one in assessment.every_finding()
                              if one.state is not State.PASS])  # fmt: skip
 
