@@ -168,7 +168,7 @@ def solve_profiles(
 
     Parameters
     ----------
-    u, v, w : (..., k) components of the current to the east, to the north and upward [m/s]; w is 0
+    u, v, w : (..., k) current to the east, to the north and upward [m/s]; w is 0
         by default. Levels with NaN and levels above the surface are ignored. The current is linear
         between levels, and constant above the first and below the last. Instead of the arrays, `u`
         may be a record of currents that `calm batch` can read: a path, an `xarray.Dataset`, or a

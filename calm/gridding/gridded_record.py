@@ -51,7 +51,7 @@ class GriddedRecord:
     Attributes
     ----------
     fields : samples and fitted field, by the name of the quantity
-    names : name of the variable in the dataset, by the name of the quantity
+    names : variable in the dataset for each quantity
     levels : (k,) depths of the levels [m]
     cards : summary of each file that was read
     notes : sentences that point out oddities in the input
