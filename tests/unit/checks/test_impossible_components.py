@@ -69,7 +69,7 @@ def test_good_components_pass(good):
         (GOOD_SPHERE, {"source": None}, "source"),
         (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source for `mass`"),
         (GOOD_SPHERE, {"searched": ["buoyancy"]}, "lists `buoyancy` under `searched`"),
-        (GOOD_SPHERE, {"searched": ["stiffness"]}, "a sphere does not have"),
+        (GOOD_SPHERE, {"searched": ["stiffness"]}, "but a sphere has no such key"),
         (GOOD_SPHERE, {"depth_rating": "11500 m"}, "the deepest sea is"),
         (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "above its `max_tilt`"),
         (
