@@ -229,14 +229,33 @@ def without_spikes(
     others = np.isfinite(off).sum(axis=1, keepdims=True) - np.isfinite(off)
     calm = (off < ALIKE).sum(axis=1, keepdims=True) - (off < ALIKE)
     wrong = (off > SPIKE) & (others > 0) & (calm == others)
-    notes = [
-        f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are far from those before and "
-        f"after, unlike those of other sensors, and were excluded; the first is "
-        f"{measured.depth[at, j]:.1f} m, at {np.datetime_as_string(measured.time[at], 's')}"
+    kept, excluded = exclude_readings(measured, wrong)
+    return kept, [
+        f"{label}: {count} of its readings are far from those before and after, unlike those of "
+        f"other sensors, and were excluded; the first is {depth:.1f} m, at {time}"
+        for label, count, depth, time in excluded
+    ]
+
+
+def exclude_readings(
+    measured: MooringMeasurements, wrong: NDArray[np.bool_]
+) -> tuple[MooringMeasurements, list[tuple[str, int, float, str]]]:
+    """Remove the readings that `wrong` (t, s) marks.
+
+    Also return, for each sensor with removed readings: its label, the number of these readings, and
+    the depth [m] and time of the first.
+    """
+    excluded = [
+        (
+            measured.label[j],
+            int(wrong[:, j].sum()),
+            float(measured.depth[at, j]),
+            str(np.datetime_as_string(measured.time[at], "s")),
+        )
         for j, at in enumerate(wrong.argmax(axis=0).tolist())
         if wrong[at, j]
     ]
-    return replace(measured, depth=np.where(wrong, np.nan, measured.depth)), notes
+    return replace(measured, depth=np.where(wrong, np.nan, measured.depth)), excluded
 
 
 def joined(

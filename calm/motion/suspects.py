@@ -20,7 +20,7 @@ from calm.motion.common_unknowns import FACTORS, NOISE, NORMAL
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.line_response import STEP, Forward
-from calm.motion.measurements import MooringMeasurements
+from calm.motion.measurements import MooringMeasurements, exclude_readings
 from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
@@ -196,14 +196,12 @@ def torn(
         wrong[:, i] |= apart & (away[:, i] > away[:, j])
         wrong[:, j] |= apart & (away[:, i] <= away[:, j])
     wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
-    notes = [
-        f"{measured.label[j]}: readings that differ in depth from another sensor by more than the "
-        f"length of line between them were excluded: {wrong[:, j].sum()}, the first "
-        f"{depth[at, j]:.1f} m at {np.datetime_as_string(measured.time[at], 's')}"
-        for j, at in enumerate(wrong.argmax(axis=0).tolist())
-        if wrong[at, j]
+    kept, excluded = exclude_readings(measured, wrong)
+    return kept, [
+        f"{label}: readings that differ in depth from another sensor by more than the length of "
+        f"line between them were excluded: {count}, the first {first:.1f} m at {time}"
+        for label, count, first, time in excluded
     ]
-    return replace(measured, depth=np.where(wrong, np.nan, depth)), notes
 
 
 EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
