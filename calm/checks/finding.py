@@ -16,6 +16,7 @@ from calm.files.rule_texts import RULES as RULE_TEXTS
 
 _Item = TypeVar("_Item")
 _Key = TypeVar("_Key", bound=Hashable)
+_Made = TypeVar("_Made")
 
 AS_GIVEN = "as given"
 """Name of the situation in which nothing is changed."""
@@ -148,6 +149,17 @@ class MissingFigure:
         }
 
 
+def _with_fields(kind: type[_Made], values: dict[str, Any]) -> _Made:
+    """Create an instance of a frozen dataclass directly from the values of its fields.
+
+    The constructor and `dataclasses.replace` are too slow for the tens of thousands of verdicts in
+    a check.
+    """
+    made = object.__new__(kind)
+    vars(made).update(values)
+    return made
+
+
 @dataclass(frozen=True)
 class Verdict:
     """Verdict of a rule on a mooring, or on one of its components.
@@ -180,16 +192,10 @@ class Verdict:
     case: str | None = None
 
     def but(self, **changed: Any) -> Self:
-        """Return a copy of the verdict with changed fields.
-
-        The fields are copied directly, because `dataclasses.replace` is too slow for the tens of
-        thousands of verdicts in a check.
-        """
+        """Return a copy of the verdict with changed fields."""
         values = vars(self) | changed
         values.pop("utilisation", None)  # a cached property of findings
-        copy = object.__new__(type(self))
-        vars(copy).update(values)
-        return copy
+        return _with_fields(type(self), values)
 
     @property
     def margin(self) -> float | None:
@@ -333,17 +339,15 @@ class Rule:
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
     ) -> Finding:
         """Convert a verdict of this rule to a finding."""
-        found = object.__new__(Finding)  # as in `Verdict.but`
-        vars(found).update(_NOT_ACCEPTED, **vars(verdict))
-        vars(found).update(
-            source=verdict.source or self.source,
-            case=verdict.case or self.case,
-            mooring=mooring,
-            environment=environment,
-            rule=self.name,
-            situation=situation,
-        )
-        return found
+        of_rule = {
+            "source": verdict.source or self.source,
+            "case": verdict.case or self.case,
+            "mooring": mooring,
+            "environment": environment,
+            "rule": self.name,
+            "situation": situation,
+        }
+        return _with_fields(Finding, _NOT_ACCEPTED | vars(verdict) | of_rule)
 
 
 def rule(
