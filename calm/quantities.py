@@ -131,11 +131,11 @@ _TABLE = (
     Quantity("x", "east", "m", "Distance east of the anchor or the tow point.", 1, "x"),
     Quantity("y", "north", "m", "Distance north of the anchor or the tow point.", 1, "y"),
     Quantity("length", "length", "m",
-             "Length along the line; in results, as stretched by its load.", 2, "L"),
-    Quantity("cut_length", "cut length", "m", "Length before any load.", 2),
+             "Length along the line; results give the stretched length.", 2, "L"),
+    Quantity("cut_length", "cut length", "m", "Length without load.", 2),
     Quantity("tension", "tension", "N", "Tension in the line.", 0, "T"),
     Quantity("load", "load", "N", "Force on a part in the design check.", 2, "", "kN"),
-    Quantity("tilt", "tilt", "deg", "Angle of the axis from the vertical, 0 upright.", 1, "", "°"),
+    Quantity("tilt", "tilt", "deg", "Angle between the axis and the vertical.", 1, "", "°"),
     Quantity("knockdown", "knockdown", "m", "Increase of depth relative to still water."),
     Quantity("safety_factor", "safety factor", "", "Breaking load divided by the maximum tension."),
     Quantity("utilisation", "utilisation", "", "Maximum tension divided by the working load.", 2),
@@ -158,7 +158,7 @@ _TABLE = (
     Quantity("body_tension", "tension at the body", "N", "Tension at the towed body.", 0),
     Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", 2),
     Quantity("required_weight", "required weight", "N", (
-        "Weight in water required of the anchor."
+        "Required weight of the anchor in water."
     ), 0),
     Quantity("scope", "scope", "", "Cut length of the line divided by the water depth.", 3),
     Quantity("grounded_length", "grounded length", "m", "Cut length that lies on the seabed."),
@@ -171,15 +171,15 @@ _TABLE = (
     Quantity("weight", "weight in water", "N",
              "Net force in sea water of 1025 kg/m³, downward.", 2),
     Quantity("net_buoyancy", "net force in water", "N",
-             "Upward net force in sea water of 1025 kg/m³, from weight or mass and volume.", 0),
+             "Net force in sea water of 1025 kg/m³, positive up.", 0),
     Quantity("dry_mass", "mass in air", "kg", "Mass of a piece in air."),
     Quantity("wet_weight", "weight in water", "N", "Net force of a piece, downward.", 0),
-    Quantity("lift_mass", "mass of the lift", "kg", "Mass of a piece with its clamps."),
+    Quantity("lift_mass", "lifted mass", "kg", "Mass of a piece with its clamps."),
     Quantity("force", "force", "N", "Measured force.", 0),
     Quantity("at", "at", "m", "Distance of a clamp from the top of its piece.", 2),
     Quantity("volume", "volume", "m³", "Volume of water displaced.", 1, "", "l"),
     Quantity("density", "density", "kg/m³", "Density of the material.", 0),
-    Quantity("stiffness", "stiffness", "N", "Tension over strain, EA.", 0, "EA", "kN"),
+    Quantity("stiffness", "stiffness", "N", "Tension divided by strain, EA.", 0, "EA", "kN"),
     Quantity("breaking_load", "breaking load", "N", "Load at which the part breaks.", 1, "", "kN"),
     Quantity("working_load", "working load", "N",
              "Load for which the part is designed.", 1, "", "kN"),
@@ -202,7 +202,7 @@ _TABLE = (
     Quantity("cn", "Cn", "", "Drag coefficient across the axis.", 3),
     Quantity("ct", "Ct", "", "Drag coefficient along the axis.", 4),
     Quantity("cd", "Cd", "", "Drag coefficient.", 3),
-    Quantity("wind_cd", "Cd in the wind", "", "Drag coefficient of the part in the air.", 2),
+    Quantity("wind_cd", "Cd in the wind", "", "Drag coefficient of the part in air.", 2),
     Quantity("friction", "friction", "", "Coefficient of friction on the seabed.", 2),
 )  # fmt: skip
 
@@ -351,5 +351,5 @@ def chosen_quantities(text: str | None) -> tuple[str, ...]:
     for name in wanted:
         if name not in QUANTITIES_MEASURED and name not in archived:
             known = (*QUANTITIES_MEASURED, *archived)
-            raise UsageError(unknown(f"--variables: `{name}` is not gridded", name, known))
+            raise UsageError(unknown(f"--variables: `{name}` cannot be gridded", name, known))
     return tuple(dict.fromkeys(archived.get(name, name) for name in wanted))

@@ -23,8 +23,8 @@ def page(
     output
         Folder for the page.
     runtime
-        Folder with a release of Pyodide and with xterm.js and xterm.css, which is copied into the
-        page so that it needs no other server. By default the page loads these files from the
+        Folder with a Pyodide distribution, xterm.js and xterm.css. CALM copies these files into
+        the page, which then needs no other server. By default the page loads them from the
         internet.
 
     Examples

@@ -98,17 +98,20 @@ RULES = {
         "Values given by the manufacturer of the clamp",
         "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "load",
-        "tension of the wire, obstacles on it and the force that the drive needs, at both "
-        "stops and at the largest inclination of the wire",
-        "`minimum_tension` (2224 N) and `drive_force` of the profiler; a warning unless the wire "
-        "has a diameter of 6.35 to 9.53 mm, and for a profile of more than 6.4 h",
+        "tension of the wire, force that the drive needs, and obstacles on the path of the "
+        "profiler; the force and the tension are computed with the profiler at each stop, and at "
+        "the position with the largest inclination of the wire",
+        "`minimum_tension` (2224 N) and `drive_force` of the profiler; a failure if a clamp is on "
+        "its path; a warning if the diameter of the wire is not between 6.35 and 9.53 mm, or if a "
+        "profile takes more than 6.4 h",
         "McLane Moored Profiler, user manual",
         "the profiles of a record are solved with the profiler at its upper stop",
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
         "strength of every piece, compared with the cables above and below it",
-        "a warning if the piece has less than half the strength of these cables, sources give both "
-        "strengths, and the piece carries more than half of its allowable load",
+        "a warning if the allowable load of the piece is less than half that of either cable, and "
+        "the tension is more than half the allowable load of the piece; estimated loads are "
+        "ignored",
         "CALM's own limit: half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -124,7 +127,8 @@ RULES = {
         figures=("depth_rating",)),
     "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
-        "a failure above `minimum_top_depth`; if this is not given, a warning above 10 m",
+        "a failure if the top is shallower than `minimum_top_depth`; without this key, a warning "
+        "if it is shallower than 10 m",
         "CALM's own limit: the top stays clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "difference between the planned depth and the depth in still water, for every piece and "
@@ -133,22 +137,21 @@ RULES = {
         "depth; "
         "a failure above `planned_depth_limit` (10 %) of the planned depth; parts without a "
         "planned depth are not checked",
-        "CALM's own limit: with a large difference, the instrument measures other water than "
-        "planned, or a length or the water depth is wrong",
+        "CALM's own limit: after a large difference, the instrument measures at the wrong depth; "
+        "a length or the water depth in the file may be wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
-        "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under "
-        "which a "
-        "rope with `length_at` is measured",
-        "unknown if, by published stiffnesses, the rope may stretch by more than 2 % of the water "
-        "depth; a warning if the rope is measured under more than its working load, or a "
-        "fifth of its breaking load",
-        "CALM's own limit: soundings have a similar error, and ropes are measured under a small "
-        "load"),
+        "stretch of synthetic ropes without `stiffness` or `elongation`; for a rope with "
+        "`length_at`, the load under which its length is measured",
+        "unknown if the rope could stretch by more than 2 % of the water depth, estimated from "
+        "published stiffnesses; a warning if the load exceeds the working load of the rope (a "
+        "fifth of its breaking load, if the working load is unknown)",
+        "CALM's own limits: the error of a sounding is also about 2 %; manufacturers measure ropes "
+        "under a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
-        "a warning if the rope begins above `fishbite_depth` (1000 m)",
+        "a warning if the rope reaches above `fishbite_depth` (1000 m)",
         "Berteaux, Prindle & May, OCEANS '87: far from the shores, fish attack ropes from the "
         "surface to 1000 m and deeper; the limits of water depth and latitude are CALM's own",
         "ropes are bitten over months, not during one profile", has_ratio=False),
@@ -177,18 +180,18 @@ RULES = {
         "coefficient of 0.6 for a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Minimum tension", "load",
-        "minimum tension of the wires and ropes above the release that are off the seabed, if the "
-        "line is longer than 50 m above its release",
+        "minimum tension of each wire and rope above the release, except on the seabed; not "
+        "checked by default if the line above the release is at most 50 m long",
         "`minimum_tension`: 500 N for wire, 300 N for rope; `slack: allowed` exempts a piece",
-        "Mooring groups keep 50 to 100 kgf above the release; no value is published, so CALM sets "
-        "its own limits"),
+        "CALM's own limits, because no rule is published; mooring groups require 50 to 100 kgf "
+        "above the release"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
         "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
         "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
         "`waves:`",
-        "API RP 2SK: 1.67 on the breaking strength of the intact mooring, with tensions from a "
-        "dynamic analysis",
+        "API RP 2SK: a safety factor of 1.67 for the breaking strength of the intact mooring, with "
+        "tensions from a dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
         "minimum tension of every piece in `waves:`: the most probable minimum in 3 h",
@@ -215,8 +218,7 @@ RULES = {
         "radius of the watch circle, √(L² − h²), with the stretched length L and the water depth h "
         "above the top of the anchor",
         "`maximum_excursion`; not judged if it is not given",
-        "Worst case √(L² - h²), with the water depth h above the anchor, against the design's own "
-        "`maximum_excursion`",
+        "The design's own `maximum_excursion`; √(L² - h²) is the worst case of a taut line",
         "the result does not contain the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "ratio of cut length to water depth",
@@ -224,7 +226,8 @@ RULES = {
         "Reported without a limit",
         "the scope is only reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
-        "change in top depth of the upright line due to the depth and lengths of `deployed`",
+        "change in the top depth of the upright line from the design to the water depth and "
+        "lengths in `deployed`",
         "a warning if the change exceeds the error of a sounding, "
         "√((1 m)² + (2.3 % of the depth)²)",
         "IHO S-44, order 2: maximum error of a sounding, at the 95 % level",
@@ -233,19 +236,19 @@ RULES = {
         "",
         "values of pieces and clamps that are impossible for their size and material: buoyancy, "
         "mass, density, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; only a warning if `warn_tilt` exceeds `max_tilt`, if an instrument floats or a "
-        "`wind_area` is out of proportion; unknown if the line replaces a value by a more "
-        "favourable value without a `source`, or a `material` is unknown or contradicts the `name`",
+        "a failure; only a warning if `warn_tilt` exceeds `max_tilt`, if an instrument, release or "
+        "connector floats, or if the `wind_area` is unusual for the displacement of the float; "
+        "unknown if the line replaces a value by a more favourable value without a `source`, if "
+        "the `material` is unknown, or if it contradicts the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "unknown if there is no such piece, or if it is clamped or has the name of a shackle, "
-        "swivel, "
-        "rope or the like; a failure if no buoyancy is above the release; a warning for a "
-        "single release in "
-        "more than 100 m of water (no name contains double, dual, twin or pair), for less than 1 m "
-        "between release and anchor, and for a float below the release",
+        "unknown if there is no such piece, if the release is clamped, or if its name is that of a "
+        "shackle, swivel, rope or the like; a failure if there is no buoyancy above the release; "
+        "a warning if a single release is used in more than 100 m of water (a name or label with "
+        "a word such as dual, twin or pair counts as two releases), if the release is less than "
+        "1 m above the anchor, or if a float is below the release",
         "CALM's own rule: a line that will be recovered needs a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
@@ -254,8 +257,8 @@ RULES = {
         "CALM's own rule: connectors have weight, drag and a strength",
         _ONCE),
     "joints": RuleText("Joints", "",
-        "whether a piece with `role: connector` joins every two adjacent pieces of different kinds "
-        "(wire, chain, rigid); ropes, which are spliced, and wires with a `termination` are exempt",
+        "whether there is a piece with `role: connector` wherever pieces of different kinds (wire, "
+        "chain, rigid) meet; ropes, which are spliced, and wires with a `termination` are exempt",
         "one warning for all joints of the line; no warning for a line without any hardware",
         "CALM's own rule: a shackle that is not listed is neither bought nor checked",
         _ONCE),
@@ -265,19 +268,21 @@ RULES = {
         "Two parts cannot be in the same place",
         _ONCE),
     "serials-and-dates": RuleText("Serial numbers and dates", "",
-        "labels that several rows share, except connectors; serial numbers that several items of "
-        "one component share; codes of a release that is not in the line, or that two releases "
-        "share; batteries that run out before the deployment or the calibration, calibrations "
-        "after the deployment; a document that is not its latest revision, revisions out of order",
+        "rows with the same label, except connectors and anchors; items of one component with the "
+        "same serial number; release codes without a release in the line; releases with the same "
+        "codes; batteries that run out before the deployment or the calibration; calibrations "
+        "after the deployment; a revision of the document that is not the last one in its "
+        "`history`; repeated revisions and revisions that are not in the order of their dates",
         "a warning",
         "CALM's own rule: the deck sheets and the labels must agree",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float, with no chain or rope between them",
         "a warning, unless there is a swivel between them or at the other end of the wire, or the "
-        "wire is torque-balanced according to `torque_balanced` or, without this key, its name, "
-        "material or note",
-        "CALM's own rule: wire that twists under load kinks when it is unloaded",
+        "wire is torque-balanced; without the key `torque_balanced`, the name, material and note "
+        "of the wire decide",
+        "CALM's own rule: a wire that is not torque-balanced twists under load, and kinks when "
+        "the load is removed",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
         "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a metal "
@@ -287,16 +292,15 @@ RULES = {
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "load",
-        "minimum net buoyancy of the section with the release, over all breaks and float losses "
-        "that are considered (see below)",
+        "net buoyancy of the section with the release, after the worst break of the line or loss "
+        "of a float (see below)",
         "the larger of `backup_margin` (0.1) times the weight lifted, and the drag at "
-        "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
-        "most 50 m above the release; a warning for a surface mooring without floats below its "
-        "buoy",
+        "`minimum_rise_speed`; not judged if a single float lifts the whole line and is at most "
+        "50 m above the release; only a warning if a surface mooring has no floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats; the margin and the 50 m are CALM's own",
         _ONCE),
-    "launch-strength": RuleText("Strength in the launch", "load",
+    "launch-strength": RuleText("Strength during launch", "load",
         "maximum tension of every piece during the anchor drop",
         "the smaller of the working load times `launch_working_factor` (1) and the breaking load "
         "divided by `launch_safety_factor` (2), with the loads used for `strength`",
@@ -315,8 +319,8 @@ RULES = {
         "above 3 m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "parts that overtake the parts ahead during the descent or the ascent, in loops of 2 m or "
-        "more",
+        "parts that overtake the parts ahead of them during the descent or the ascent, and form "
+        "loops of 2 m or more",
         "a warning",
         "CALM's own rule: parts that overtake others may tangle with them",
         _ONCE),

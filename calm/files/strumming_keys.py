@@ -36,7 +36,7 @@ _Name = Literal["none", "bourget-marichal", AmplitudeName]
 class StrummingFactor(Model):
     """A factor on the Cn of every cable."""
 
-    factor: Annotated[float, _RAISED] = described("factor on the Cn of every cable, e.g. 1.5", 1.5)
+    factor: Annotated[float, _RAISED] = described("factor applied to the Cn of every cable", 1.5)
 
 
 class ConstantCn(Model):

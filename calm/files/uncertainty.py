@@ -14,7 +14,9 @@ MOST_DEVIATION = 0.25
 values.
 """
 _SHARE = QuantityField("number", at_least=0.0)
-_TOO_WIDE = "above 25 %, the largest standard deviation; give a pair, the 5 and 95 % points"
+_TOO_WIDE = (
+    "above 25 %, the maximum standard deviation; give the 5 and 95 % points as a pair instead"
+)
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ class SpreadOf:
         try:
             return self._read(self.end, value)
         except QuantityError as error:
-            raise QuantityError(f"has an end, `{value}`, which {error}") from None
+            raise QuantityError(f"contains `{value}`, which {error}") from None
 
     def _read(self, field: QuantityField, value: object) -> float:
         try:

@@ -245,7 +245,9 @@ class Wind(Model):
     """
 
     speed: Annotated[float, _SPEED] = described("wind speed at the height of the float", "12 m/s")
-    toward: Toward = described("direction towards which it blows, clockwise from north", "90 deg")
+    toward: Toward = described(
+        "direction towards which the wind blows, clockwise from north", "90 deg"
+    )
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "drift of the surface water, as a share of the wind speed", "2 %", default=0.0
     )

@@ -53,7 +53,7 @@ class WaveKeys(Model):
         "peakedness of jonswap", 3.3, default=3.3
     )
     toward: Toward = described(
-        "direction towards which they travel, clockwise from north", "90 deg", default=90.0
+        "direction towards which the waves travel, clockwise from north", "90 deg", default=90.0
     )
     swell: SwellKeys | None = optional(
         "swell in the same direction", {"significant_height": "2 m", "peak_period": "14 s"}

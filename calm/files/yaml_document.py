@@ -274,7 +274,7 @@ def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> s
     if value is None and name[:1].isdigit():
         return f"`{shown(name)}` is not a key; is there a decimal comma? Write 0.8, not 0,8"
     if name == "from" and "toward" in keys:
-        return "unknown key `from`; the key is `toward`, the direction in which it flows"
+        return "unknown key `from`; use `toward`, and turn the direction by 180 degrees"
     return unknown_key(name, keys, f" for kind {kind}" if kind else "")
 
 

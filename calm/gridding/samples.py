@@ -69,8 +69,8 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
             continue
         if name not in dataset.variables or spread not in dataset.variables:
             raise UnreadableError(
-                f"has no `{spread}`: depths with their uncertainty are required, from a "
-                "result of calm motion"
+                f"has no `{spread}`; CALM needs a result of `calm motion`, which contains the "
+                "standard deviations of the depths"
             )
         mine = labels_of(dataset, f"{dimension}_label")
         labels += mine

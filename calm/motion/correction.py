@@ -54,8 +54,8 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("component",),
         ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
-    "current_factor": ((), ("1", "estimated factor on the current", {})),
-    "current_doubt": (("level",), ("1", "probability that the current at the level is false", {})),
+    "current_factor": ((), ("1", "estimated current over measured current", {})),
+    "current_doubt": (("level",), ("1", "probability that the current at the level is wrong", {})),
     "residual": (("sensor",), ("m", "measured depth of the sensor minus its estimated depth", {})),
     "plain_depth": (
         ("sensor",),
@@ -135,7 +135,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     made = f"{made.replace(' batch', ' motion')}: {sources}"
     attributes: Attributes = {
         **layout.attributes,
-        "title": f"{name}: motion of its parts",
+        "title": f"{name}: motion of the mooring",
         **ARCHIVED,
         **coverage(measured.time, Forward(mooring, {}).still, place),
         **about(mooring),

@@ -119,12 +119,12 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
 
 def _read(path: Path, seabed: float) -> Instruments:
     if path.is_dir():
-        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
+        raise refused(path, "is not a NetCDF, RODB or .cnv file, nor a text table of RBR")
     with cf_files.opened(path) as dataset:
         if groups := cf_files.groups_of(path):
             raise cf_files.UnreadableError(
-                f"has groups ({', '.join(groups)}), which would be missing from a copy; save the "
-                "variables of its instruments in a separate file"
+                f"has groups ({', '.join(groups)}), which CALM cannot copy; save the variables of "
+                "the instruments in a file without groups"
             )
         clock = next((name for name in _TIMES if name in dataset.variables), None)
         if clock is None or dataset[clock].ndim != 1:
@@ -150,8 +150,8 @@ def _who(
     alone = who_along(dataset, None, seabed, path.name)
     if not alone[0].known:
         raise cf_files.UnreadableError(
-            "has neither labels (`instrument` or `label`) nor serial numbers nor nominal depths of "
-            "instruments"
+            "identifies no instrument: it has no label (`instrument` or `label`), no serial number "
+            "and no nominal depth"
         )
     return None, tuple(alone)
 

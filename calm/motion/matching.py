@@ -164,7 +164,8 @@ def hung_currents(
     named = ", ".join(each for each in label if each)
     return moved, [
         *sentences,
-        f"{one.source}: {named} move with the line, and so do their currents",
+        f"{one.source}: the currents of {named} are used at estimated depths, which move with the "
+        "line, not at nominal depths",
     ]
 
 
@@ -334,8 +335,8 @@ def in_order(
             may_be = " or ".join(f"`{line.label[down[way[1][row]]]}`" for way in (best, second))
         raise UsageError(
             f"{series[rows[row]].named}, with a nominal depth of {one[row]:.0f} m, could be "
-            f"{may_be}: its file has no label or serial number of the line. Set serial numbers in "
-            "the mooring file, or name the part of each file with LABEL=FILE"
+            f"{may_be}: its file gives no label or serial number that is in the mooring file. Set "
+            "serial numbers in the mooring file, or name the part of each file with LABEL=FILE"
         )
     pairs = enumerate(best[1]) if few is one else ((j, i) for i, j in enumerate(best[1]))
     found = {rows[row]: down[at] for row, at in pairs}

@@ -231,8 +231,8 @@ def without_spikes(
     wrong = (off > SPIKE) & (others > 0) & (calm == others)
     kept, excluded = exclude_readings(measured, wrong)
     return kept, [
-        f"{label}: {count} of its readings are far from those before and after, unlike those of "
-        f"other sensors, and were excluded; the first is {depth:.1f} m, at {time}"
+        f"{label}: {count} of its readings were excluded as spikes, because other sensors show no "
+        f"change at these times; the first is {depth:.1f} m, at {time}"
         for label, count, depth, time in excluded
     ]
 
@@ -437,10 +437,10 @@ def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasure
     at, level = (int(index[0]) for index in np.nonzero(false))
     where = one.label[level] or f"{one.depth[at, level]:g} m"
     note = (
-        f"implausible currents were excluded (above `maximum_speed`, {maximum_speed:g} m/s): "
-        f"{false.sum()} of {np.isfinite(one.u).sum()}, the first "
-        f"{np.hypot(one.u[at, level], one.v[at, level]):.5g} m/s at {where}, "
-        f"{np.datetime_as_string(one.time[at], unit='m')}"
+        f"{false.sum()} of {np.isfinite(one.u).sum()} currents were excluded as implausible; the "
+        f"first is {np.hypot(one.u[at, level], one.v[at, level]):.5g} m/s at {where}, "
+        f"{np.datetime_as_string(one.time[at], unit='m')}, and `maximum_speed` is "
+        f"{maximum_speed:g} m/s"
     )
     u, v = (np.where(false, np.nan, each) for each in (one.u, one.v))
     return replace(

@@ -248,7 +248,7 @@ class RecoveredMooring:
                 self.moved = (step,)
         off = [one.sentence() for one in self._faults]
         off += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
-        off += ["all sensors: air pressure, 10.13 dbar"] * absolute
+        off += ["all sensors: their pressures include the air pressure, 10.13 dbar"] * absolute
         if off:
             self.source["corrected"] = "corrected for: " + "; ".join(off)
 

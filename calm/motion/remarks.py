@@ -143,7 +143,7 @@ class Fault:
             f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on; it has probably "
             "moved to another water depth",
             "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
-            + f", or the clocks of the currents are {'early' if self.value > 0.0 else 'late'}"
+            + f", or the clocks of the current meters are {'early' if self.value > 0.0 else 'late'}"
             * (self.label == ALL),
             "gain": (
                 f"its pressures are {self.value:.3f} times the expected ones ({self.low:.3f} to "
@@ -214,9 +214,9 @@ def alone_remarks(common: Common) -> list[str]:
         return []
     return [
         f"{LINE}: it is inconsistent with the pressures; a length, a float or the water depth is "
-        f"wrong (in the best fit, the cables are {100.0 * abs(length - 1.0):.1f} % "
+        f"wrong. In the best fit, the cables are {100.0 * abs(length - 1.0):.1f} % "
         f"{'longer' if length > 1.0 else 'shorter'} than in the file, and the remaining error is "
-        f"{100.0 * common.worst:.0f} % of the knockdown)"
+        f"{100.0 * common.worst:.0f} % of the knockdown"
     ]
 
 

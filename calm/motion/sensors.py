@@ -112,8 +112,8 @@ def _from_arrays(
             )
         # with several instruments, variable attributes describe no single instrument
         note = (
-            f"`{name}` is described as `{words[:80]}` for at least one instrument; its flags "
-            "decide which values are used"
+            f"`{name}` is described as `{words[:80]}` for at least one instrument; the flags of "
+            "its values decide which of them are used"
         )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
@@ -292,7 +292,7 @@ def plausible(
         when = np.datetime_as_string(sensor.time[again][0], "s")
         notes.append(
             f"{sensor.label}: {again.sum()} of its times appear twice, the earliest at {when}; "
-            "only the first reading at each is used"
+            "only the first reading at each time is used"
         )
         sensor = replace(sensor, time=sensor.time[~again], value=sensor.value[~again])
     least = min(0.5 * place, place - MISPLACED)
@@ -317,8 +317,8 @@ def plausible(
     if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.value).sum():
         first = int(wrong.argmax())
         notes.append(
-            f"{sensor.label}: readings that are impossible at its depth of {place:.1f} m were "
-            f"excluded: {wrong.sum()}, the first {sensor.value[first]:.1f} m at "
+            f"{sensor.label}: {wrong.sum()} of its readings are impossible at its depth of "
+            f"{place:.1f} m and were excluded; the first is {sensor.value[first]:.1f} m, at "
             f"{np.datetime_as_string(sensor.time[first], 's')}"
         )
         sensor = replace(sensor, value=np.where(wrong, np.nan, sensor.value))
@@ -365,10 +365,10 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
     if abs(alike - AIR) > NEAR_AIR:
         return []
     return [
-        f"even at their shallowest, all sensors are {alike:.1f} m or more below their depths in "
-        "the mooring file. Their pressures appear to be absolute: `--correct air` subtracts the "
-        "pressure of the air, 10.13 dbar. Without it, the pressures are used as they are, and the "
-        "excess counts as an error of the water depth"
+        f"the minimum depth of each sensor exceeds its depth in the mooring file by {alike:.1f} m "
+        "or more. The pressures appear to be absolute: `--correct air` subtracts the "
+        "pressure of the air, 10.13 dbar. Without this option, the pressures are not corrected, "
+        "and CALM attributes the difference to an error of the water depth"
     ]
 
 

@@ -198,8 +198,9 @@ def torn(
     wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
     kept, excluded = exclude_readings(measured, wrong)
     return kept, [
-        f"{label}: readings that differ in depth from another sensor by more than the length of "
-        f"line between them were excluded: {count}, the first {first:.1f} m at {time}"
+        f"{label}: {count} of its readings were excluded, because their distance in depth from "
+        "another sensor exceeds the length of line between both sensors; the first is "
+        f"{first:.1f} m, at {time}"
         for label, count, first, time in excluded
     ]
 

@@ -152,8 +152,8 @@ def learn_currents(
         if not np.isfinite(at.depth).any():
             names_of = ", ".join(part.label)
             raise UsageError(
-                f"--pressures: the line has no equilibrium that fits {names_of}. Check their "
-                "labels, the lengths of the line and the depth of the water"
+                f"--pressures: no equilibrium of the line fits the pressures of {names_of}. Check "
+                "the labels of the sensors, the lengths of the line and the water depth"
             )
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)

@@ -123,7 +123,7 @@ def _runtime_files(runtime: Path) -> dict[str, Path]:
     missing = [name for name in wanted if name not in there]
     if missing:
         raise UsageError(
-            f"--runtime: {runtime} lacks {', '.join(missing)}; it must contain a release of "
-            "Pyodide, and xterm.js and xterm.css of the npm package @xterm/xterm"
+            f"--runtime: {runtime} lacks {', '.join(missing)}; it must contain a distribution of "
+            "Pyodide, and the files xterm.js and xterm.css of the npm package @xterm/xterm"
         )
     return {name: there[name] for name in wanted}

@@ -458,7 +458,7 @@ class _Body(Instructions):
         """Refuse a part of Python that laws do not use."""
         if part:
             what = part[0] if isinstance(part, list) else part
-            raise TypeError(f"laws have no {ast.unparse(what)} here")
+            raise TypeError(f"`{ast.unparse(what)}` is not allowed here in a law")
 
     def of(self, node: Any) -> Any:
         """Translate an expression."""
@@ -564,7 +564,7 @@ class _Body(Instructions):
         """Return a part of a sequence of one dimension. Its bounds must not be negative."""
         self.refuse(bounds.step)
         if view.kind.dimensions != 1:
-            raise TypeError("only a sequence of one dimension has parts")
+            raise TypeError("only a sequence of one dimension can be sliced")
         first, last = number_of(0), Number(WHOLE, view.shape[0])
         if bounds.upper is not None:
             last = self.lesser(self.bound(bounds.upper), last, "slt")
@@ -578,7 +578,7 @@ class _Body(Instructions):
         """Translate a bound of a part of a sequence."""
         bound: Number = self.as_kind(self.number(node), WHOLE)
         if bound.known is not None and bound.known < 0:
-            raise TypeError("bounds are not negative")
+            raise TypeError("the bounds of a slice must not be negative")
         return bound
 
     def _of_tuple(self, node: Any) -> Made:
@@ -603,7 +603,7 @@ class _Body(Instructions):
             return self.value(TRUTH, f"or i1 {left.text}, {right.text}")
         if isinstance(node.op, ast.FloorDiv) and left.kind == right.kind == WHOLE:
             if right.known is None or right.known < 1 or right.known & (right.known - 1):
-                raise TypeError("a law can only divide with // by a power of two")
+                raise TypeError("in a law, the divisor of // must be a power of two")
             shift = right.known.bit_length() - 1
             return self.value(WHOLE, f"ashr i64 {left.text}, {shift}")
         whole, real, known = ARITHMETIC[type(node.op)]

@@ -189,9 +189,9 @@ def locate(
     latitude, longitude, found = frame.position(place)
     if depth is None and found - survey.transducer < LEVEL * reach:
         raise UsageError(
-            f"{survey.path}: the transponder would be {found:.1f} m deep, level with the "
-            "ship: are these horizontal distances? Slant ranges from the transducer are "
-            "needed, or --depth"
+            f"{survey.path}: by these ranges, the transponder is at a depth of {found:.1f} m, "
+            "level with the ship: are they horizontal distances? Use slant ranges from the "
+            "transducer, or set --depth"
         )
     major, minor, bearing, depth_95 = _intervals(
         model.jacobian(x)[used], rms, freedom, depth is not None, float(model.measured(x).max())
@@ -201,7 +201,7 @@ def locate(
     if rms > scattered:
         doubts.append(f"the ranges scatter by {rms:.0f} m, more than is usual for acoustic ranging")
     if (~used).sum() > MOST_REJECTED * count:
-        doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
+        doubts.append(f"{int((~used).sum())} of {count} ranges are outliers")
     warnings = [
         *inconsistent,
         *range_model.geometry_warnings(
@@ -282,8 +282,8 @@ def _weighed(
         undecided = "two positions fit, {:.0f} and {:.0f} m from the planned position"
     elif square_sums[order[0]] > 4.0 * max(square_sums[order[1]], least):
         undecided = (
-            "two positions remain, {:.0f} and {:.0f} m from the planned position; the nearer "
-            "of them fits worse"
+            "two positions remain, {:.0f} and {:.0f} m from the planned position; the position "
+            "nearer to the plan fits the ranges worse"
         )
     return first, second, undecided.format(*(away[at] for at in order))
 
@@ -417,7 +417,7 @@ def _beside_the_plan(
     sentences = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
     doubts = []
     if abs(deeper) > max(DEEPER, DEEPER_SHARE * plan_depth):
-        doubts.append(f"the depth, {water_depth:.0f} m, is far from the planned {plan_depth:.0f} m")
+        doubts.append(f"the depth is {water_depth:.0f} m; the planned depth is {plan_depth:.0f} m")
     if planned is None:
         return tuple(sentences), tuple(doubts)
     frame = Frame(planned.latitude, planned.longitude)
@@ -441,7 +441,7 @@ def _beside_the_plan(
         )
     doubt = f"the position is {distance / 1000.0:.1f} km from the planned position"
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
-        doubt += ", but close to it if the positions are in degrees and minutes (48 18 for 48.18)"
+        doubt += ", but near the plan if positions such as 48.18 mean 48 degrees 18 minutes"
     sentences.append(
         "the result is far from the planned position; do the ranges belong to this mooring?"
     )

@@ -181,7 +181,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
         unit = DIMENSIONS[_COLUMNS[name]].unit
-        farther = f"{LONGEST[name]:g} {unit}, beyond the range of a transponder"
+        farther = f"{LONGEST[name]:g} {unit}, the maximum for an acoustic transponder"
         raise ValueError(f"is more than {farther}{hint}")
     return value
 
@@ -286,7 +286,7 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
     value = float(text) * factor
     if name == "depth":
         if value < 0.0 or (depths and value <= depths[-1]):
-            return "depths count downwards from 0 and must increase"
+            return "is not valid: depths are positive down from the surface and must increase"
         return ""
     return "" if SLOWEST <= value <= FASTEST else sound_complaint()
 

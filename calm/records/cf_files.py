@@ -112,7 +112,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     if not path.exists():
         raise refused(path, no_such_file(path))
     if not holds_arrays(path):
-        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
+        raise refused(path, "is not a NetCDF, RODB or .cnv file, nor a text table of RBR")
     with reading(path), open_current(path) as dataset, saying_what_it_holds(dataset):
         yield dataset
 

@@ -170,7 +170,7 @@ class TextTable:
                 whole.append(row)
                 continue
             hint = "; is there a decimal comma? Write 48.2, not 48,2" if count > needed else ""
-            problems.append(row.problem(f"the row has {count} values, {needed} are needed{hint}"))
+            problems.append(row.problem(f"the row has {count} values; {needed} are needed{hint}"))
         return whole
 
 

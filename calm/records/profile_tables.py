@@ -74,7 +74,7 @@ def read_columns(
         hint = (
             "; is there a decimal comma? Write 0.8, not 0,8" if len(rows[i]) > len(columns) else ""
         )
-        message = f"the row has {len(rows[i])} values, {len(columns)} are needed{hint}"
+        message = f"the row has {len(rows[i])} values; {len(columns)} are needed{hint}"
         table.refuse(("rows", i), message)
     if len(units) < len(columns):
         return values

@@ -42,7 +42,7 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
     ]  # fmt: skip
     title = f"Tension and capacity, {unit}"
     aside = (
-        "by item; black: moored, grey: launch; tick: capacity, dotted: capacity in the launch; "
+        "by item; black: moored, grey: launch; tick: capacity, dotted: capacity during launch; "
         "▲ beyond the scale; ? unknown"
     )
     yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
@@ -176,7 +176,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         return f"{one.number} {one.row.label}"
 
     launch = (
-        words("Most used in the launch", lambda row: named(row[1])),
+        words("Most used during launch", lambda row: named(row[1])),
         number(f"Launch {unit}", lambda row: _force(row[1].launch_tension)),
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[1].launch)),
         number("Use %", lambda row: _use(row[1].launch)),

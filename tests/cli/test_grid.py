@@ -41,7 +41,7 @@ def depths(folder):
             "longitude": -5.0,
         },
         coords={"time": START + np.arange(HOURS) * np.timedelta64(3600, "s")},
-        attrs={"title": "M1: motion of its parts", "creator_name": "A. Martin",
+        attrs={"title": "M1: motion of the mooring", "creator_name": "A. Martin",
                "history": "calm motion"},
     ).to_netcdf("depths.nc", engine="h5netcdf")  # fmt: skip
     return depth

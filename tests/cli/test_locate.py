@@ -94,7 +94,7 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     done = located("latitude: 48.4 deg, longitude: -5.2 deg", depth=1500)
     assert done.code == 1
     assert "deployed" not in (folder / "m.yaml").read_text()
-    assert "m.yaml was not changed: the depth, 1997 m, is far from the planned 1500 m; " in done.err
+    assert "m.yaml was not changed: the depth is 1997 m; the planned depth is 1500 m; " in done.err
     assert "; the position is 11.1 km from the planned position. Use --accept" in done.err
     assert "the result is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
@@ -233,14 +233,14 @@ def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_m
     (folder / "m.yaml").write_text(position + text)
     done = calm("locate", ranges(), "--update", "m.yaml")
     assert done.code == 1
-    assert "close to it if the positions are in degrees and minutes" in done.err
+    assert "near the plan if positions such as 48.18 mean 48 degrees 18 minutes" in done.err
 
 
 def test_horizontal_distances_are_refused(calm, ranges):
     text = re.sub(r"\d+\.\d$", "1500.0", RANGES, flags=re.M)
     done = calm("locate", ranges(text))
     assert done.code == 2
-    assert "are these horizontal distances?" in done.err
+    assert "are they horizontal distances?" in done.err
 
 
 def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write_mooring, folder):
@@ -301,12 +301,12 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "is beyond 90 degrees; are latitude and longitude exchanged?",
             "position 0, 0 is a fill value",
             "is a fill value; leave the cell blank",
-            "the row has 2 values, 3 are needed",
+            "the row has 2 values; 3 are needed",
             "has minutes or seconds of 60 or more",
             "is no number",
             "must be above 0",
             "km from the other positions",
-            "beyond the range of a transponder",
+            "the maximum for an acoustic transponder",
         ],
         strict=True,
     ):

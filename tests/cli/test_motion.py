@@ -224,9 +224,9 @@ def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given,
     given("air.csv", values=values)
     done = calm(*COMMAND, "--pressures", "air.csv", "-o", "d.nc", "--json", "-")
     assert done.code == 0, done.err
-    said = re.findall(r"(\w+): readings that are impossible .* excluded: (\d+)", done.err)
+    said = re.findall(r"(\w+): (\d+) of its readings are impossible", done.err)
     assert said == [("upper", "5"), ("middle", "6"), ("lower", "5")]
-    assert "Their pressures appear to be absolute: `--correct air` subtracts" in done.err
+    assert "The pressures appear to be absolute: `--correct air` subtracts" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         off = result["clamp_depth"].values - truth[1]
         assert off.mean() == pytest.approx(9.7, abs=0.3) and off.std() < 0.3
@@ -457,8 +457,8 @@ def test_currents_that_cannot_be_are_left_out_and_named(calm, given, folder):
     (folder / "c.csv").write_text("\n".join(rows) + "\n")
     done = calm(*COMMAND, "--pressures", "p.csv", "--gap", "0 h", "-o", "d.nc")
     assert done.code == 0, done.err
-    assert "implausible currents were excluded" in done.err and ": 4 of " in done.err
-    assert "the first 32.768 m/s at 0 m, 2026-03-01T05:00" in done.err
+    assert ": 4 of " in done.err and "currents were excluded as implausible" in done.err
+    assert "the first is 32.768 m/s at 0 m, 2026-03-01T05:00" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert (result["status"].values == 0).all()  # the hours before and after say enough
 
@@ -590,7 +590,7 @@ def test_currents_of_instruments_on_the_line_move_with_it_by_their_serial_number
     xarray.Dataset(values, coordinates).to_netcdf(folder / "c.nc", engine="h5netcdf")
     done = calm("motion", "s.yaml", "--currents", "c.nc", "--pressures", "p.csv", "-o", "d.nc")
     assert done.code == 0, done.err
-    assert "upper, middle, lower move with the line, and so do their currents" in done.err
+    assert "the currents of upper, middle, lower are used at estimated depths" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         assert result["level_label"].values.tolist() == [*NAMES]
 

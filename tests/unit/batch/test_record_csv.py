@@ -86,10 +86,10 @@ def test_mistakes_are_all_told_with_their_place(csv: Path) -> None:
     assert problems(csv, text) == [
         (2, 18, "`v: x` is not a speed (m/s, cm/s, mm/s, knot, km/h, ft/s)"),
         (3, 12, "the depths are negative; depths must be positive down, so remove the signs"),
-        (4, 1, "the row has 2 values, 3 are needed"),
+        (4, 1, "the row has 2 values; 3 are needed"),
         (6, 12, "depth 9 m repeats 9 m; depths must increase"),
         (7, 1, "`noon` is not a time; write 2026-03-01T06:00"),
-        (8, 1, "the row has 4 values, 3 are needed; is there a decimal comma? Write 0.8, not 0,8"),
+        (8, 1, "the row has 4 values; 3 are needed; is there a decimal comma? Write 0.8, not 0,8"),
         (9, 12, "`depth` has no value"),
     ]
 

@@ -171,11 +171,11 @@ ONE_MISTAKE = {
     ),
     "row too short": (
         changed("[200, 0.35, 80]", "[200, 0.35]"),
-        (8, 9, "the row has 2 values, 3 are needed"),
+        (8, 9, "the row has 2 values; 3 are needed"),
     ),
     "decimal comma in a row": (
         changed("[200, 0.35, 80]", "[200, 0,35, 80]"),
-        (8, 9, "the row has 4 values, 3 are needed; is there a decimal comma? Write 0.8, not 0,8"),
+        (8, 9, "the row has 4 values; 3 are needed; is there a decimal comma? Write 0.8, not 0,8"),
     ),
     "column of another unit": (
         changed("speed m/s", "speed kg"),
@@ -407,8 +407,8 @@ ONE_MISTAKE = {
         (
             14,
             24,
-            "`current: 60 %` is above 25 %, the largest standard deviation; give a pair, "
-            "the 5 and 95 % points",
+            "`current: 60 %` is above 25 %, the maximum standard deviation; give the 5 and 95 % "
+            "points as a pair instead",
         ),
     ),
     "deviation with a unit": (
@@ -425,8 +425,8 @@ ONE_MISTAKE = {
         (
             14,
             23,
-            "`length: 5` is a share of 500 %, above 25 %, the largest standard deviation; give a "
-            "pair, the 5 and 95 % points; did you mean `length: 5 %`?",
+            "`length: 5` is a share of 500 %, above 25 %, the maximum standard deviation; give "
+            "the 5 and 95 % points as a pair instead; did you mean `length: 5 %`?",
         ),
     ),
     "deviation below nothing": (
@@ -447,7 +447,7 @@ ONE_MISTAKE = {
     ),
     "pair below nothing": (
         GOOD + "uncertainty: {cable_drag: [-150 %, 10 %]}\n",
-        (14, 27, "`cable_drag: …` has an end, `-150 %`, which must be more than -1"),
+        (14, 27, "`cable_drag: …` contains `-150 %`, which must be more than -1"),
     ),
 }
 

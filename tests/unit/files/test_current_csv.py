@@ -122,7 +122,7 @@ def test_mistakes_have_their_place(csv: Path) -> None:
             "needed; did you mean `u: 1 knot`?",
         ),
         (3, 6, "`v: nan` is not a finite number"),
-        (4, 1, "the row has 2 values, 3 are needed"),
+        (4, 1, "the row has 2 values; 3 are needed"),
         (5, 5, "`v` has no value"),
     ]
 

@@ -119,8 +119,8 @@ def test_places_are_right_after_a_row_of_the_wrong_width() -> None:
         ["30", "1", "0", "0"],
     )
     assert problems == [
-        "rows.0: the row has 2 values, 3 are needed",
-        "rows.3: the row has 4 values, 3 are needed; is there a decimal comma? Write 0.8, not 0,8",
+        "rows.0: the row has 2 values; 3 are needed",
+        "rows.3: the row has 4 values; 3 are needed; is there a decimal comma? Write 0.8, not 0,8",
         "rows.1.1: `speed` -1 m/s is negative; reverse `toward` instead",
         "rows.2.0: depth 10 m comes after 20 m; depths must increase",
     ]

@@ -98,7 +98,7 @@ def test_text_of_an_instrument_becomes_a_dataset(tmp_path):
 
 
 MOORING = {
-    "title": "M 1: motion of its parts", "keywords": "of the motion", "creator_name": "A. Martin",
+    "title": "M 1: motion of the mooring", "keywords": "of the motion", "creator_name": "A. Martin",
     "creator_email": "a.martin@example.org", "license": "CC-BY-4.0",
     "geospatial_lat_min": 48.0, "geospatial_lon_min": -10.0,
 }  # fmt: skip
@@ -174,10 +174,10 @@ def text(path):
     ("file", "said"),
     [
         (lambda path: path, "no such file"),
-        (text, "is not NetCDF, RODB, .cnv or RBR's table"),
+        (text, "is not a NetCDF, RODB or .cnv file, nor a text table of RBR"),
         (without_times, "has no times"),
-        (without_labels, "has neither labels (`instrument` or `label`)"),
-        (grouped, "has groups (extra), which would be missing from a copy"),
+        (without_labels, "identifies no instrument: it has no label"),
+        (grouped, "has groups (extra), which CALM cannot copy"),
         (counted, "`depth` is a dimension of"),
         (lambda path: own(path, there=("depth",)), "already has `depth`"),
         (lambda path: own(path, there=("depth_sd",)), "already has `depth_sd`"),
@@ -272,4 +272,4 @@ def test_a_folder_is_matched_as_a_whole(tmp_path):
 
 @pytest.mark.parametrize("name", ["North", "Strait: north", ""])
 def test_a_name_may_hold_a_colon(name):
-    assert mooring_in(f"{name}: motion of its parts" if name else "record") == (name or "record")
+    assert mooring_in(f"{name}: motion of the mooring" if name else "record") == (name or "record")

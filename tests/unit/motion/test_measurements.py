@@ -121,8 +121,8 @@ def test_a_reading_far_from_its_neighbours_is_left_out_unless_others_move_with_i
     found, said = without_spikes(record(depth))
     assert np.argwhere(np.isnan(found.depth)).tolist() == [[20, 1], [50, 0]]
     assert said == [
-        "b: 1 of its readings are far from those before and after, unlike those of other sensors, "
-        f"and were excluded; the first is {depth[20, 1]:.1f} m, at 2026-03-01T20:00:00"
+        "b: 1 of its readings were excluded as spikes, because other sensors show no change at "
+        f"these times; the first is {depth[20, 1]:.1f} m, at 2026-03-01T20:00:00"
     ]
     assert without_spikes(record(depth), ["b"])[1] == []
     assert without_spikes(record(depth[:, 1:2]))[1] == []  # no other sensor confirms it

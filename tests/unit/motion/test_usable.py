@@ -25,8 +25,8 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
     found, said = plausible(sensor(*good, least - 0.1, least, 330.0, 330.1), place, SEABED)
     assert np.isnan(found.value).tolist() == [False] * 7 + [True, False, False, True]
     assert said == [
-        f"a: readings that are impossible at its depth of {place:.1f} m were excluded: 2, the "
-        f"first {least - 0.1:.1f} m at 2026-03-01T07:00:00"
+        f"a: 2 of its readings are impossible at its depth of {place:.1f} m and were excluded; the "
+        f"first is {least - 0.1:.1f} m, at 2026-03-01T07:00:00"
     ]
     shallow, _ = plausible(
         sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
@@ -54,7 +54,7 @@ def test_of_readings_at_one_time_the_first_counts():
     assert found.value.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
     assert said == [
         "a: 1 of its times appear twice, the earliest at 2026-03-01T01:00:00; only the "
-        "first reading at each is used"
+        "first reading at each time is used"
     ]
 
 

@@ -63,8 +63,9 @@ def test_depths_farther_apart_than_the_line_is_long_are_left_out():
     found, said = torn(measured(depth), np.array([0.0, 100.0, 250.0]))
     assert np.argwhere(np.isnan(found.depth)).tolist() == [[4, 1], [6, 0]]
     assert said[1] == (
-        f"{LABELS[1]}: readings that differ in depth from another sensor by more than the "
-        f"length of line between them were excluded: 1, the first 205.1 m at {HOURS[4]!s:.19}"
+        f"{LABELS[1]}: 1 of its readings were excluded, because their distance in depth from "
+        "another sensor exceeds the length of line between both sensors; the first is 205.1 m, "
+        f"at {HOURS[4]!s:.19}"
     )
     depth[:, 0] = -100.0  # the sensor is wrong, not its readings
     assert torn(measured(depth), np.array([0.0, 100.0, 250.0]))[1] == []

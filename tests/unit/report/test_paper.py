@@ -237,7 +237,7 @@ def test_items_are_causes_and_not_findings(tmp_path):
 def test_the_sentence_names_what_is_beyond_its_limit_without_failing(assessments):
     said = verdict_sentence(assessments("upward-adcp-300m"))
     assert said.startswith("No check fails, one warning (fish bite), one accepted exception")
-    assert "strength in the launch of lower swivel 126\u00a0%" in said
+    assert "strength during launch of lower swivel 126\u00a0%" in said
     assert "fish bite of" not in said  # a rule with two states
 
 
