@@ -91,8 +91,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
         if _OTHER_FRAME.search(frame) and not _TO_THE_EARTH.search(frame):
-            reason = f"is in other coordinates, `{name}: {attributes[name]}`"
-            return f"{reason}, not east and north; rotate it to earth coordinates first"
+            reason = f"has no east and north components (`{name}: {attributes[name]}`)"
+            return f"{reason}; rotate it to earth coordinates first"
     return None
 
 

@@ -362,8 +362,8 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     calendar = str(times.attrs.get("calendar", "standard")).lower()
     if calendar not in _CALENDARS:
         raise UnreadableError(
-            f"the times in `{name}` follow the calendar `{calendar}`, whose days are not those of "
-            f"real dates; {', '.join(_CALENDARS)} can be read"
+            f"the times in `{name}` follow the calendar `{calendar}`, which CALM cannot convert to "
+            f"real dates; the supported calendars are {', '.join(_CALENDARS)}"
         )
     if times.ndim > 1:
         raise UnreadableError(f"the times in `{name}` have {times.ndim} dimensions")
@@ -381,7 +381,7 @@ def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
         for key in _ZONED:
             zone = str(attributes.get(key, "")).strip()
             if zone and zone.upper() not in ZONES_OF_UTC:
-                return [f"`{key}` is `{zone[:80]}`: CALM reads the times as UTC"]
+                return [f"`{key}` is `{zone[:80]}`, but CALM reads the times as UTC"]
     return []
 
 

@@ -15,9 +15,8 @@ DEEPEST = 11_000.0
 """Depth that no sea exceeds [m]."""
 
 IMPOSSIBLE = (
-    "the speed is infinite or negative, or the direction is outside -360 to 360°; is it a fill "
-    "value, or "
-    "in another unit?"
+    "the speed is infinite or negative, or the direction is outside -360 to 360°; is the number a "
+    "fill value, or in another unit?"
 )
 """Message of `too_fast` for an infinite speed."""
 

@@ -267,8 +267,8 @@ def copied_table(text: str) -> CopiedTable:
     for number, row in rows:
         if len(row) != len(first):
             raise NoTableError(
-                f"line {number} of the file has {len(row)} value{'s' * (len(row) != 1)}, the "
-                f"first {len(first)}"
+                f"line {number} of the file has {len(row)} value{'s' * (len(row) != 1)}, but the "
+                f"first line has {len(first)}"
             )
     return CopiedTable(headings, tuple(row for _, row in rows))
 

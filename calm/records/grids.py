@@ -113,7 +113,8 @@ def choose_column(
     wet = _wet(near, velocity, time, horizontal)
     if not wet.any():
         raise cf_files.UnreadableError(
-            f"no column of {distance.size} around {written(wanted)} has a current"
+            f"no water column around {written(wanted)} contains a current (columns searched: "
+            f"{distance.size})"
         )
     chosen = np.unravel_index(np.nanargmin(np.where(wet, distance, np.inf)), distance.shape)
     place = float(lat[chosen]), _signed(float(lon[chosen]))
@@ -313,8 +314,8 @@ class SeabedGrid:
                 raise cf_files.UnreadableError("has no depth at the position of the mooring")
             if grid.depth <= 0.0:
                 raise cf_files.UnreadableError(
-                    f"has land, {-grid.depth:.4g} m high, at the position of the mooring; if that "
-                    "is water, set the attribute `positive` of its variable to `down` or `up`"
+                    f"has land, {-grid.depth:.4g} m high, at the position of the mooring; if there "
+                    "is water, set the attribute `positive` of the variable to `down` or `up`"
                 )
         return grid
 
@@ -382,8 +383,9 @@ def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
         axes = {str(each).lower()[:3]: str(each) for each in dataset.dims}
         lat, lon = axes.get("lat"), axes.get("lon")
         if name is None or lat is None or lon is None:
-            wanted = f"none of {', '.join((*_UP, *_DOWN))} over latitude and longitude"
-            raise cf_files.UnreadableError(f"has {wanted}; it holds {cf_files.holdings(dataset)}")
+            wanted = f"{' or '.join((*_UP, *_DOWN))} with the dimensions latitude and longitude"
+            holds = cf_files.holdings(dataset)
+            raise cf_files.UnreadableError(f"has no variable {wanted}; it holds {holds}")
         turned = longitude + (dataset[lon] - longitude + 180.0) % 360.0 - 180.0
         whole = dataset[name].squeeze(drop=True).assign_coords({lon: turned}).sortby([lat, lon])
         high = np.degrees(grid.reach / SEMI_MAJOR)

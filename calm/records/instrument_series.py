@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
-_SAID = ", ".join(_ENDINGS)
+_SAID = f"{', '.join(_ENDINGS[:-1])} or {_ENDINGS[-1]}"
 
 INTERPOLATED = 8
 """Quality flag of interpolated values, which CALM rejects as measurements."""
@@ -191,7 +191,9 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
         if not path.exists():
             problems.append(Problem(str(path), 0, 0, "no such file"))
         elif not inside:
-            problems.append(Problem(str(path), 0, 0, f"the folder has no files in {_SAID}"))
+            problems.append(
+                Problem(str(path), 0, 0, f"the folder has no file with the ending {_SAID}")
+            )
         else:
             found += [(label, one) for one in inside]
     if problems:
@@ -273,8 +275,7 @@ def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
         if whose.size != dataset.sizes[readings] or whose.max(initial=0.0) >= count:
             raise UnreadableError(
                 f"for each of the {dataset.sizes[readings]} readings, `{name}` must hold the "
-                "number of "
-                f"one of the {count} instruments (the first is 0)"
+                f"number of the instrument, from 0 to {count - 1}"
             )
         return [
             dataset.drop_vars([name]).isel({readings: whose == i, instances: i})
@@ -398,7 +399,7 @@ class _SeriesFile:
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
             raise UnreadableError(
-                f"the dimension `{along}` is neither of instruments nor of profiler bins"
+                f"the dimension `{along}` holds neither instruments nor profiler bins"
             )
         return np.asarray(known_values(levels.variable) * levels.factor)
 

@@ -144,7 +144,7 @@ def _rodb(path: Path) -> xr.Dataset:
         first += 1
     names = header["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
-        raise refused(path, "`Columns` has no YY, MM and DD", line=first)
+        raise refused(path, "`Columns` must contain YY, MM and DD", line=first)
     values = _numbers(path, lines, first, len(names))
     of = dict(zip(names, values.T, strict=True))
     year, month, day = (of[name].astype(np.int64) for name in _DATE[:3])
@@ -265,12 +265,12 @@ def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats
             wrong = f"the row has {len(rows[-1])} numbers; {named}"
         except ValueError:
             rows.append([])
-            wrong = f"is no row of numbers; {named}"
+            wrong = f"is not a row of numbers; {named}"
         if len(rows[-1]) != count:
             problems.append(Problem(str(path), i + 1, 1, wrong))
     widths = {len(row) for row in rows}
     if len(problems) == len(rows) > 1 and len(widths) == 1 and widths != {0}:
-        wrong = f"the header names {count} columns; every row has {widths.pop()} numbers"
+        wrong = f"the header names {count} columns, but every row has {widths.pop()} numbers"
         raise refused(path, wrong, line=there[0] + 1)
     if problems or not rows:
         raise InputError(problems[:20] or [Problem(str(path), first, 1, "has no rows")])

@@ -165,7 +165,10 @@ class _Levels:
         return LevelDepths(levels, factor, 0.0, None, ())
 
     def _above_seabed(self) -> LevelDepths:
-        note = f"`{self.variable.name}` is the height above the seabed, at {self.water_depth:g} m"
+        note = (
+            f"`{self.variable.name}` is the height above the seabed, which is at "
+            f"{self.water_depth:g} m"
+        )
         return LevelDepths(self.variable, -self.factor, self.water_depth, None, (note,))
 
     @property
@@ -186,9 +189,9 @@ class _Levels:
         name, factor = self.variable.name, self.factor if orientation == "down" else -self.factor
         if orientation not in ("up", "down"):
             raise UnreadableError(
-                f"`{name}` is measured from the instrument, and the file does not say whether that "
-                "looks up or down (`positive: up` of the variable, or `orientation: up` of the "
-                "file)"
+                f"`{name}` is measured from the instrument, but the file does not say whether the "
+                "instrument looks up or down; set the attribute `positive: up` of the variable, or "
+                "`orientation: up` of the file (or `down`)"
             )
         instrument, water = self._depths()
         # for Teledyne instruments, the offset is that of the head

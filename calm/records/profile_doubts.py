@@ -52,8 +52,8 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
     least, most = min(directions), max(directions)
     span = f"{least:.3g}" if least == most else f"{least:.3g} to {most:.3g}"
     yield (
-        f"`{name}` is {span} degrees throughout: were radians, or northward velocities, written "
-        "as degrees?"
+        f"`{name}` is {span} degrees throughout: are these values in radians, or are they "
+        "northward velocities?"
     )
 
 
@@ -93,8 +93,8 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
         if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_DIRECTION:
             yield (
                 f"the current at {say('depth', float(depth[i]))} is opposite to the currents "
-                "above and below it, with a speed between theirs; is the direction, or a sign, "
-                "wrong?"
+                "above and below it, although its speed is between their speeds: is the "
+                "direction or a sign wrong?"
             )
 
 

@@ -130,8 +130,8 @@ def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> 
         name = name.lower() if name.lower() in known else name
         if name.lower() in _AMBIGUOUS and "toward" in known:
             message = (
-                f"`{shown(column)}` has an ambiguous sense: call it `toward` if the current "
-                "flows towards this direction, or `from` if it comes from this direction"
+                f"`{shown(column)}` is ambiguous: call the column `toward` if the current flows "
+                "towards this direction, or `from` if the current comes from this direction"
             )
             table.refuse(("columns", j), message)
         elif name not in known:
@@ -314,7 +314,7 @@ def read_currents(
         if components and polar:
             table.refuse(("columns",), "give `u` and `v`, or `speed` and `toward`, not both")
         elif {"toward", "from"} <= polar:
-            message = "give `toward`, where the current flows to, or `from`, not both"
+            message = "give either `toward`, the direction of the flow, or `from`, not both"
             table.refuse(("columns",), message)
         elif len(components) < 2 and (len(polar) < 2 or "speed" not in polar):
             message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
@@ -367,7 +367,7 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
     first = next(j for j, column in enumerate(columns) if column != plain[j])
     if magnetic in ({"u"}, {"v"}):
         one, other = ("u", "v") if "u" in magnetic else ("v", "u")
-        message = f"`{one}` is relative to magnetic north, `{other}` is not"
+        message = f"`{one}` is relative to magnetic north, but `{other}` is not"
         table.refuse(("columns", first), message)
     if terms.declination is None:
         table.refuse(

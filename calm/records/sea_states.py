@@ -37,7 +37,7 @@ Outside it, a Bretschneider spectrum has less than 1e-4 of its variance.
 UNSEEN = 1e-3
 """Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
-PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
+PEAK_BY_MEAN = "Tp is 1.41 times the mean zero-crossing period Tz, or 1.29 Tz for jonswap"
 """Ratios of the peak period to Tz, from the spectral moments: 1.408, and 1.286 for jonswap."""
 
 SHARES = 0.02
@@ -201,15 +201,14 @@ def _impossible(height: float, period: float) -> str | None:
     length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
         return (
-            f"{waves}: the wave height must not exceed {HIGHEST:g} m, nor the period "
+            f"{waves}: the maximum wave height is {HIGHEST:g} m, and the maximum period is "
             f"{LONGEST_PERIOD:g} s"
         )
     if period < SHORTEST_PERIOD:
         return f"{waves}: the shortest peak period that can be solved is {SHORTEST_PERIOD:g} s"
     if height > STEEPEST * length:
         highest = (
-            f"with a wavelength of {length:.1f} m, they can be {STEEPEST * length:.2f} m high "
-            "at most"
+            f"at a wavelength of {length:.1f} m, the maximum height is {STEEPEST * length:.2f} m"
         )
         return f"{waves} would break: {highest}"
     return None
@@ -396,7 +395,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
         problems.append(Problem(str(path), 1, 1, "no sea state has a share above 0"))
     counts = all(share == round(share) for share in shares)
     if not counts and min(abs(whole - 1.0), abs(whole / 100.0 - 1.0)) > SHARES:
-        message = f"the shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"
+        message = f"the shares add up to {whole:.4g}, not 1 or 100; include calm seas as low waves"
         problems.append(Problem(str(path), 1, 1, message))
     if problems:
         raise InputError(problems)

@@ -89,7 +89,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
         poor = known & (found.good < 0.5)
         if poor.any():
             yield (
-                f"{poor.sum()} of {known.sum()} currents have less than half of their pings good"
+                f"for {poor.sum()} of {known.sum()} currents, less than half of the pings are good"
             )
     if found.times is not None:
         order = np.argsort(levels[there], kind="stable")
@@ -161,7 +161,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
     if not gaps:
         return ""
     return (
-        f"the {what} is not given {' and '.join(gaps)}: the value of the nearest level is "
+        f"the {what} has no level {' or '.join(gaps)}, so the value of the nearest level is "
         f"used there; the water depth is {say('depth', water_depth)}"
     )
 
@@ -214,7 +214,7 @@ def _recurring(values: Floats, side: str) -> Iterator[str]:
     beyond = largest > _BEYOND * np.abs(others).max(initial=0.0)
     if beyond and filled.sum() >= _RECURS and np.unique(others).size >= _VARIED:
         yield (
-            f"{filled.sum()} of {values.size} currents to the {side} are "
+            f"{filled.sum()} of {values.size} {side}ward components of the current are "
             f"{values[filled][0]:.5g} m/s, far beyond all others: is this a fill value?"
         )
 
@@ -247,7 +247,7 @@ def _equal_levels(u: Floats, v: Floats) -> Iterator[str]:
     if same.any():
         yield (
             f"{same.sum()} of {u.shape[1]} levels have the same currents at all times as the level "
-            "above: are these means over depth, or was a level repeated?"
+            "above: are they averages over depth, or was a level repeated?"
         )
 
 
@@ -283,9 +283,9 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
             turned.append(depth[i])
     if turned:
         yield (
-            f"currents at {', '.join(f'{one:g}' for one in turned)} m differ in "
-            "direction from those above and below, which agree with each other: is a compass, a "
-            "sign or the order of the components wrong?"
+            f"currents at {', '.join(f'{one:g}' for one in turned)} m differ in direction from "
+            "the currents above and below, which agree with each other: is a compass or a sign "
+            "wrong, or are the components exchanged?"
         )
 
 
@@ -477,8 +477,8 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
             f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "the record keeps"
         )
         yield (
-            f"{which} one value for a tenth of the record, or for most pairs of readings: the "
-            f"longest stretch{names[k]} is {most} readings, from {time_text(times[first])} to "
+            f"{which} one value for a tenth of the record, or from most readings to the next: the "
+            f"longest run{names[k]} has {most} readings, from {time_text(times[first])} to "
             f"{time_text(times[first + most - 1])}"
         )
 

@@ -126,7 +126,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         if len(magnetic) == 1:
             other = north if magnetic == [east] else east
             raise UnreadableError(
-                f"`{magnetic[0]}` is relative to magnetic north, `{other}` is not"
+                f"`{magnetic[0]}` is relative to magnetic north, but `{other}` is not"
             )
         units = {factor_of(dataset[name], "speed"): name for name in (east, north)}
         if len(units) > 1:

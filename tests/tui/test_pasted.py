@@ -34,7 +34,7 @@ def test_each_way_to_separate_values(between, heading):
     [
         ("", "the text has no numbers"),
         ("depth,speed,toward", "the text has no numbers"),
-        ("0,1,2\n1,2", "values, the first"),
+        ("0,1,2\n1,2", "values, but the first"),
         ("n/a 0.9 70\n1 2 3", "row 1: `n/a` "),
         ("0\t1\t2\n\n3\tlost\t4\n5\t6\t7", "row 2: `lost` "),
         ("0;0,9;70\n1;0.9;70", "row 1: `0,9` "),
@@ -62,7 +62,7 @@ def test_headings_are_read_as_those_of_files():
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("depth m,speed m/s,direction deg\n0,1,90\n", "has an ambiguous sense"),
+        ("depth m,speed m/s,direction deg\n0,1,90\n", "is ambiguous"),
         ("level,fast,way\n0,1,90\n", "no column is called `level`"),
         ("depth m,u m/s,v m/s,w m/s\n0,1,1,0.1\n", "the current has an upward speed `w`"),
         ("0,1\n5,2\n", "there is no column"),

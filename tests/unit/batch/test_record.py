@@ -167,7 +167,7 @@ def test_bins_move_with_the_instrument(tmp_path: Path) -> None:
 def test_heights_above_the_seabed(tmp_path: Path) -> None:
     with opened(write("adcp-on-the-seabed", tmp_path)) as record:
         assert record.profiles(0, 2)[0].tolist() == [296.0, 246.0, 196.0, 146.0]
-        assert "`level` is the height above the seabed, at 300 m" in record.notes
+        assert "`level` is the height above the seabed, which is at 300 m" in record.notes
 
 
 def test_directions_say_their_way(tmp_path: Path) -> None:
@@ -183,7 +183,7 @@ def test_directions_say_their_way(tmp_path: Path) -> None:
 def test_notes_tell_the_rules(tmp_path: Path) -> None:
     with opened(write("oceansites", tmp_path)) as record:
         assert record.notes == (
-            "the current is not given above 40.0 m and below 250.0 m: the value of the nearest "
+            "the current has no level above 40.0 m or below 250.0 m, so the value of the nearest "
             "level is used there; the water depth is 300.0 m",
             "the strongest of 20 currents is 0.0092 m/s in the declared unit, cm/s; are they in "
             "m/s or kn?",

@@ -112,12 +112,12 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (
             lambda: glorys().where(glorys()["latitude"] < 0),
-            "no column of 12 around 48.3° N 5.2° W has a current",
+            "no water column around 48.3° N 5.2° W contains a current (columns searched: 12)",
         ),
         (
             lambda: with_attributes(adcp(), "time", calendar="noleap"),
-            "the times in `time` follow the calendar `noleap`, whose days are not those of real "
-            "dates; standard, gregorian, proleptic_gregorian can be read",
+            "the times in `time` follow the calendar `noleap`, which CALM cannot convert "
+            "to real dates; the supported calendars are standard, gregorian, proleptic_gregorian",
         ),
         (
             lambda: adcp().assign_coords(time=adcp()["time"].where(adcp()["time"] > 900.0)),

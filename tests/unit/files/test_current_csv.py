@@ -193,7 +193,7 @@ def test_file_named_by_a_mooring(read: Callable[..., MooringFile], csv: Path) ->
     assert mooring.environment.current.u == (0.5, 0.3)
     assert mooring.notices == (
         "the current is that of 2026-03-01T06:00, nearest to 2026-03-01T07:30",
-        "the current is not given below 50.0 m: the value of the nearest level is used there; "
+        "the current has no level below 50.0 m, so the value of the nearest level is used there; "
         "the water depth is 1100.0 m",
     )
 

@@ -43,16 +43,16 @@ def test_headings_give_columns_units_and_the_way() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("depth m,speed m/s,direction deg\n0,1,90\n", "has an ambiguous sense: call it `toward`"),
+        ("depth m,speed m/s,direction deg\n0,1,90\n", "is ambiguous: call the column `toward`"),
         ("depth m,sped m/s,toward deg\n0,1,90\n", "no column is called `sped`; did you mean `spe"),
-        ("depth m,speed m/s,toward deg,from deg\n0,1,90,270\n", "give `toward`, where the curre"),
+        ("depth m,speed m/s,toward deg,from deg\n0,1,90,270\n", "give either `toward`, the d"),
         (
             "depth m,speed m/s,toward deg magnetic\n0,1,90\n",
             "is relative to magnetic north; set the",
         ),
         (
             "depth m,u m/s magnetic,v m/s\n0,1,1\n",
-            "`u` is relative to magnetic north, `v` is not",
+            "`u` is relative to magnetic north, but `v` is not",
         ),
         ("depth m,speed m/s,toward deg\n0,1,400\n", "`toward: 400` must be at most 360 deg"),
         (
@@ -88,7 +88,7 @@ def test_columns_from_magnetic_north_are_turned() -> None:
     [
         ("", "the text has no numbers"),
         ("depth,u,v\n", "the text has no numbers"),
-        ("0,1,2\n3,4\n5,6,7", "line 2 of the file has 2 values, the first 3"),
+        ("0,1,2\n3,4\n5,6,7", "line 2 of the file has 2 values, but the first line has 3"),
     ],
 )
 def test_texts_that_are_no_table(text: str, message: str) -> None:

@@ -150,7 +150,7 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
     both = currents("UCUR", "VCUR").merge(currents("UCUR_MAG", "VCUR_MAG") * 2)
     assert read(both, tmp_path)[0].u == tuple(U)
     mixed = currents("UCUR", "VCUR_MAG")
-    assert refusal(mixed, tmp_path) == "`VCUR_MAG` is relative to magnetic north, `UCUR` is not"
+    assert refusal(mixed, tmp_path) == "`VCUR_MAG` is relative to magnetic north, but `UCUR` is not"
 
 
 @pytest.mark.parametrize(
@@ -161,8 +161,11 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
             "not a value at one time and depth",
         ),
         ({"cell_methods": "time: maximum"}, "not a value at one time and depth"),
-        ({"coord_sys": "beam"}, "is in other coordinates, `coord_sys: beam`"),
-        ({"coordinate_system": "instrument XYZ"}, "is in other coordinates, `coordinate_system:"),
+        ({"coord_sys": "beam"}, "has no east and north components (`coord_sys: beam`)"),
+        (
+            {"coordinate_system": "instrument XYZ"},
+            "has no east and north components (`coord",
+        ),
         (
             {"standard_name": "baroclinic_eastward_sea_water_velocity"},
             "`u` has the standard name baroclinic_eastward_sea_water_velocity instead of eastward",
@@ -184,13 +187,15 @@ def test_other_frames_and_quantities_are_refused(
 def test_the_coordinates_of_the_file_count(tmp_path: Path, frame: str) -> None:
     message = refusal(currents().assign_attrs(coord_sys=frame), tmp_path)
     assert message == (
-        f"its current is in other coordinates, `coord_sys: {frame}`, not east and north; "
-        "rotate it to earth coordinates first"
+        f"its current has no east and north components (`coord_sys: {frame}`); rotate it to earth "
+        "coordinates first"
     )
     assert read(currents().assign_attrs(coord_sys="earth"), tmp_path)[0].u == tuple(U)
     for name in ("coord_system", "coordinates_frame", "coordinate_transformation", "transform"):
         message = refusal(currents().assign_attrs({name: frame}), tmp_path)
-        assert message.startswith(f"its current is in other coordinates, `{name}: {frame}`")
+        assert message.startswith(
+            f"its current has no east and north components (`{name}: {frame}`)"
+        )
 
 
 @pytest.mark.parametrize(
@@ -201,7 +206,7 @@ def test_speeds_and_directions_that_cannot_be(tmp_path: Path, name: str, value: 
     dataset[name][1] = value
     assert refusal(dataset, tmp_path) == (
         "the current at 50 m is not valid: the speed is infinite or negative, or the direction is "
-        "outside -360 to 360°; is it a fill value, or in another unit?"
+        "outside -360 to 360°; is the number a fill value, or in another unit?"
     )
 
 
@@ -250,7 +255,7 @@ def test_velocities_with_a_dimension_of_directions(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("dataset", "reason"),
     [
-        (mhkit(coord_sys="beam"), "`vel` is in other coordinates, `coord_sys: beam`"),
+        (mhkit(coord_sys="beam"), "`vel` has no east and north components (`coord_sys: beam`)"),
         (
             mhkit(coord_sys="").assign_coords(dir=["X", "Y", "Z1", "Z2"]),
             "`vel` has the directions X, Y, Z1, Z2, not E and N",
@@ -263,7 +268,7 @@ def test_velocities_with_a_dimension_of_directions(tmp_path: Path) -> None:
             mhkit().assign(vel_bt=("dir", np.ones(4))),
             "its current is from a platform that moves over the ground (`vel_bt`: 1 m/s)",
         ),
-        (mhkit(orientation="AHRS"), "does not say whether that looks up or down"),
+        (mhkit(orientation="AHRS"), "does not say whether the instrument looks up"),
         (
             mhkit().drop_vars("depth"),
             "is measured from the instrument, whose depth is not in the file",
@@ -289,7 +294,7 @@ def test_files_that_mhkit_wrote(which: str) -> None:
     assert table.u == pytest.approx([0.52, 0.42, 0.32, 0.22, 0.12], rel=1e-6)
     assert table.v == pytest.approx([-0.25, -0.2, -0.15, -0.1, -0.05], rel=1e-6)
     assert notices == [
-        "the current is not given above 43.5 m and below 59.5 m: the value of the nearest level "
+        "the current has no level above 43.5 m or below 59.5 m, so the value of the nearest level "
         "is used there; the water depth is 100.0 m"
     ]
 
@@ -385,5 +390,5 @@ def test_a_time_zone_is_not_guessed(tmp_path: Path) -> None:
     dataset["time"].attrs["units"] = "hours since 2026-03-01 00:00 UTC"
     assert read(dataset, tmp_path)[0].u == tuple(U)
     dataset["time"].attrs["time_zone"] = "UTC+8"
-    said = "`time_zone` is `UTC+8`: CALM reads the times as UTC"
+    said = "`time_zone` is `UTC+8`, but CALM reads the times as UTC"
     assert said in read(dataset, tmp_path)[1]

@@ -125,7 +125,7 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     with pytest.raises(InputError) as refused:
         read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
     (one,) = refused.value.problems
-    assert (one.line, one.message) == (10, "is no row of numbers; the header names 7 columns")
+    assert (one.line, one.message) == (10, "is not a row of numbers; the header names 7 columns")
     path.write_text(USE.replace("36.3907", "36.3907 1.0"))
     with pytest.raises(
         InputError, match=":10:1: the row has 8 numbers; the header names 7 columns"
@@ -135,7 +135,7 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     with pytest.raises(InputError) as refused:
         reader_of(path)(path)
     (one,) = refused.value.problems  # one, however many rows there are
-    assert one.message == "the header names 9 columns; every row has 7 numbers"
+    assert one.message == "the header names 9 columns, but every row has 7 numbers"
     path.write_text(CNV.format("depSM: Depth [salt water, m]", 1, 2, 3))
     with pytest.raises(InputError, match="has no times"):
         reader_of(path)(path)

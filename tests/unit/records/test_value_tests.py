@@ -54,7 +54,7 @@ def test_levels_whose_components_are_exchanged_or_of_the_other_sign():
         one, other = u.copy(), v.copy()
         one[:, 1], other[:, 1] = own_u[:, 1], own_v[:, 1]
         (said,) = doubts(one, other)
-        assert said.startswith("currents at 60 m differ in direction from those above and below")
+        assert said.startswith("currents at 60 m differ in direction from the currents above and")
         assert doubts(one[:, :2], other[:, :2], depth=DEPTH[:2], water_depth=60.0) == []
 
 
@@ -129,7 +129,7 @@ def test_a_tenth_without_change(length, told):
     assert len(said) == told
     if told:
         assert "1 of 3 levels keep one value for a tenth" in said[0]
-        assert f"at 120 m is {length} readings, from 2026-03-01T10:00" in said[0]
+        assert f"at 120 m has {length} readings, from 2026-03-01T10:00" in said[0]
 
 
 def test_levels_against_the_water():
@@ -143,7 +143,7 @@ def test_levels_against_the_water():
     known[:, 1:] = False
     said = [*level_doubts(DEPTH, known, 130.0)]
     assert said[0] == "1 of 3 levels above the seabed have no value at any time: 60 to 60 m"
-    assert said[1].startswith("the current is not given below 20.0 m")
+    assert said[1].startswith("the current has no level below 20.0 m")
 
 
 @pytest.mark.parametrize(("speeds", "unit", "factor", "likely"), [
@@ -174,7 +174,7 @@ def test_directions_in_another_unit(turn, told):
 def test_shares_of_good_pings_and_times():
     good = np.full((COUNT, 3), 0.9)
     good[:5, 0] = 0.3
-    assert doubts(good=good) == ["5 of 2160 currents have less than half of their pings good"]
+    assert doubts(good=good) == ["for 5 of 2160 currents, less than half of the pings are good"]
     early = TIMES - np.timedelta64(40_000, "D")
     (said,) = doubts(times=early)
     assert said.startswith("720 of 720 times are before 1950 or after ")

@@ -89,19 +89,19 @@ def poor(record: xr.Dataset) -> xr.Dataset:
     (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` were excluded, because they"),
-    (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`: CALM reads the"),
+    (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`, but CALM reads"),
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
     (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
-    (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m is 81 readings, from 202"),
+    (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m has 81 readings, from 202"),
     (lambda one: one.where(one["time"].values[:, None] % 2 > 0, 0.4 - one), "10 of 10 series app"),
     (copied, "100 readings from 2026-03-13T12:00 are the same as those from 2026-03-03T02:00"),
     (lambda one: one.sel(time=(one["time"] < 300) | (one["time"] > 500)), "1 gap in time: the lo"),
     (of_attribute("time", "units", "hours since 1949-12-31T20:00"), "4 of 720 times are before 1"),
     (of_attribute("time", "units", "hours since 2126-03-01"), "720 of 720 times are before 1950"),
-    (poor, "2160 of 7200 currents have less than half of their pings good"),
-    (lambda one: one.where(one["time"].values[:, None] % 9 > 0, -2.0), "800 of 7200 currents to"),
-    (lambda one: one.isel(depth=[0, 1, 2]), "is not given below 24.0 m: the value of the"),
-    (lambda one: one.isel(depth=[5, 9]), "is not given above 90.0 m: the value of the near"),
+    (poor, "for 2160 of 7200 currents, less than half of the pings are good"),
+    (lambda one: one.where(one["time"].values[:, None] % 9 > 0, -2.0), "800 of 7200 eastward comp"),
+    (lambda one: one.isel(depth=[0, 1, 2]), "has no level below 24.0 m, so the value of the"),
+    (lambda one: one.isel(depth=[5, 9]), "has no level above 90.0 m, so the value of the near"),
 ])  # fmt: skip
 def test_values_that_are_said(record, tmp_path, make, expected) -> None:
     dataset = make(record)
@@ -116,8 +116,8 @@ def test_records_that_stand_still_or_are_of_another_unit(record, tmp_path) -> No
     for name in ("u", "v"):
         still[name][:] = record[name].values[:1]
     assert said(still, tmp_path) == [
-        "10 of 10 levels keep one value for a tenth of the record, or for most pairs of readings: "
-        "the longest stretch at 4 m is 720 readings, from 2026-03-01T00:00 to 2026-03-30T23:00"
+        "10 of 10 levels keep one value for a tenth of the record, or from most readings to the "
+        "next: the longest run at 4 m has 720 readings, from 2026-03-01T00:00 to 2026-03-30T23:00"
     ]
     for name in ("u", "v"):
         record[name].values[:] /= 100.0
