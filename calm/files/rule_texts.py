@@ -122,7 +122,7 @@ RULES = {
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
         "depth of every part in the current; for a surface float, only if its rating is specified",
-        "`depth_rating` less `rating_margin` (100 m), or half of a rating below 200 m",
+        "`depth_rating` minus `rating_margin` (100 m, but at most half of the rating)",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
     "top-depth": RuleText("Top depth", "depth",
@@ -186,7 +186,7 @@ RULES = {
         "CALM's own limits, because no rule is published; mooring groups require 50 to 100 kgf "
         "above the release"),
     "wave-strength": RuleText("Strength in waves", "load",
-        "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
+        "most probable maximum tension of every piece in 3 h of `waves:`",
         "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
         "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
         "`waves:`",
@@ -194,7 +194,7 @@ RULES = {
         "tensions from a dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
-        "minimum tension of every piece in `waves:`: the most probable minimum in 3 h",
+        "most probable minimum tension of every piece in 3 h of `waves:`",
         "a tension above 0; `slack: allowed` exempts a piece",
         "A slack line takes snap loads as it tightens, and the linear wave model is not valid then",
         _WAVES),
@@ -235,7 +235,7 @@ RULES = {
     "figures": RuleText("Component values",
         "",
         "values of pieces and clamps that are impossible for their size and material: buoyancy, "
-        "mass, density, stiffness, strength, depth rating, coefficients of drag",
+        "mass, density, stiffness, strength, depth rating, drag coefficients",
         "a failure; only a warning if `warn_tilt` exceeds `max_tilt`, if an instrument, release or "
         "connector floats, or if the `wind_area` is unusual for the displacement of the float; "
         "unknown if the line replaces a value by a more favourable value without a `source`, if "
@@ -263,7 +263,7 @@ RULES = {
         "CALM's own rule: a shackle that is not listed is neither bought nor checked",
         _ONCE),
     "clamp-place": RuleText("Clamp positions", "",
-        "clamps on a cable or chain that overlap, or extend beyond its end",
+        "clamps that overlap each other, or extend beyond the end of their cable or chain",
         "a failure above 5 cm",
         "Two parts cannot be in the same place",
         _ONCE),

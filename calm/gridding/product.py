@@ -181,7 +181,7 @@ def method_sentence(field: GriddedQuantity) -> str:
     time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
     return (
         f"Gaussian process about the mean profile of the record, correlated over "
-        f"{scales.depth:.3g} m along depth{time}; {100.0 * scales.share:.2g} % of the variance is "
+        f"{scales.depth:.3g} m in depth{time}; {100.0 * scales.share:.2g} % of the variance is "
         "not correlated"
     )
 

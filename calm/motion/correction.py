@@ -143,7 +143,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
         "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
         "keywords_vocabulary": GCMD,
         "processing_level": "Data interpolated",
-        "comment": "Depths of a mooring line, estimated from its statics; x and y from the anchor",
+        "comment": "Depths estimated from the statics of the line; x and y count from the anchor",
         "instrument": ", ".join(measured.label),
         "history": "\n".join([made, *read]),
     }

@@ -60,7 +60,7 @@ class PageBuilder(BuildApp):
     def __init__(self, session: Session, kept: KeptWork | None, page: WebPage) -> None:
         super().__init__(session, kept=kept)
         self.workspace.documents_elsewhere = (
-            "The buttons above the line make its report, diagram and bill"
+            "The buttons above the line make its report, diagram and bill of material"
         )
         session.after_save = page.hand_over
         self._page = page

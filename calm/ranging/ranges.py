@@ -339,8 +339,8 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
         note = (
             "has no column headings and was read as range, latitude and longitude below a row "
             f"with the depths and the drop position. The transducer depth of {transducer:g} m in "
-            f"the file is used; its water depth of {depth:g} m and release height of {release:g} m "
-            "above the seabed are ignored unless given as --depth and --above-seabed"
+            f"the file is used. The water depth of {depth:g} m and the release height of "
+            f"{release:g} m above the seabed are ignored; set them with --depth and --above-seabed"
         )
     else:
         return _joined(delimited.read_table(path, EXAMPLE)), None, []

@@ -251,13 +251,13 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
     which = " and ".join(f"`{name}`" for name in counted)
     if current.magnetic and declination is None:
         raise cf_files.UnreadableError(
-            f"{which} are relative to magnetic north; set the `declination` of the site, positive "
-            "to the east (next to `file:`, or with `--declination`)"
+            f"{which} are relative to magnetic north; set the `declination` of the site (positive "
+            "to the east) next to `file:`, or with `--declination`"
         )
     if declination is not None and current.true:
         raise cf_files.UnreadableError(
-            f"{which} are relative to true north by their attributes, so no `declination` is "
-            "applied; remove it"
+            f"{which} are relative to true north according to their attributes; remove "
+            "`declination`"
         )
     if declination is None:
         return ()

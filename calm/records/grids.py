@@ -95,7 +95,7 @@ def choose_column(
         return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
     if wanted is None:
         raise cf_files.UnreadableError(
-            f"the file has {count} columns of water, "
+            f"the file has {count} water columns, "
             f"{_span(latitude.values, longitude.values)}; select "
             "one with `--at LAT,LON` or the `position` of the mooring file"
         )

@@ -360,8 +360,8 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
         if terms.declination is not None:
             table.refuse(
                 ("columns",),
-                "no column is relative to magnetic north, such as `toward[deg magnetic]`, so no "
-                "`declination` is applied; remove it",
+                "`declination` needs a column relative to magnetic north, such as "
+                "`toward[deg magnetic]`; remove `declination`, or correct the heading",
             )
         return plain, 0.0
     first = next(j for j, column in enumerate(columns) if column != plain[j])
@@ -373,7 +373,7 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
         table.refuse(
             ("columns", first),
             f"`{shown(columns[first])}` is relative to magnetic north; set the `declination` of "
-            "the site, positive to the east (next to `file:`, or with `--declination`)",
+            "the site (positive to the east) next to `file:`, or with `--declination`",
         )
     return plain, terms.declination or 0.0
 

@@ -167,7 +167,7 @@ def choose_profiles(
     last = len(times) if stop is None else int(np.searchsorted(times, stop, "right"))
     if first >= last:
         span = f"{time_text(times[0])} to {time_text(times[-1])}"
-        raise UsageError(f"{path} has no profile in this period: it is from {span}")
+        raise UsageError(f"{path} has no profile in this period: the profiles are from {span}")
     if last - first < len(times):
         notes.append(f"{last - first} of the {len(times)} profiles are in the requested period")
     chosen = slice(first, last, every)

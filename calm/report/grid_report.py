@@ -94,7 +94,7 @@ def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple
         f"over depth and time about the mean profile of the record (CALM {__version__}).",
         *(
             f"{name}: {_used(field)} instruments; correlated over {field.scales.depth:.3g} m "
-            f"along depth and {_hours(field)} h in time; {100.0 * field.scales.share:.2g} % "
+            f"in depth and {_hours(field)} h in time; {100.0 * field.scales.share:.2g} % "
             "of the variance taken as uncorrelated."
             for name, field in fields.items()
         ),

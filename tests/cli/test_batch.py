@@ -136,7 +136,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
     turned = ("--declination", "90 deg")
     done = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc", *turned)
     assert done.code == 2
-    assert "so no `declination` is applied" in done.err
+    assert "remove `declination`, or correct" in done.err
     for name, more in (("r", ()), ("magnetic", turned)):
         done = calm("batch", "m.yaml", "--currents", f"{name if more else 'record'}.csv",
                     "-o", f"{name}.nc", *more)  # fmt: skip

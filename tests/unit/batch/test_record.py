@@ -216,7 +216,9 @@ def test_period_and_every(tmp_path: Path) -> None:
             "5 of the 7 profiles are in the requested period",
             "one profile in 2 is used, beginning with the first",
         )
-    with pytest.raises(UsageError, match=r"in this period: it is from 2026-03-01T00:00 to 2026-"):
+    with pytest.raises(
+        UsageError, match=r"in this period: the profiles are from 2026-03-01T00:00 to"
+    ):
         opened(path, time=parse_period("2027/"))
     with pytest.raises(UsageError, match="at least 1"):
         opened(path, every=0)

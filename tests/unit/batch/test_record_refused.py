@@ -139,7 +139,7 @@ def test_reasons(tmp_path: Path, make: Callable[[], xr.Dataset], reason: str) ->
 
 def test_several_columns_and_no_place(tmp_path: Path) -> None:
     assert refusal(glorys(), tmp_path, None).startswith(
-        "the file has 12 columns of water, 48.22° N 5.29° W to 48.38° N 5.04° W; select one "
+        "the file has 12 water columns, 48.22° N 5.29° W to 48.38° N 5.04° W; select one "
         "with `--at LAT,LON` or the `position` of the mooring file; it holds uo (time 7, depth "
         "5, latitude 3, "
     )

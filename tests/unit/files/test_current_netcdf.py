@@ -245,7 +245,7 @@ def test_column_of_a_place(tmp_path: Path) -> None:
     assert table.u == pytest.approx([1.1 * u for u in U])
     assert notices == ["the column nearest to 48.28° N 5.31° W is at 48.3° N 5.3° W, 2.3 km away"]
     assert problem(grid(), tmp_path).startswith(
-        "the file has 4 columns of water, 48.2° N 5.3° W to 48.3° N 5.2°"
+        "the file has 4 water columns, 48.2° N 5.3° W to 48.3° N 5.2°"
     )
 
 
@@ -258,7 +258,7 @@ def test_a_grid_is_read_at_the_position_of_the_mooring(
     place = "position: {latitude: 48.19 deg, longitude: -5.2 deg}\n"
     assert read(place + text).environment.current.u == pytest.approx([1.1 * u for u in U])
     with pytest.raises(
-        InputError, match=r"the file has 4 columns of water, .* or the `position` of the mooring"
+        InputError, match=r"the file has 4 water columns, .* or the `position` of the mooring"
     ):
         read(text)
 

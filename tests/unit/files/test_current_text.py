@@ -80,7 +80,7 @@ def test_columns_from_magnetic_north_are_turned() -> None:
     assert table is not None
     assert (table.u[0], table.v[0]) == pytest.approx((1.0, 0.0), abs=1e-15)
     _, found = read("depth m,u m/s,v m/s\n0,0,1\n", Terms(declination=90.0))
-    assert "so no `declination` is applied; remove it" in found[0]
+    assert "remove `declination`, or correct the heading" in found[0]
 
 
 @pytest.mark.parametrize(
