@@ -60,7 +60,6 @@ march accepts the segment.
 """
 
 
-@within
 def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
     """Return the strain of a cable at a tension [N], from its elongation curve or compliance."""
     if cable.first_knot == cable.end_knot:
@@ -68,13 +67,11 @@ def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> flo
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
 
 
-@within
 def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float) -> float:
     """Return the net buoyancy [N], positive up, of a segment with unstretched length `cut` [m]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
-@within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
     """Return the drag area of a segment, as a length of unstretched cable [m].
 
@@ -89,7 +86,6 @@ def segment_area(cable: CableStretch, cut: float, density: float, strain: float)
     return area
 
 
-@within
 def segment_drag(
     friction: int,
     kn: float,

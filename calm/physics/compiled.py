@@ -29,17 +29,30 @@ SOURCES = ("physics", "solve", "batch")
 
 OPTIMISATION = 1
 """Level of LLVM's optimisation, which never changes a digit."""
+QUICK = ("always_inliner", "sroa", "simplify_cfg", "instruction_combine")
+"""LLVM's passes for most laws. They take a tenth of the time of its level 1, and the code is a
+twentieth slower.
+"""
 
 Fn = TypeVar("Fn", bound=Law)
 
 
 def within(law: Fn) -> Fn:
-    """Mark a short function for inlining into its callers."""
+    """Mark a function for inlining into its callers, although it is not short."""
     _within.add(law)
     return law
 
 
 _within: set[Law] = set()
+
+
+def optimised(law: Fn) -> Fn:
+    """Mark a law that runs so long in each call that all passes of `OPTIMISATION` pay."""
+    _optimised.add(law)
+    return law
+
+
+_optimised: set[Law] = set()
 
 
 def set_row(rows: Any, i: int, row: Any) -> None:
@@ -57,9 +70,7 @@ class Compiled:
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
         self._given, self._result = Layout(Row(None, kinds)), Layout(result)
         self._nothing = result == NOTHING
-        address = _address_of(
-            law, kinds, lambda program: program.add_entry(_ENTRY, law, kinds, result)
-        )
+        address = _address_of(law, kinds, result)
         self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
 
     def __call__(self, *arguments: Any) -> Any:
@@ -67,27 +78,6 @@ class Compiled:
         result = ctypes.create_string_buffer(self._result.size)
         self._call(self._given.written(arguments), result)
         return None if self._nothing else self._result.read(result.raw)
-
-
-class Addressed:
-    """A compiled law that takes a named tuple and a number, and returns a number.
-
-    Other compiled laws call this law by its `address`, so they do not contain its code.
-    """
-
-    def __init__(self, law: Law, task: Any) -> None:
-        self._task = Layout(task)
-        self.address = _address_of(
-            law, task, lambda program: program.add_function(_ENTRY, law, task)
-        )
-        self._call = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p, ctypes.c_double)(
-            self.address
-        )
-
-    def __call__(self, task: Any, x: float) -> float:
-        """Call the law without blocking other threads."""
-        found: float = self._call(self._task.written(task), x)
-        return found
 
 
 _entries: dict[Law, Any] = {}
@@ -114,26 +104,12 @@ def outcome(law: Law, compiled: bool, *given: Any) -> Any:
     return (entry(law, *given) if compiled else law)(*given)
 
 
-def by_address(law: Law, task: Any) -> Addressed:
-    """Compile a law that other laws call by its address.
-
-    The law takes a named tuple and a number. The argument `task` is an example of this named tuple.
-    """
-    with _lock:
-        if law not in _entries:
-            _entries[law] = Addressed(law, kind_of(task))
-        found: Addressed = _entries[law]
-        return found
-
-
 _ENTRY = "calm.entry"
 _engines: list[Any] = []
 
 
-def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
-    """Return the address of a law's machine code for kinds of arguments, from the cache or compiled
-    now.
-    """
+def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
+    """Return the address of a law's machine code, from the cache or compiled now."""
     import llvmlite.binding as llvm
 
     for name in FROM_MATH:
@@ -148,12 +124,18 @@ def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
         from calm.physics.law_compiler import Program
 
         program = Program(_within)
-        add(program)
+        program.add_entry(_ENTRY, law, kinds, result)
         module = llvm.parse_assembly(program.text())
         module.triple, module.data_layout = target.triple, str(target.target_data)
         tuning = llvm.create_pipeline_tuning_options(OPTIMISATION)
         builder = llvm.create_pass_builder(target, tuning)
-        builder.getModulePassManager().run(module, builder)
+        if law in _optimised:
+            passes = builder.getModulePassManager()
+        else:
+            passes = llvm.create_new_module_pass_manager()
+            for step in QUICK:
+                getattr(passes, f"add_{step}_pass")()
+        passes.run(module, builder)
         code = target.emit_object(module)
         if file:
             _store(file, code)

@@ -256,7 +256,6 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     return c
 
 
-@within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
     """Return three quantities for a Newton step towards c |A + c V| = target.
 
@@ -321,14 +320,12 @@ def axis_along(
     return axis_against(x, y, z)
 
 
-@within
 def axis_against(x: float, y: float, z: float) -> Vector:
     """Return the unit axis opposite to a nonzero force."""
     size = sqrt(x * x + y * y + z * z)
     return -x / size, -y / size, -z / size
 
 
-@within
 def drag_force(
     kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:

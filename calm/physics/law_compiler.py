@@ -156,20 +156,6 @@ class Program:
             f'define void @"{symbol}"(ptr %given, ptr %result) nounwind {{\n{body}\nret void\n}}'
         )
 
-    def add_function(self, symbol: str, law: Law, task: Any) -> None:
-        """Add a function that calls a law with a named tuple and a number, and returns a number.
-
-        The named tuple is passed by its address.
-        """
-        entry = Instructions(self)
-        _, result = entry.call_law(law, [Held(task, "%task"), Number(REAL, "%x")])
-        value = entry.as_kind(result, REAL).text
-        body = "\n".join([*entry.reserved, *entry.lines])
-        self.texts.append(
-            f'define double @"{symbol}"(ptr %task, double %x) nounwind {{\n{body}\n'
-            f"ret double {value}\n}}"
-        )
-
     def declare(self, name: str, numbers: int) -> None:
         """Declare an external function of `numbers` real arguments that returns a real number."""
         self.declared[name] = f'declare double @"{name}"({", ".join(["double"] * numbers)})'
@@ -194,6 +180,8 @@ class Uncompilable(TypeError):
     """Raised if a function uses Python that a law must not use."""
 
 
+SHORT = 40
+"""Number of instructions below which a law is inlined into its callers."""
 RESULT = "return"
 
 
@@ -231,6 +219,9 @@ class _Body(Instructions):
 
     def take_argument(self, name: str, word: str, kind: Any) -> None:
         """Bind an argument."""
+        if isinstance(kind, Global):
+            self.names[name] = kind
+            return
         if isinstance(kind, Row):
             self.words.append(f"ptr {word}")
             value: Any = Held(kind, word)
@@ -248,7 +239,7 @@ class _Body(Instructions):
         result, words = self.known.get(RESULT, NOTHING), self.words
         if not isinstance(result, str):
             words, result = ["ptr %result", *words], "void"
-        how = "alwaysinline nounwind" if inlined else "nounwind"
+        how = "alwaysinline nounwind" if inlined or len(self.lines) < SHORT else "nounwind"
         lines: list[str] = []
         for line in self.lines:
             lines += line if isinstance(line, list) else [line]
@@ -699,9 +690,6 @@ class _Body(Instructions):
         self.refuse(node.keywords and node.keywords[0].value)
         called = self.of(node.func)
         given = [self.of(each) for each in node.args]
-        if not isinstance(called, Global):
-            task, x = self.address_of(given[0]), self.as_kind(given[1], REAL)
-            return self.value(REAL, f"call double {called.text}(ptr {task}, double {x.text})")
         function = called.value
         if isinstance(function, FunctionType):
             if function.__name__ == "set_row":

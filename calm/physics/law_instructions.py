@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 from calm.physics.law_kinds import (
     BY_NAME,
-    FUNCTION,
     NOTHING,
     REAL,
     TRUTH,
@@ -53,9 +52,17 @@ class ArrayView(NamedTuple):
 
 
 class Global(NamedTuple):
-    """A function, class or module to which the source of a law refers."""
+    """A function, class or module to which the source of a law refers.
+
+    If a law passes a function to another law, the other law is translated for this function.
+    """
 
     value: Any
+
+    @property
+    def kind(self) -> "Global":
+        """Kind of an argument that is this function."""
+        return self
 
 
 def number_of(value: Any) -> Number:
@@ -165,7 +172,7 @@ class Instructions:
         """Return a sequence as an `ArrayView`."""
         if isinstance(array, ArrayView):
             return array
-        data = self.value(FUNCTION, f"load ptr, ptr {array.address}").text
+        data = self.value("ptr", f"load ptr, ptr {array.address}").text
         shape = [
             self.value(WHOLE, f"load i64, ptr {self.at(array.address, k)}").text
             for k in range(1, array.kind.dimensions + 1)
@@ -220,6 +227,8 @@ class Instructions:
         symbol, kind = self.program.translated(law, kinds)
         words = []
         for each in given:
+            if isinstance(each, Global):
+                continue
             if isinstance(each.kind, Row):
                 words.append(f"ptr {self.address_of(each)}")
             elif isinstance(each.kind, Array):

@@ -12,10 +12,8 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-REAL, WHOLE, TRUTH, FUNCTION = "double", "i64", "i1", "ptr"
-"""Kinds of single numbers, by their names in LLVM. A function is given by its address, and takes a
-named tuple and a number.
-"""
+REAL, WHOLE, TRUTH = "double", "i64", "i1"
+"""Kinds of single numbers, by their names in LLVM."""
 BY_NAME: dict[Any, str] = {float: REAL, int: WHOLE, bool: TRUTH}
 
 
@@ -104,8 +102,6 @@ def kind_of(value: Any, hint: Any = None) -> Any:
             return Array(_number_kind(value.dtype), value.ndim)
         kinds = tuple(_number_kind(own[0]) for own in fields.values())
         return Array(Row(_records[value.dtype], kinds), value.ndim)
-    if hasattr(value, "address"):
-        return FUNCTION
     return BY_NAME[type(value)]
 
 
@@ -152,8 +148,6 @@ def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
     if isinstance(kind, Array):
         shape = [f"{given}.shape[{k}]" for k in range(kind.dimensions)]
         return "q" * (1 + len(shape)), [f"address_of({given})", *shape]
-    if kind == FUNCTION:
-        return "q", [f"{given}.address"]
     return "d" if kind == REAL else "q", [given]
 
 

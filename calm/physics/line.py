@@ -70,7 +70,6 @@ class Bed(NamedTuple):
     excess: float
 
 
-@within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
     """Return the height of a point above the seabed plane.
 
@@ -103,7 +102,6 @@ part that is marched in two halves; level that splits a segment.
 """
 
 
-@within
 def write_node(record: Record, n: int, state: State) -> None:
     """Write the position [m] of a state, and the force above it [N], to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
@@ -115,7 +113,6 @@ def write_node(record: Record, n: int, state: State) -> None:
     record[5][n] = fz
 
 
-@within
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:
@@ -210,6 +207,24 @@ def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]
         if name not in kept:
             kept[name] = make(given)
         result: _Made = kept[name]
+        return result
+
+    return stored
+
+
+def once_at_rest(make: Callable[[Line, Water], _Made]) -> Callable[[Line, Water], _Made]:
+    """Decorate a function of a line and its water whose result does not depend on the current.
+
+    The last result is stored in the line. It is used again in all water that is the same at rest.
+    """
+    name = f"{make.__module__}.{make.__qualname__}"
+
+    @wraps(make)
+    def stored(line: Line, water: Water) -> _Made:
+        kept = vars(line).get(name)
+        if kept is None or not water.same_at_rest(kept[0]):
+            kept = vars(line)[name] = water, make(line, water)
+        result: _Made = kept[1]
         return result
 
     return stored
@@ -502,6 +517,14 @@ class Water(_Arrays):
     def still(self) -> Water:
         """Return a copy of the water without current."""
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
+
+    def same_at_rest(self, other: Water) -> bool:
+        """Return whether the water has the same depth, density and gravity as other water."""
+        return self is other or (
+            (self.depth, self.gravity) == (other.depth, other.gravity)
+            and np.array_equal(self.level, other.level)
+            and np.array_equal(self.density, other.density)
+        )
 
     def current_at(self, depth: Floats) -> Floats:
         """Return the current (..., 3) [m/s] at depths [m] in an array of any shape."""

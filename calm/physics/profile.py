@@ -181,7 +181,6 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
     return 0
 
 
-@within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Return whether a segment that crosses a level has to be split at the level.
 

@@ -229,7 +229,6 @@ def _following_axis(
     return (-tx, -ty, -tz) if mx * tx + my * ty + mz * tz > 0.0 else (tx, ty, tz)
 
 
-@within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
     """Return the sum of net buoyancy and hydrodynamic lift of a rigid piece or clamp [N].
 
@@ -286,7 +285,6 @@ def load_variation(
     return drag_variation(Smooth(load.diameter / viscosity, load.lengthening), speed)
 
 
-@within
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:

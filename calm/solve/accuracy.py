@@ -45,7 +45,6 @@ class Extent(NamedTuple):
 UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@within
 def tension_at(record: Record, node: int) -> float:
     """Return the tension at a node [N]."""
     fx, fy, fz = record[3][node], record[4][node], record[5][node]

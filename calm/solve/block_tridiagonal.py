@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 Numbers = NDArray[Any]
 
-CHUNK = 3
+CHUNK = 4
 """Number of blocks eliminated together; the block after them stays in the reduced system."""
-DENSE = 16
+DENSE = 20
 """Largest number of blocks of a system that is solved as a single dense matrix."""
 
 

@@ -45,7 +45,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         ``slack`` if the line would fold.
     """
     still_water = water.still()
-    refuse_unsupported(line, still_water, standing_lift(line, still_water))
+    refuse_unsupported(line, still_water)
     upright = _upright_length(line, still_water, piece, top_depth, settings)
     shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
     # long segments are exact for a plumb line

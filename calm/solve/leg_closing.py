@@ -365,19 +365,19 @@ class NetTask(NamedTuple):
 MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
-def do_task(job: NetTask, _: float) -> float:
+def do_task(job: NetTask) -> int:
     """Perform a task and return its outcome.
 
     The outcome of DRIFTS is 1 if the net drifts, otherwise 0.
     """
     net, x, how = job.net, job.x, job.how
     if job.task == DRIFTS:
-        return 1.0 if drifts(net) else 0.0
+        return 1 if drifts(net) else 0
     if job.task == SETTLE:
-        return float(settle(net, how.sea, x, how.step, job.enough))
+        return settle(net, how.sea, x, how.step, job.enough)
     if job.task == CLOSE:
-        return float(close_net(net, x, how, job.enough, job.known))
+        return close_net(net, x, how, job.enough, job.known)
     failure = write_residual(net, x, how, job.task == SLOPES)
     if job.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
-    return float(failure)
+    return failure

@@ -198,7 +198,6 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     )  # fmt: skip
 
 
-@within
 def bed_of(net: NetProblem, i: int) -> Bed:
     """Return the seabed below leg i."""
     leg, bed = net.legs[i], net.lines.limits.bed
@@ -230,7 +229,6 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
     return held[3 * end], held[3 * end + 1], held[3 * end + 2]
 
 
-@within
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Return the height of the lower end of an anchored leg [m].
 
