@@ -24,7 +24,7 @@ LINEAR_DRAG_SPEED = 10.0
 """Speed below which drag is linear in speed, in the first iteration of a time step from
 rest [m/s].
 """
-CHANGE = 3e-5
+CHANGE = 1e-5
 """Tolerance of the last change of a position, as a fraction of the line length, and of a tension,
 as a fraction of the sum of all weights. The remaining error is of the order of the square of this
 tolerance.
