@@ -181,11 +181,12 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return measured minus still-water depth [m] of the sensor that is farthest above its place.
+    """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
-    Currents only lower a line. If the shallowest readings of a sensor are far above its place in
-    still water, the water depth, a length or the place in the file is wrong. The result is
-    negative, or 0 if no sensor is far above its place.
+    The error is the depth of the shallowest readings minus the depth in still water. The result is
+    negative, or 0 if no sensor is far above its still-water depth. Currents only lower a line. A
+    large error therefore means that the water depth, a length or the position of the sensor in the
+    file is wrong.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]

@@ -144,9 +144,10 @@ def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
 
 
 class Friction(Enum):
-    """Tangential drag law of a cable or chain; the value is its name in files.
+    """Tangential drag law of a cable or chain.
 
-    V is the current, t the unit vector along the cable, and Vt = (V·t) t. The drag per metre is
+    The value of a member is the name of the law in files. V is the current, t the unit vector along
+    the cable, and Vt = (V·t) t. The drag per metre is
 
     - ``berteaux``: Kt |Vt| Vt, along the cable, with Kt = ½ρ Ct πD (Berteaux, Buoy Engineering,
       1976);

@@ -124,7 +124,10 @@ class Program:
         self.declared: dict[str, str] = {}
 
     def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
-        """Translate a law for given argument kinds. Return its symbol and the result's kind."""
+        """Translate a law for given kinds of arguments.
+
+        Return the symbol of the translated law, and the kind of the law's result.
+        """
         if (law, kinds) in self.open:
             raise TypeError(f"{law.__name__} calls itself")
         if (law, kinds) not in self.laws:
@@ -141,10 +144,10 @@ class Program:
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function that calls a law with arguments and result in memory.
+        """Add a function that calls a law; the arguments and the result are in memory.
 
-        The function has two arguments. The first is the address of the law's arguments. The second
-        is the address to which the result is written, converted to the kind `wanted`.
+        The first argument of the function is the address of the law's arguments. The second
+        argument is the address of the result. The result is converted to the kind `wanted`.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)

@@ -108,7 +108,10 @@ class Instructions:
         return name
 
     def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return the address that is `place` times `unit` words of eight bytes after an address."""
+        """Return an address plus an offset.
+
+        The offset is `place` times `unit`, in words of eight bytes.
+        """
         if place in (0, "0"):
             return address
         name = self.fresh()

@@ -20,7 +20,13 @@ BY_NAME: dict[Any, str] = {float: REAL, int: WHOLE, bool: TRUTH}
 
 
 class Row(NamedTuple):
-    """Kind of a tuple, with the class of a named tuple (else None) and the kinds of the members."""
+    """Kind of a tuple.
+
+    Attributes
+    ----------
+    named : class of a named tuple; None for any other tuple
+    members : kinds of the members
+    """
 
     named: Any
     members: tuple[Any, ...]
@@ -114,7 +120,7 @@ def _number_kind(of: Any) -> str:
 
 
 def kind_asked(hint: Any) -> Any:
-    """Return the kind of a result from the type hint of the function."""
+    """Return the kind of result that a type hint declares."""
     if hint in BY_NAME:
         return BY_NAME[hint]
     if hint in (None, type(None)):

@@ -69,11 +69,11 @@ class MarchSettings(NamedTuple):
     ----------
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    near : allowed distance between a load and the depth at which the water is sampled [m]; 0
-        requires full precision
+    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
+        precision
     stages : number of stages to march
-    lands : whether the line may touch down. A touchdown is below the last buoyant piece, where the
-        force normal to the seabed vanishes; the rest of the line then lies on the seabed
+    lands : whether the line may touch down. The touchdown is the point below the last buoyant piece
+        where the force normal to the seabed vanishes; the rest of the line lies on the seabed
     bed : the seabed
     given : whether the segments are given; otherwise the march chooses them
     exact : whether segments are split at every level of the water profile; otherwise they are split

@@ -116,12 +116,12 @@ def viscosity_at(sea: Sea, depth: float) -> float:
 def distance_to_bend(
     sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Return the distance [m] along a path to the next kink of the drag.
+    """Return the distance [m] along a path to the next point where the drag has a kink.
 
-    The next kink is usually at the next level. If the flow almost vanishes before that level,
-    within the length of a segment, |V| V has a kink at the depth of minimum flow. A level nearer
-    than `LEAST_PART` times the segment length is skipped, unless a segment of the full length has
-    to be split there.
+    This point is usually at the next level. The drag is proportional to |V| V, and therefore also
+    has a kink at a depth where the flow almost vanishes. Such a depth is returned if it is reached
+    before the next level and within the length of a segment. A level nearer than `LEAST_PART` times
+    the segment length is skipped, unless a segment of the full length has to be split there.
 
     Parameters
     ----------

@@ -16,7 +16,8 @@ _GAUSS = sqrt(1.0 / 3.0)
 class Knot(NamedTuple):
     """A point of an elongation curve, and a cubic polynomial for the strain at higher tensions.
 
-    The strain is a + x (b + x (c + x d)), where x is the tension minus that of the point [N].
+    The strain is a + x (b + x (c + x d)), where x is the tension minus the tension at the point
+    [N].
     """
 
     tension: float

@@ -36,7 +36,7 @@ class QuantityTable:
     columns : names with units, such as ``"depth m"`` or ``"depth[m]"``; if a heading has no unit,
         each value in the column has its own unit
     rows : numbers, or quantities with a unit, as text
-    report : function that builds a mistake from a place and a message
+    report : function that creates a `Problem` for a place in the table and a message
     problems : list to which mistakes are added
     """
 

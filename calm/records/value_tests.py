@@ -329,9 +329,9 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Limits of a sea-water quantity, its unit, and other units that are common for it.
+    """Limits and unit of a sea-water quantity, and other common units of this quantity.
 
-    Each value of `likely` is the factor and the offset that convert another unit to `unit`.
+    `likely` gives, for each other unit, the factor and the offset that convert values to `unit`.
     """
 
     least: float
@@ -383,10 +383,10 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Find the only pair of levels whose exchange makes a profile monotonic.
+    """Find two levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is already monotonic, or if no pair or more than one pair has this
-    effect.
+    Return None if the profile is already monotonic, if no pair of levels has this effect, or if
+    several pairs have this effect.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ class FreeMotion:
     velocity : (3,) velocity over the ground: east, north, up [m/s]
     solution : shape and forces in the flow relative to the line, with x and y relative to the lower
         end; the error estimates are NaN and the number of marches is 0
-    tangles : indices of pieces that have overtaken, wholly or in part, the line above them
+    tangles : indices of the pieces that have wholly or partly overtaken the line above them
     """
 
     velocity: Floats

@@ -191,7 +191,7 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function between a and b, where it has opposite signs.
+    """Find the root of a continuous function that has opposite signs at a and b.
 
     Chandrupatla's method takes an inverse quadratic step if the last three points lie on a suitable
     curve, and otherwise bisects the bracket. The first step is a secant step.

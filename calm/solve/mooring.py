@@ -328,7 +328,7 @@ class Nearby:
 
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line once, on segments chosen at the angle step of its settings.
+    """Close a line once, on segments for the angle step of the final shape.
 
     The shape is written to the record `FINE`.
     """
