@@ -61,8 +61,8 @@ def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> 
     Parameters
     ----------
     read : currents at several times
-    at : depths of the line in these currents, with slopes with respect to the logarithm of a factor
-        on all speeds
+    at : depths of the line in these currents, and derivatives of the depths with respect to the
+        logarithm of a factor on all speeds
     share : elapsed share of the record at the times with an equilibrium
     """
     factors = task.common.factors

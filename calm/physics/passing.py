@@ -109,8 +109,8 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of line above the surface at the free end [m], which determines the depth instead;
-        0 if no part is above the surface
+    out : length of line above the surface at the free end [m]; 0 if no part is above the surface.
+        If `out` is not 0, the depth of the free end is computed from `out`
     cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
         these are input if the segments are given, otherwise output
     record : array to which nodes and elements are written

@@ -202,7 +202,7 @@ def bracketed_root(
         search
     a, fa, b, fb : two numbers and the values of the function there
     small : the search stops when |function| is at most this value
-    narrow : the search stops when the bracket is at most this wide
+    narrow : the search stops when the width of the bracket is at most this value
 
     Returns
     -------
