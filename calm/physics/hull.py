@@ -9,7 +9,7 @@ from math import acos, asin, isnan, nan, pi, sin, sqrt
 from typing import NamedTuple
 
 AIR_DENSITY = 1.225
-"""Density of the air above the water [kg/m³], that of the standard atmosphere at sea level."""
+"""Density of the air above the water [kg/m³], from the standard atmosphere at sea level."""
 
 AWASH = 0.02
 """Reserve buoyancy, as a fraction of the buoyancy, below which the parts above the surface are

@@ -203,8 +203,8 @@ RESULT = "return"
 class _Body(Instructions):
     """Translation of the body of a law.
 
-    `known` are the kinds of its variables and of its result. If one is `widened` by a later
-    statement, for example from whole to real numbers, the law is translated again.
+    `known` holds the kinds of the variables and of the result. If a later statement widens a kind,
+    for example from whole to real numbers, `widened` is true and the law is translated again.
     """
 
     def __init__(
@@ -272,7 +272,7 @@ class _Body(Instructions):
         self.emit(f"br i1 {test.text}, label %{yes}, label %{no}")
 
     def widen(self, name: str, kind: Any) -> Any:
-        """Return the kind of a variable after another value was set."""
+        """Return the kind of a variable after another value has been assigned."""
         known = self.known.get(name)
         if known is None:
             self.known[name] = kind
@@ -398,9 +398,10 @@ class _Body(Instructions):
         return reached
 
     def finish(self, node: Any, ends: bool, over: str, end: str) -> bool:
-        """Translate what follows a loop that is `over` without `break`, if it ever `ends` so.
+        """Translate the `else` part of a loop, and begin the code after the loop.
 
-        Return whether the next statement can be reached.
+        `over` is the label that a loop without `break` reaches, and `ends` is whether a loop can
+        end in this way. Return whether the next statement can be reached.
         """
         if ends:
             self._start(over)
@@ -458,7 +459,7 @@ class _Body(Instructions):
     # expressions
 
     def refuse(self, part: Any) -> None:
-        """Refuse a part of Python that laws do not use."""
+        """Reject a construct of Python that laws must not use."""
         if part:
             what = part[0] if isinstance(part, list) else part
             raise TypeError(f"laws have no {ast.unparse(what)} here")
@@ -645,7 +646,10 @@ class _Body(Instructions):
         return gap
 
     def one_of(self, values: list[Any], later: list[list[str]]) -> Any:
-        """Return the value whose branch is followed; each is written at the place left for it."""
+        """Return the value of the branch that is followed.
+
+        Each value is written at the place in `later` that was left for this value.
+        """
         kind = values[0].kind
         for each in values:
             kind = common(kind, each.kind)

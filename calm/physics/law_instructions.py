@@ -74,7 +74,7 @@ def row_of(members: Any, named: Any = None) -> Made:
 
 
 MOST_COPIED_ONE_BY_ONE = 8
-"""Largest number of numbers that are copied without a call."""
+"""Largest count of numbers that are copied without a call."""
 
 
 class Instructions:

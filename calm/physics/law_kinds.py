@@ -1,7 +1,7 @@
 """Kinds of the values of compiled laws, and their layout in memory.
 
-Every number takes eight bytes. A sequence is the address of its first number and its shape. A named
-tuple is a row of numbers, whether it is a value or an element of a sequence.
+Every number takes eight bytes. A sequence is represented by the address of its first number and by
+its shape. A named tuple is a row of numbers, whether it is a value or an element of a sequence.
 """
 
 import ctypes
@@ -79,7 +79,7 @@ def common(one: Any, other: Any) -> Any:
 
 
 FROM_MATH = ("log", "pow", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "floor")
-"""Functions that the C library computes, for CPython as well."""
+"""Functions that CPython and compiled laws take from the C library."""
 
 
 @cache
@@ -149,9 +149,7 @@ class Layout:
 
 
 def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
-    """Return the codes of the numbers of a value for `struct`, and the expressions that read
-    them.
-    """
+    """Return the `struct` codes of the numbers in a value, and the expressions that read them."""
     if isinstance(kind, Row):
         parts = [_layout_of(each, f"{given}[{i}]") for i, each in enumerate(kind.members)]
         return "".join(codes for codes, _ in parts), [word for _, words in parts for word in words]

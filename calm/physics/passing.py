@@ -51,8 +51,8 @@ unstretched length on the seabed [m]; reason why the march stopped, see `calm.ph
 LEFT = 10
 
 SHORT = 1e-6
-"""Segment length, as a fraction of the longest segment, below which the load on a segment does not
-serve as an estimate for the next.
+"""Segment length, as a fraction of the longest segment, below which the load on a segment is not
+used as an estimate for the next segment.
 """
 EXACT, ROUGH = 1e-12, 1e-3
 """Relative change of the mean flow along a segment above which the segment is split at a level: at

@@ -15,7 +15,8 @@ LEAST_PART = 0.01
 
 NEAR_A_LEVEL = 1e-6
 """Depth range beyond a level, as a fraction of the segment's depth range, below which the segment
-is not split at the level. Without this limit, every part would be split at a level without flow.
+is not split at the level. Without this limit, a segment would be split again and again at a level
+with no flow.
 """
 
 
@@ -275,7 +276,7 @@ profile_of = once_per_input(Profile)
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:
-    """Return value at the origin and slope for every interval; the outer two are constant."""
+    """Return value at the origin and slope for every interval; the outer slopes are zero."""
     values = column.tolist()
     slopes = [
         (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]) for i in range(len(depths) - 1)

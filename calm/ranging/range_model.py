@@ -274,8 +274,8 @@ NARROW = 0.15
 WIDEST_GAP = 180.0
 """Sector without a range above which all ranges count as taken from one side [degrees]."""
 NEAR, FAR = 0.2, 4.0
-"""Horizontal distances, in depths: ranges that are all nearer constrain the position poorly, ranges
-that are all farther the depth.
+"""Horizontal distances, as multiples of the depth. Ranges that are all nearer constrain the
+position poorly; ranges that are all farther constrain the depth poorly.
 """
 
 

@@ -21,7 +21,7 @@ from calm.records.profile_doubts import direction_doubts
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
-"""Function that builds a problem from a place and a message.
+"""Function that creates a `Problem` for a place and a message.
 
 A place is ``("columns", j)`` or ``("rows", i, j)``.
 """
@@ -204,7 +204,7 @@ SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
 """Limits of temperature and salinity: the range of validity of TEOS-10."""
 
 WATER_DENSITY = QuantityRange("density", at_least=900, at_most=1350)
-"""From fresh water under a glacier to the brines at the bottom of the Red Sea."""
+"""Limits of density: fresh water under a glacier, and the brines at the bottom of the Red Sea."""
 
 DENSITY = QuantityRange("density", above=0)
 

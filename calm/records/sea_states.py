@@ -44,7 +44,7 @@ SHARES = 0.02
 """Tolerance for the sum of shares of time, which may be rounded."""
 
 CUT_OFF = 0.5
-"""Limit on a measured spectrum at its last frequency, as a share of its maximum density."""
+"""Largest density of a measured spectrum at its last frequency, as a share of the maximum."""
 
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",

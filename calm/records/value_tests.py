@@ -207,7 +207,7 @@ def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield a doubt if the largest value [m/s] recurs and far exceeds all others: a fill value?"""
+    """Yield a doubt if the largest value [m/s] recurs and far exceeds all other values."""
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -484,7 +484,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield a doubt if every second reading of a series repeats, as if two were interleaved."""
+    """Yield a doubt if every second reading of a series repeats, as if two series were mixed."""
     if len(values) < MANY:
         return
     next_one, second = (

@@ -38,7 +38,7 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("slack",)
-"""Rules omitted from the matrix, since their utilisation is no share of a strength or a range."""
+"""Rules omitted from the matrix: their utilisation is not a share of a strength or a range."""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 

@@ -122,7 +122,7 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
 
 
 def _tangles(solution: Solution) -> tuple[int, ...]:
-    """Find the pieces that form loops: pieces partly upside down, and short ones in compression."""
+    """Find looped pieces: pieces partly upside down, and short pieces in compression."""
     line, piece = solution.line, solution.element_piece
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0

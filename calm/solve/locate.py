@@ -1,7 +1,7 @@
 """Search for approximate equilibria of a moored line.
 
 Depths of the free end are tried downwards from that of the upright line. If the upright line would
-reach out of the water, floats at the surface are tried, too.
+reach out of the water, floats at the surface are also tried.
 """
 
 from math import isnan, nan, sqrt

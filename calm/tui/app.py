@@ -254,7 +254,7 @@ class BuildApp(App[int]):
             self.saving.save_as()
 
     async def action_quit(self) -> None:
-        """Quit; prompts for unsaved changes."""
+        """Quit, after asking what to do with unsaved changes."""
         if self.is_settled():
             self.saving.quit()
 
