@@ -68,7 +68,7 @@ def number_of(value: Any) -> Number:
 
 
 def row_of(members: Any, named: Any = None) -> Made:
-    """Combine values into a tuple. The class of the tuple is `named`, if this is given."""
+    """Combine values into a tuple of the class `named`, or into a plain tuple."""
     members = tuple(members)
     return Made(Row(named, tuple(each.kind for each in members)), members)
 

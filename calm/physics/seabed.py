@@ -80,8 +80,8 @@ def lay_line(
                 write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
             nodes, grounded = nodes + 1, grounded + length
         elif hung == 0.0:
-            # the loads of a rod are listed downwards: for every piece its own, distributed along
-            # it, then its clamps
+            # the loads of a rod are listed downwards: for every piece its own load, which is
+            # distributed along the piece, then the loads of its clamps
             reached, end, own, length, last = 0.0, 0.0, 0.0, 0.0, first + here.size - 1
             for k in range(first, last + 1):
                 load = course.loads[k]

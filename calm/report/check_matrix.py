@@ -81,7 +81,7 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """First environment in which the mooring fails, and text of the failure, or None."""
+        """First environment in which the mooring fails, and text of the failure; None if none."""
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.text) for name, cell in cells.items()
