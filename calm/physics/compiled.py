@@ -1,10 +1,11 @@
-"""Compilation of the physics functions ("laws") to machine code, from the source that CPython runs,
-too.
+"""Compilation of the physics functions ("laws") to machine code, from the same source that
+CPython runs.
 
 A *law* is a function of floats, named tuples and sequences of named tuples that CPython can run
-directly. For compiled laws sequences are arrays, and sequences of named tuples arrays of records.
-`calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes machine
-code, which the user's cache keeps. The arithmetic is not reordered, so both give the same digits.
+directly. In compiled laws, sequences are arrays, and sequences of named tuples are arrays of
+records. `calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes
+machine code, which is stored in the user's cache. The arithmetic is not reordered, so compiled and
+interpreted laws give the same digits.
 """
 
 import ctypes
@@ -109,7 +110,10 @@ _engines: list[Any] = []
 
 
 def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
-    """Return the address of a law's machine code, from the cache or compiled now."""
+    """Return the address of the machine code of a law for given kinds of arguments.
+
+    The code is read from the cache, or compiled if the cache does not contain it.
+    """
     import llvmlite.binding as llvm
 
     for name in FROM_MATH:
@@ -148,7 +152,7 @@ def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
 
 
 on_compilation: list[Callable[[], None]] = []
-"""Functions to call when a law is compiled that is not in the cache."""
+"""Functions to call before a law is compiled because the cache does not contain it."""
 
 
 def _store(file: Path, code: bytes) -> None:
@@ -166,8 +170,9 @@ def _store(file: Path, code: bytes) -> None:
 
 
 def _stored(file: Path) -> bytes:
-    """Return the machine code in a file of the cache; nothing if it is not what was written, since
-    LLVM ends the process at some damaged files.
+    """Return the machine code in a file of the cache, or nothing if the file is damaged.
+
+    The check is needed because some damaged files make LLVM end the process.
     """
     try:
         whole = file.read_bytes()
@@ -201,7 +206,7 @@ def _machine() -> Any:
 
 @cache
 def _machine_name() -> str:
-    """Return a short name of this machine and of LLVM's version, whose machine code is kept."""
+    """Return a short name of this machine and LLVM version, which is part of the file names."""
     import llvmlite.binding as llvm
 
     features = sorted(llvm.get_host_cpu_features().items())
@@ -214,7 +219,7 @@ def _short_name(given: Any) -> str:
 
 
 def _in_c(name: str) -> int:
-    """Return the address of a function of the C library, which CPython's `math` calls, too."""
+    """Return the address of a function of the C library that CPython's `math` also calls."""
     windows: Any = getattr(ctypes, "cdll", None)
     library = windows.ucrtbase if sys.platform == "win32" else ctypes.CDLL(None)
     address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value

@@ -75,13 +75,13 @@ def number_of(value: Any) -> Number:
 
 
 def row_of(members: Any, named: Any = None) -> Made:
-    """Combine values into a tuple. The class of the tuple is `named`, if this is given."""
+    """Combine values into a tuple of the class `named`, or into a plain tuple."""
     members = tuple(members)
     return Made(Row(named, tuple(each.kind for each in members)), members)
 
 
 MOST_COPIED_ONE_BY_ONE = 8
-"""Largest number of numbers that are copied without a call."""
+"""Largest count of numbers that are copied without a call."""
 
 
 class Instructions:
@@ -115,7 +115,10 @@ class Instructions:
         return name
 
     def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return the address that is `place` times `unit` words of eight bytes after an address."""
+        """Return an address plus an offset.
+
+        The offset is `place` times `unit`, in words of eight bytes.
+        """
         if place in (0, "0"):
             return address
         name = self.fresh()

@@ -1,7 +1,7 @@
 """Kinds of the values of compiled laws, and their layout in memory.
 
-Every number takes eight bytes. A sequence is the address of its first number and its shape. A named
-tuple is a row of numbers, whether it is a value or an element of a sequence.
+Every number takes eight bytes. A sequence is represented by the address of its first number and by
+its shape. A named tuple is a row of numbers, whether it is a value or an element of a sequence.
 """
 
 import ctypes
@@ -18,7 +18,13 @@ BY_NAME: dict[Any, str] = {float: REAL, int: WHOLE, bool: TRUTH}
 
 
 class Row(NamedTuple):
-    """Kind of a tuple, with the class of a named tuple (else None) and the kinds of the members."""
+    """Kind of a tuple.
+
+    Attributes
+    ----------
+    named : class of a named tuple; None for any other tuple
+    members : kinds of the members
+    """
 
     named: Any
     members: tuple[Any, ...]
@@ -71,7 +77,7 @@ def common(one: Any, other: Any) -> Any:
 
 
 FROM_MATH = ("log", "pow", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "floor")
-"""Functions that the C library computes, for CPython as well."""
+"""Functions that CPython and compiled laws take from the C library."""
 
 
 @cache
@@ -110,7 +116,7 @@ def _number_kind(of: Any) -> str:
 
 
 def kind_asked(hint: Any) -> Any:
-    """Return the kind of a result from the type hint of the function."""
+    """Return the kind of result that a type hint declares."""
     if hint in BY_NAME:
         return BY_NAME[hint]
     if hint in (None, type(None)):
@@ -139,9 +145,7 @@ class Layout:
 
 
 def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
-    """Return the codes of the numbers of a value for `struct`, and the expressions that read
-    them.
-    """
+    """Return the `struct` codes of the numbers in a value, and the expressions that read them."""
     if isinstance(kind, Row):
         parts = [_layout_of(each, f"{given}[{i}]") for i, each in enumerate(kind.members)]
         return "".join(codes for codes, _ in parts), [word for _, words in parts for word in words]

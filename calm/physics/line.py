@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 class MarchError(ArithmeticError):
     """Raised if a march cannot continue.
 
-    The forces or moments on an element do not balance, the line extends without limit, or the line
-    needs too many segments.
+    A march stops if the forces or moments on an element do not balance, if the line extends without
+    limit, or if the line needs too many segments.
     """
 
 
@@ -73,8 +73,9 @@ class Bed(NamedTuple):
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
     """Return the height of a point above the seabed plane.
 
-    The vector x, y, z leads from a point on the plane to the point. If the vector is a force, the
-    result is the component of the force normal to the plane, times √(1 + tan² slope).
+    x, y, z are the coordinates of the point relative to any point on the plane. If x, y, z are the
+    components of a force, the result is the component of the force normal to the plane, times
+    √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -317,8 +318,8 @@ class Line(_Arrays):
         metre grows; 1/2 if the volume is conserved (cables), 0 for chains
     clamp_piece : (m,) index of the piece to which each instrument is clamped
     clamp_at : (m,) distance from the top of that piece along its unstretched length [m]
-    clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and K
-        of the drag K|V|V [N/(m/s)²]
+    clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and
+        drag factor K, where the drag is K|V|V [N/(m/s)²]
     anchor_height : height of the end of the line above the seabed [m]
     lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; 0 by default
     diameter : (n,) diameter of cables and chains [m]; 0, the default, means no strumming
@@ -328,8 +329,8 @@ class Line(_Arrays):
     towed : whether the free end is towed; rigid pieces at a towed end are not rigidly connected to
         each other
     push_east, push_north : (n,) force of the wind on a piece [N]; 0 by default
-    floating : properties with which the first float rides at the surface; if None, a float that
-        reaches the surface is placed just below the surface
+    floating : surface properties of the first float; if None, a float that reaches the surface is
+        placed just below the surface
     elongation : (n,) elongation curves of cables, which replace their `compliance`; None for other
         pieces; () if no cable has a curve
     drag_curve, clamp_drag_curve : (n,), (m,) curves of the normal drag of smooth spheres and

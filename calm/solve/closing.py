@@ -263,11 +263,11 @@ def coarse_root(
 
 
 def planned(problem: LineProblem, root: Root, step: float) -> Root:
-    """Choose the segments at an angle step, and find the root of the miss near a coarse root.
+    """Choose the segments for an angle step, and find the root of the miss near a coarse root.
 
-    If the march chooses its segments freely, the miss is not quite continuous, so this root is
-    approximate. With the last segments held fixed, the miss is continuous. The result is the root
-    of this continuous miss, estimated by one secant step; the caller marches at this root.
+    If the march chooses its segments freely, the miss is not quite continuous, so its root is
+    approximate. If the segments of the last march are kept, the miss is continuous. The result is
+    the root of this continuous miss, estimated by one secant step; the caller marches at this root.
     """
     limits = problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)

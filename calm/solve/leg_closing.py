@@ -72,7 +72,7 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step, and return the size of the step.
 
-    The step is written to `net.update`, in units of the scales of the unknowns. The method is
+    The step is written to `net.update`, divided by the scale of each unknown. The method is
     Gaussian elimination with partial pivoting; an unknown without a pivot keeps its value.
     """
     size, matrix, row = len(found), net.matrix, 0
@@ -256,7 +256,7 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments at twice an angle step [rad], and close the net on these segments."""
+    """Choose segments for twice the given angle step, and close the net on these segments."""
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = write_residual(net, x, choosing, False)
     if failure != GOES_ON:
@@ -287,7 +287,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net on segments chosen at twice an angle step, and then on halved segments."""
+    """Close a net on segments for twice the given angle step, and then on the halved segments."""
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
@@ -349,7 +349,7 @@ class NetTask(NamedTuple):
     Attributes
     ----------
     task : MARCH marches the net; SLOPES also computes the Jacobian; CLOSE calls `close_net`; SETTLE
-        calls `settle`; DRIFTS calls `drifts` for the net as settled last
+        calls `settle`; DRIFTS calls `drifts` for the last settled net
     x : the unknowns, which CLOSE and SETTLE overwrite with the solution
     enough, known : as in `close_net`
     """

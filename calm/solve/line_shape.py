@@ -106,7 +106,7 @@ def settle_line(problem: LineProblem, root: Root, hangs: bool) -> FoundShape:
 
 
 def close_both(problem: LineProblem, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
-    """Close a line on segments chosen at twice an angle step, and then on halved segments.
+    """Close a line on segments for twice the given angle step, and then on the halved segments.
 
     `hangs` is as in `settle_line`.
     """
@@ -159,12 +159,12 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
 
 
 def closed_between(problem: LineProblem, root: Root) -> tuple[Closed, Closed]:
-    """Close a line of a batch on chosen and on halved segments, by linear interpolation.
+    """Close a line of a batch by linear interpolation, on the chosen and on the halved segments.
 
     Two shapes on the chosen segments, in the records `OTHER` and `COARSE`, show how every node
-    moves with the unknown. Both closed shapes follow from this movement and from one march on the
-    halved segments. The outcome is not `FOUND` if the closed shapes are too far from the marched
-    shapes, or if the line may lie on the seabed.
+    moves as the unknown changes. Both closed shapes follow from this movement and from one march on
+    the halved segments. The outcome is not `FOUND` if the closed shapes are too far from the
+    marched shapes, or if the line may lie on the seabed.
     """
     unknown = root.unknown
     limits, work = problem.limits, problem.work

@@ -1,7 +1,7 @@
 """Search for approximate equilibria of a moored line.
 
 Depths of the free end are tried downwards from that of the upright line. If the upright line would
-reach out of the water, floats at the surface are tried, too.
+reach out of the water, floats at the surface are also tried.
 """
 
 from math import isnan, nan, sqrt
@@ -163,7 +163,7 @@ def sample(problem: LineProblem, unknown: Unknown, count: int, depth: float) -> 
 
 
 def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
-    """Sample the miss at increasing depths of the free end, so that its roots are separated.
+    """Sample the miss at increasing depths of the free end, to separate the roots of the miss.
 
     Return the number of samples, or 0 if a march fails.
 
@@ -206,10 +206,11 @@ def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
 def dip(
     problem: LineProblem, unknown: Unknown, before: Sample, here: Sample, after: Sample
 ) -> Sample:
-    """Search near the middle one of three samples for a sample of opposite sign, if the miss dips.
+    """Search for a sample with the opposite sign near the middle of three samples.
 
-    The miss dips if its absolute value is smallest at the middle sample. The golden-section method
-    is used. The middle sample is returned if no sample of opposite sign is found.
+    There is a search only if the absolute value of the miss is smallest at the middle sample. The
+    search uses the golden-section method. The middle sample is returned if no sample with the
+    opposite sign is found.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
@@ -352,11 +353,11 @@ def surface_root(problem: LineProblem, unknown: Unknown, deep: float) -> CoarseR
     """Find the equilibrium of a line with one or several floats at the surface.
 
     The root is the fraction of the lowest float's buoyancy that is in use. The top float is tried
-    first. If the line closes only with the next float out of the water, or not at all, the next
-    float is also at the surface. The part of the line between the two floats then determines the
-    used fraction of the upper float's buoyancy, and the used fraction of the next float's buoyancy
-    closes the line. A single float rides at its draft; several floats are assumed just below the
-    surface.
+    first. If the line does not close, or closes only with the next float out of the water, the next
+    float is also placed at the surface. The part of the line between the two floats then determines
+    the used fraction of the upper float's buoyancy, and the used fraction of the next float's
+    buoyancy closes the line. A single float rides at its draft; several floats are assumed just
+    below the surface.
 
     Parameters
     ----------
@@ -495,9 +496,10 @@ def surfaced_root(problem: LineProblem, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(problem: LineProblem, unknown: Unknown) -> bool:
-    """Return whether the line is slack in still water at the smallest used buoyancy fraction.
+    """Return whether a line in still water is slack with its float at the surface.
 
-    This fraction just holds the line upright, see `BuoyantPiece.least`.
+    The float uses only the fraction `BuoyantPiece.least` of its buoyancy, which just holds the line
+    upright.
     """
     assert unknown.sought != BELOW
     least = problem.surfacing[unknown.sought].least

@@ -296,10 +296,10 @@ class Nearby:
 
 
 def close_again(problem: LineProblem, root: Root) -> Closed:
-    """Close a line near a root on its present segments or, if no root is found yet, on segments
-    chosen at the angle step of its settings.
+    """Close a line near a root, on the segments in the work arrays.
 
-    The shape is written to the record `FINE`.
+    If no root is known yet (`found` is false), choose segments for the angle step of the final
+    shape, and close the line once on these. The shape is written to the record `FINE`.
     """
     if root.found:
         return polish(problem, root, CHOSEN, FINE)

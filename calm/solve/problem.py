@@ -109,8 +109,8 @@ class Limits(NamedTuple):
     rides : whether the draft of the top float can be computed
     at_rest : whether there is neither current nor wind
     blown : whether there is wind
-    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest; the
-        line is rejected without a search unless this is `SUPPORTED`
+    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest. The
+        line is rejected without a search if the result that applies is not `SUPPORTED`
     """
 
     span: float

@@ -90,7 +90,8 @@ class Solution:
     reserve : unused buoyancy of the surface floats [N]
     carried : the line with the buoyancy and drag in effect, which are reduced for floats at the
         surface
-    riding : draft of the float at the surface, and the forces on this float; None if it is immersed
+    riding : draft of the float at the surface, and the forces on this float; None if no draft is
+        computed
     marches, segments : number of marches and number of segments used for this solution
     miss : height of the line's end above the top of the anchor or, for a tow, above the tow point
         [m]
@@ -305,8 +306,8 @@ SUPPORTED, TOO_HEAVY, FOLDS = range(3)
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
     """Check whether a line has enough buoyancy.
 
-    Return `SUPPORTED`, `TOO_HEAVY` or `FOLDS`, the index of the piece below which the line folds
-    (or -1), and the missing buoyancy [N].
+    Return the outcome (`SUPPORTED`, `TOO_HEAVY` or `FOLDS`), the index of the piece below which the
+    line folds (-1 if the line does not fold), and the missing buoyancy [N].
 
     Parameters
     ----------

@@ -168,8 +168,8 @@ def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> f
     Parameters
     ----------
     top, depth : depth of the top of the line, and water depth [m]
-    taut : whether all the buoyancy is in use; otherwise the result is for the drag on the cables
-        alone, and correct only up to a constant factor
+    taut : whether all the buoyancy is in use; otherwise only the drag on the cables is included,
+        and the result is correct only up to a constant factor
     """
     length = 0.0
     for i in range(len(course.stages)):
