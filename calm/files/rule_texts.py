@@ -109,8 +109,8 @@ RULES = {
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
         "strength of every piece, compared with the cables above and below it",
-        "a warning if the allowable load of the piece is less than half that of either cable, and "
-        "the tension is more than half the allowable load of the piece; estimated loads are "
+        "a warning if the allowable load of the piece is less than half that of the weaker cable, "
+        "and the tension is more than half the allowable load of the piece; estimated loads are "
         "ignored",
         "CALM's own limit: half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
@@ -137,15 +137,15 @@ RULES = {
         "depth; "
         "a failure above `planned_depth_limit` (10 %) of the planned depth; parts without a "
         "planned depth are not checked",
-        "CALM's own limit: after a large difference, the instrument measures at the wrong depth; "
-        "a length or the water depth in the file may be wrong",
+        "CALM's own limit: if the difference is large, the instrument measures at the wrong depth, "
+        "or a length or the water depth in the file is wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
         "stretch of synthetic ropes without `stiffness` or `elongation`; for a rope with "
         "`length_at`, the load under which its length is measured",
         "unknown if the rope could stretch by more than 2 % of the water depth, estimated from "
-        "published stiffnesses; a warning if the load exceeds the working load of the rope (a "
-        "fifth of its breaking load, if the working load is unknown)",
+        "published stiffnesses; a warning if a rope is measured under more than its working load "
+        "(a fifth of its breaking load, if the working load is unknown)",
         "CALM's own limits: the error of a sounding is also about 2 %; manufacturers measure ropes "
         "under a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
@@ -186,7 +186,7 @@ RULES = {
         "CALM's own limits, because no rule is published; mooring groups require 50 to 100 kgf "
         "above the release"),
     "wave-strength": RuleText("Strength in waves", "load",
-        "most probable maximum tension of every piece in 3 h of `waves:`",
+        "most probable maximum tension of every piece in 3 h of the sea state in `waves:`",
         "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
         "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
         "`waves:`",
@@ -194,7 +194,7 @@ RULES = {
         "tensions from a dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
-        "most probable minimum tension of every piece in 3 h of `waves:`",
+        "most probable minimum tension of every piece in 3 h of the sea state in `waves:`",
         "a tension above 0; `slack: allowed` exempts a piece",
         "A slack line takes snap loads as it tightens, and the linear wave model is not valid then",
         _WAVES),

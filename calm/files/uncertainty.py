@@ -105,10 +105,10 @@ class Uncertainty(Model):
     """Uncertainties of the inputs of a design, from which random moorings are drawn."""
 
     current: ShareSpread = described(
-        "speed of the current, changed in proportion at all depths", "10 %", default=Spread(0.1)
+        "speed of the current, by the same factor at all depths", "10 %", default=Spread(0.1)
     )
     direction: AngleSpread = described(
-        "direction of the current, rotated by one angle at all depths", "5 deg", default=Spread(5.0)
+        "direction of the current, by the same angle at all depths", "5 deg", default=Spread(5.0)
     )
     cable_drag: ShareSpread = described(
         "drag of cables and chains, without strumming",

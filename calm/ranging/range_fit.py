@@ -417,7 +417,9 @@ def _beside_the_plan(
     sentences = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
     doubts = []
     if abs(deeper) > max(DEEPER, DEEPER_SHARE * plan_depth):
-        doubts.append(f"the depth is {water_depth:.0f} m; the planned depth is {plan_depth:.0f} m")
+        doubts.append(
+            f"the depth of {water_depth:.0f} m is far from the planned depth of {plan_depth:.0f} m"
+        )
     if planned is None:
         return tuple(sentences), tuple(doubts)
     frame = Frame(planned.latitude, planned.longitude)
