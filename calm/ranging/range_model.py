@@ -266,7 +266,7 @@ def _doubled(timed: bool, factor: float) -> str:
         (False, 2.0): f"half the distances; {instead}",
         (False, 0.5): f"distances there and back; {instead}",
     }
-    return f"the {'times' if timed else 'ranges'} fit far better as {meant[timed, factor]}"
+    return f"the {'times' if timed else 'ranges'} appear to be {meant[timed, factor]}"
 
 
 NARROW = 0.15

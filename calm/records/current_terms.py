@@ -121,5 +121,5 @@ def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int,
     index = int(np.abs(times - moment).argmin())
     if times[index] == moment:
         return index, None
-    nearest = f"{time_text(times[index])}, nearest to {time_text(moment)}"
-    return index, f"the current is that of {nearest}"
+    used = f"the current at {time_text(times[index])} is used"
+    return index, f"the file has no current at {time_text(moment)}; {used}"

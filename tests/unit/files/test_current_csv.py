@@ -59,7 +59,9 @@ def test_profile_of_a_time(csv: Path) -> None:
     assert (table.u, notices) == ((0.5, 0.3), [])
     table, notices = profile(csv, RECORD, "2026-03-01T10:00+00:00")
     assert table.u == (-0.5, -0.3)
-    assert notices == ["the current is that of 2026-03-01T12:00, nearest to 2026-03-01T10:00"]
+    assert notices == [
+        "the file has no current at 2026-03-01T10:00; the current at 2026-03-01T12:00 is used"
+    ]
 
 
 def test_levels_of_a_record_without_a_value_are_left_out(csv: Path) -> None:
@@ -192,7 +194,7 @@ def test_file_named_by_a_mooring(read: Callable[..., MooringFile], csv: Path) ->
     mooring = read(GOOD[:start] + current.replace("05:00", "07:30") + GOOD[end:])
     assert mooring.environment.current.u == (0.5, 0.3)
     assert mooring.notices == (
-        "the current is that of 2026-03-01T06:00, nearest to 2026-03-01T07:30",
+        "the file has no current at 2026-03-01T07:30; the current at 2026-03-01T06:00 is used",
         "the current has no level below 50.0 m, so the value of the nearest level is used there; "
         "the water depth is 1100.0 m",
     )

@@ -109,7 +109,9 @@ def test_profile_of_a_time(tmp_path: Path) -> None:
     assert (table.u, notices) == ((1.0, 0.5, 0.25), [])
     table, notices = read(record(), tmp_path, "2026-03-01T02:00")
     assert table.u == tuple(U)
-    assert notices == ["the current is that of 2026-03-01T00:00, nearest to 2026-03-01T02:00"]
+    assert notices == [
+        "the file has no current at 2026-03-01T02:00; the current at 2026-03-01T00:00 is used"
+    ]
     table, _ = read(record().isel(time=[1]), tmp_path)
     assert table.u == (1.0, 0.5, 0.25)
 

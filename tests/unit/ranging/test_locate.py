@@ -191,7 +191,7 @@ def test_a_straight_track_leaves_two_places_or_a_circle_of_them():
 def test_one_way_for_two_way_is_refused(scale):
     random = np.random.default_rng(22)
     distance = random.uniform(800, 2500, 12)
-    with pytest.raises(UsageError, match="fit far better as"):
+    with pytest.raises(UsageError, match="appear to be"):
         locate(survey(ROUND, distance, random.normal(0.0, 1.0, 12), times=1500.0, scale=scale), ONE)
 
 
