@@ -114,9 +114,9 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes strumming. With Bourget & Marichal's law, however, Kn excludes strumming,
-    because the march adds its effect. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or
-    chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031, depending on the
-    finish), so that the friction is the same as in the quadratic law.
+    because the march computes the effect of strumming. Pode's constant friction is Kt = Ct ½ρ Cn D.
+    If a cable or chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031,
+    depending on the finish), so that the friction is the same as in the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -182,8 +182,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    Return None for an outline. Also return None for an assembly if no catalogue is given, or if one
-    of its parts is missing from the catalogue or overrides values of its component.
+    An outline has no derived values, so None is returned. An assembly has derived values only if
+    the catalogue contains all its parts, and no part overrides values of its component.
     """
     if isinstance(definition, files.Component):
         return _of_component(definition, 1.0)

@@ -127,7 +127,7 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """Check for a swivel between each wire that is not torque-balanced and a float at its end.
+    """Check that a swivel separates each wire that is not torque-balanced from a float at its end.
 
     Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
     this rotation, so the wire kinks. A swivel at either end lets the wire turn. Chain or synthetic

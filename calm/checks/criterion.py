@@ -194,9 +194,9 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
 
     Limits that the design does not set have their defaults; limits without a default apply only if
     the design sets them. The friction coefficient of an anchor, if specified, overrides
-    `anchor_friction`. The result includes load ratings that the line raises above those of the
-    component, and all other settings that make the check more lenient. If `surface` is true, the
-    top of the mooring has a minimum depth only if the design sets one.
+    `anchor_friction`. The result includes all values and settings that make the check more lenient,
+    such as a load rating that is higher on the line than in the catalogue. If `surface` is true,
+    the top of the mooring has a minimum depth only if the design sets one.
     """
     given = file.checks.minimum_top_depth is not None
     used = (
