@@ -20,8 +20,8 @@ from calm.units import QuantityError, parse_quantity
 def net_buoyancy(component: files.Component, gravity: float) -> float:
     """Return the net buoyancy in reference water, positive up [N; N/m for a cable or chain].
 
-    The value is the specified buoyancy or weight. Without either, it is computed from the mass and
-    the acceleration of gravity [m/s²].
+    The value is the specified buoyancy or weight. Without a buoyancy or weight, the value is
+    computed from the mass and the acceleration of gravity [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)

@@ -322,7 +322,7 @@ def profiler(result: LegResult) -> Iterator[Verdict]:
     """Check the tension, wire, path and drive force of each profiler at its current position.
 
     Other positions of the profiler are checked as separate situations. The flow along the wire
-    past the profiler is at most its speed plus the current times the sine of the tilt.
+    past the profiler is at most the speed of the profiler plus the current × sine of the tilt.
     Wheel friction, and the effect of compression on the weight of the profiler, are unknown and
     neglected.
     """

@@ -77,9 +77,9 @@ class Criterion:
         remedy
     least : whether the limit is a lower limit
     beyond : state if the limit is exceeded: fail or warn
-    silent : whether a value of NaN means that the criterion does not apply; otherwise it means that
-        the value is unknown
-    source : source of the limit; "" if it is the source of the rule
+    silent : whether a value of NaN means that the criterion does not apply; otherwise NaN means
+        that the value is unknown
+    source : source of the limit; "" for the source of the rule
     lacks : key of the missing component value, if `limit` is None
     stated : function that takes the value and the result, and returns value and limit of a more
         customary quantity

@@ -154,7 +154,7 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
     """Return the net forces (n,) of the pieces with their clamps, positive up [N].
 
-    They are computed with the water density at the depths of the pieces in equilibrium.
+    The water density is that at the depths of the pieces in equilibrium.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])

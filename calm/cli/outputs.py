@@ -33,9 +33,7 @@ _SIGNS = "°×–−→≤≥²³█▒◦≈"  # characters in the tables
 
 
 def prepare() -> None:
-    """Set up the output streams so that characters they cannot show are replaced by ASCII or by
-    ``?``.
-    """
+    """Set up the output streams: ASCII or ``?`` replaces characters that a stream cannot show."""
     codecs.register_error(_ERROR_HANDLER, _transliterated)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):

@@ -289,8 +289,7 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the parts that rise: in order of surfacing, followed by those that stay below the
-    surface.
+    """List the rising parts in order of surfacing; parts that stay below the surface come last.
 
     If `recovery` is None, the times are None and the parts are in line order.
 
