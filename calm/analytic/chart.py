@@ -351,9 +351,8 @@ def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibr
     """Return the straight cable at the critical angle, if this cable has the given quantities.
 
     A straight cable does not lie on a branch of the curve. In `known`, angles are in rad and
-    tensions are divided by w. Return NoEquilibrium if the
-    quantities do not determine the length of the cable. Return None if no straight cable at the
-    critical angle has these quantities to 1e-9.
+    tensions are divided by w. Return NoEquilibrium if the quantities do not determine the length of
+    the cable. Return None if no straight cable at the critical angle has these quantities to 1e-9.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

@@ -182,8 +182,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    An outline has no derived values, so None is returned. An assembly has derived values only if
-    the catalogue contains all its parts, and no part overrides values of its component.
+    Return None for an outline. An assembly has derived values only if the catalogue contains all
+    its parts, and if no part overrides values of its component. Otherwise return None.
     """
     if isinstance(definition, files.Component):
         return _of_component(definition, 1.0)

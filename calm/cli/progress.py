@@ -36,8 +36,8 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 class ProgressTeller:
     """Progress display in one line of the terminal; a call with a `Progress` updates the display.
 
-    With `patience` [s], the display appears this long after its creation. Without `patience`, the
-    elapsed time is counted from the first call.
+    With `patience` [s], the display appears when this time has passed since its creation. Without
+    `patience`, the elapsed time is counted from the first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:

@@ -14,7 +14,7 @@ from calm.files.pieces import clamps_in, holds_instrument
 from calm.physics.line import Floats, Integers
 
 OVERSHOOT = 0.05
-"""Excess of the depth during the drop over the depth at rest, above which it is reported [m]."""
+"""A depth during the drop is reported if it exceeds the depth at rest by more than this [m]."""
 MOMENTS = 5
 """Number of shapes from release to touchdown; the shape at rest is additional."""
 

@@ -31,7 +31,7 @@ HEAD = 38.0
 _PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
 _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
-_NEAR_THE_END = 0.3  # fraction of a group of parts in which the group may end
+_NEAR_THE_END = 0.3  # a group of parts may end within this last fraction of its height
 
 # A4 leaves 180 by 267 mm; a long line is reduced to fit this height, but stays legible
 _WIDTH, _MARGIN = 508.0, 3.0
