@@ -225,8 +225,8 @@ class Outputs:
     def __post_init__(self) -> None:
         """Reject invalid outputs before anything is solved.
 
-        Raises UsageError for a path that cannot be written, is used twice or is that of a mooring
-        file, looks like an option, or has an unknown suffix.
+        Raises UsageError if a path cannot be written, is used twice, is the path of a mooring file,
+        looks like an option, or has an unknown suffix.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment

@@ -190,7 +190,8 @@ def deck_of(
     NoEquilibrium
         The mooring has no equilibrium in the first environment.
     UsageError
-        At `ship_speed` the line does not stream behind the ship, or not as far as `streamed`.
+        At `ship_speed`, the line does not stream behind the ship, or it cannot extend as far as
+        `streamed`.
     """
     first = moorings[0]
     notes: list[str] = []
