@@ -75,9 +75,9 @@ class Tail:
 
         For each possible level, the likelihood is maximised over the other parameters; L is this
         maximum, and L₀ is the likelihood of the fit. The interval contains the levels for which
-        2 ln(L₀/L) is less than `CHI_SQUARE` (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if it is
-        more than 100 standard deviations away from the estimate, because the data then do not bound
-        the level. Raises NotFitted if the search for a maximum fails.
+        2 ln(L₀/L) is less than `CHI_SQUARE` (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if
+        it is more than 100 standard deviations away from the estimate, because the data then do not
+        bound the level. Raises NotFitted if the search for a maximum fails.
         """
         estimate = self.level(growth)
         best = _loss(self.values, self.location, self.scale, self.shape, self.maxima)
