@@ -297,8 +297,9 @@ def _surfacing(deck: Deck) -> list[Table]:
     )
     note = (
         "Surfaces or hangs: time from release to surfacing, or the depth at which the piece hangs "
-        "from the surfaced line. By itself: the piece is buoyant enough to surface alone; other "
-        "pieces are lifted with it. Pieces are listed in order of surfacing, not of hauling. "
+        "from the surfaced line. By itself: the piece is buoyant enough to surface alone; all "
+        "other pieces need the lift of their neighbours. Pieces are listed in order of surfacing, "
+        "not of hauling. "
         "Shackles, links and swivels surface with the pieces they connect."
     )
     tables = [

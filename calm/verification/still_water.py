@@ -41,7 +41,7 @@ from calm.verification.published_case import (
 )
 
 _MARCH = (
-    "1e-6 of the line's length or of the load. The float has the printed forces; the error of "
+    "1e-6 of the line's length or of the load. The printed forces act on the float; the error of "
     "the march is smaller at an angle step of 0.1°."
 )
 
@@ -174,8 +174,8 @@ roots of the closed forms with residuals below 1e-12. They are compared with
 _LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
 
 _WHY = (
-    "Half a unit of the last printed digit, plus 10 % of that. Tension falls linearly along a "
-    "hanging rope, so the stretch of a segment at its mean tension is exact for any angle step."
+    f"{PRINTED} Tension falls linearly along a hanging rope, so the stretch of a segment at its "
+    "mean tension is exact for any angle step."
 )
 
 
@@ -242,7 +242,7 @@ _DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
     "3 % of a time or a tension, 8 % of the fall-back: the error that neglecting inertia may "
-    "cause. The same program without inertia differs from it by 0.4 and 1.1 %."
+    "cause. Without inertia, the results of the other program change by 0.4 and 1.1 %."
 )
 
 
@@ -310,7 +310,7 @@ _PLUMB = sqrt(
 )
 """Terminal speed of the vertical line in closed form, √(net weight/sum of the drags) [m/s]."""
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
-_THREAD = "The drag of the thread and the cork, and the last bend of the line."
+_THREAD = "The drag of the thread and the cork, and the bend that remains in the line."
 
 ANCHOR_DROP = Source(
     "Anchor drop",
