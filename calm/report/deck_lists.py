@@ -16,8 +16,8 @@ from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
-    "By default, CALM adds 10 % of spares, rounded up, and at least one (two for shackles, pins "
-    "and thimbles)."
+    "CALM's rule for spares is 10 %, rounded up, and at least one (two for shackles, pins and "
+    "thimbles)."
 )
 _IMPLIED = (
     "Each shackle includes a bolt, nut and cotter pin, unless its name or note says “screw pin”. A "
