@@ -88,7 +88,9 @@ def recovery_part(deck: Deck) -> ReportPart:
             f"surfaces after {first:.0f} min."
         )
         if rise.tangles:
-            sentences.append("The line may double back during the ascent and change the order.")
+            sentences.append(
+                "The line may double back during the ascent; pieces then surface in another order."
+            )
         if rise.in_still_water:
             sentences.append("The ascent is computed in still water.")
     named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)

@@ -310,7 +310,7 @@ def governing_table(signed: SignedMooring) -> Table:
         note=note,
         ruled=False,
         aside="Use is the utilisation (demand / capacity or required / available), rounded up. "
-        "The bars have a line at 100 % and are hatched above it.",
+        "The bars have a line at 100 % and are hatched beyond it.",
     )
 
 

@@ -121,11 +121,11 @@ _LANDED = (
 CATENARIES = Source(
     "Catenaries",
     """These cases are elastic catenaries (M. Irvine, *Cable Structures*, 1981). C12 has ends 400 m
-apart, one 300 m above the other, 50 N/m and EA 5 MN, with an unstretched length of 520 m and of 490
-m. C13 is a line that reaches a frictionless seabed, the public example of the Python package
-*pycatenary*: ends 5.3 m apart, one 2.65 m above the other, 6.98 m of line, 1.036 N/m, EA 560 kN.
-C14 is a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected values are
-roots of the closed forms with residuals below 1e-12. They are compared with
+apart, one 300 m above the other, 50 N/m and EA 5 MN, with an unstretched length of 520 m
+(suspended) or 490 m (taut). C13 is a line that reaches a frictionless seabed, the public example of
+the Python package *pycatenary*: ends 5.3 m apart, one 2.65 m above the other, 6.98 m of line, 1.036
+N/m, EA 560 kN. C14 is a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected
+values are roots of the closed forms with residuals below 1e-12. They are compared with
 `calm.analytic.catenary` and, if the line can be moored, with the march.""",
     (
         *table(
