@@ -190,9 +190,9 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
 
 
 _LOCI = (
-    "The loci are drawn for the point P, whose y′ is that of the lower end A and whose z′ is that "
-    "of the upper end B.\nA and B lie on the curve. H is their difference in height, D their "
-    "distance, and L the length of cable between them."
+    "The loci are drawn for the point P with the y′ of the lower end A and the z′ of the upper end "
+    "B.\nA and B lie on the curve. H is their difference in height, D their distance, and L the "
+    "length of cable between them."
 )
 _MARGIN = 1.5  # free margin around a label [pt]
 _SHORTEST = 40.0  # length of the shortest locus with a label [pt]
