@@ -80,7 +80,10 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
     """
     p = np.asarray(weight_ratio, float)
     if not np.all(p >= 0.0):
-        raise ValueError("weight over normal drag must not be negative: turn the line upside down")
+        raise ValueError(
+            "the ratio of weight to normal drag must not be negative; a line lighter than water is "
+            "the vertical mirror image of a heavy line"
+        )
     u = cosine_of_critical_angle(p)
     return np.arctan2(np.sqrt(p * u), u)
 
@@ -132,7 +135,7 @@ def tension_ratio(
     m = branch.parameter(_checked(angle))
     if not np.all(np.isfinite(m)):
         raise ValueError(
-            f"an angle is not on the same side of the critical angle, "
+            f"all angles must be on the same side of the critical angle, "
             f"{np.degrees(branch.critical_angle):.6g}°, as the start"
         )
     return np.exp(branch.log_tension(m) - branch.log_tension(branch.parameter(start)))
@@ -178,7 +181,7 @@ def heavy_line(
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
     arcs = np.asarray(arc, float)
     if not np.all(np.isfinite(arcs)):
-        raise ValueError("the arcs of a heavy line must be finite")
+        raise ValueError("the arc lengths along a heavy line must be finite")
     if not -np.pi <= angle <= np.pi:
         raise ValueError(f"the angle of a heavy line must lie from -π to π, not {angle:g}")
 
@@ -274,8 +277,8 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
     angles = np.asarray(angle, float)
     if not np.all((angles > branch.critical_angle) & (angles <= np.pi)):
         raise ValueError(
-            f"angles must lie above the critical angle, {np.degrees(branch.critical_angle):.6g}°, "
-            "and not above 180°"
+            "angles must be greater than the critical angle, "
+            f"{np.degrees(branch.critical_angle):.6g}°, and at most 180°"
         )
     start = float(branch.parameter(0.5 * np.pi))
     rows = []

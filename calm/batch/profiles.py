@@ -421,13 +421,13 @@ def _checked(
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
-            "u, v and w must have the same shape, profiles by levels; they have "
+            "u, v and w must have the same shape, profiles by levels; their shapes are "
             f"{east.shape}, {north.shape}, {up.shape}"
         )
     levels = east.shape[-1]
     if down.shape not in {(levels,), (1, levels), east.shape}:
         raise ValueError(
-            f"depth must have the shape {(levels,)}, or that of u, {east.shape}; it has "
+            f"depth must have the shape {(levels,)} or the shape of u, {east.shape}; its shape is "
             f"{down.shape}"
         )
     shape = east.shape[:-1]

@@ -65,7 +65,10 @@ def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
     try:
         smooth = Design(other, result.leg.for_surface).solve().leg
     except NoEquilibrium as failure:
-        return f" With the drag curve of a smooth shape: {failure.status}.", True
+        text = (
+            f" With the drag curve of a smooth shape, CALM found no equilibrium: {failure.status}."
+        )
+        return text, True
     name, before, after = "offset", _offset(result), _offset(smooth)
     down, then = result.top.knockdown, smooth.top.knockdown
     if result.type != "surface" and down is not None and then is not None:
