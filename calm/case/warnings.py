@@ -317,7 +317,7 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
         afloat = [result.components.label[piece] for piece in solution.afloat]
-        reason, floats = "has no hull, or no mass or volume", "the float is"
+        reason, floats = "has no hull, or neither mass nor volume", "the float is"
         if len(afloat) > 1:
             reason, floats = "are at the surface together", "the floats are"
         state = (

@@ -153,9 +153,7 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
                 f"{wire}, and there is no swivel between it and {beside.label}, which tilts in the "
                 "current."
             )
-            remedy = (
-                "Insert a swivel at this end of the wire, or use wire that is `torque_balanced`."
-            )
+            remedy = "Insert a swivel between the two, or use wire that is `torque_balanced`."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 

@@ -77,7 +77,7 @@ _STRUMMING = (
     "1.2 for a cylinder at rest, 2.5 times as much if it vibrates (Griffin 1985, ASME OMAE)"
 )
 _CHAIN = (
-    "2.4 to 2.6 relative to the bar diameter (OrcaFlex manual, Chain); the bounds are about half "
+    "2.4 to 2.6, based on the bar diameter (OrcaFlex manual, Chain); the bounds are about half "
     "and twice these values"
 )
 

@@ -169,9 +169,8 @@ def _by_maxima(
     if len(maxima) < LEAST_MAXIMA:
         return LevelsRefused(
             "gev",
-            f"annual maxima of {LEAST_MAXIMA} whole years are needed; {len(maxima)} of the {count} "
-            f"years in the record {'has' if len(maxima) == 1 else 'have'} at least "
-            f"{100 * WHOLE:.0f} % of {'its' if len(maxima) == 1 else 'their'} profiles",
+            f"annual maxima of {LEAST_MAXIMA} whole years are needed; years in the record with at "
+            f"least {100 * WHOLE:.0f} % of their profiles: {len(maxima)} of {count}",
         )
     if maxima.max() == maxima.min():
         return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all equal")

@@ -159,8 +159,8 @@ def _inside(shape: float) -> float:
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
-                f"the fitted shape is {shape:.2f}, which is a limit of the search; a shape outside "
-                "the search range may fit better"
+                f"the fitted shape is {shape:.2f}, at a limit of the search; a shape outside the "
+                "search range may fit better"
             )
     return float(shape)
 

@@ -166,7 +166,7 @@ def test_arrays_of_any_layout_are_taken(subsurface: Design) -> None:
 @pytest.mark.parametrize(
     ("shapes", "message"),
     [
-        (((3, 5), (3, 4), (5,)), "same shape, profiles by levels; they have .3, 5., .3, 4."),
+        (((3, 5), (3, 4), (5,)), "same shape, profiles by levels; their shapes are .3, 5., .3, 4."),
         (((), (), (5,)), "must have the same shape, profiles by levels"),
         (((3, 5), (3, 5), (4,)), "depth must have the shape"),
         (((3, 5), (3, 5), (2, 5)), "depth must have the shape"),

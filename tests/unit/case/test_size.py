@@ -294,7 +294,8 @@ GLASS = "{use: ball, label: glass, count: 2, buoyancy: 50 N}"
         ("{use: pair, label: glass}", "glass ball.count", "change `glass.count`"),
         ("{use: pair, label: glass, count: 3}", "glass ball 2.count", "change `glass.count`"),
         ("{use: pair, label: glass, count: 3}", "glass.length",
-         "an assembly has no length: change its count, or a part: `glass upper`, `glass ball`"),
+         "an assembly has no length; change its count, or change one of the parts `glass upper`, "
+         "`glass ball`"),
     ],
 )  # fmt: skip
 def test_an_assembly_is_counted_as_a_whole(mooring, item, change, told):
