@@ -59,7 +59,7 @@ def neutral_line(
     if not (np.all(t > 0.0) and np.all(r > 0.0)):
         raise ValueError("the tension and the normal drag of a neutral line must be above 0")
     if not np.all((start > 0.0) & (start < np.pi)):
-        raise ValueError("a neutral line's angle must lie between 0 and π")
+        raise ValueError("the angle of a neutral line must be between 0 and π")
     cotangent = np.cos(start) / np.sin(start)
     z, x = catenary.position(s, t, t * cotangent, r)
     phi: Floats = np.arctan2(1.0, cotangent + r * s / t)
@@ -183,7 +183,7 @@ def heavy_line(
     if not np.all(np.isfinite(arcs)):
         raise ValueError("the arc lengths along a heavy line must be finite")
     if not -np.pi <= angle <= np.pi:
-        raise ValueError(f"the angle of a heavy line must lie from -π to π, not {angle:g}")
+        raise ValueError(f"the angle of a heavy line must be from -π to π, not {angle:g}")
 
     def follow(s: float, pull: float, phi: float) -> tuple[float, float, float, float]:
         if phi < 0.0:
@@ -234,7 +234,7 @@ def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> H
 def _checked(angle: ArrayLike) -> Floats:
     phi = np.asarray(angle, float)
     if not np.all((phi >= 0.0) & (phi <= np.pi)):
-        raise ValueError("the angle of a heavy line must lie from 0 to π")
+        raise ValueError("the angle of a heavy line must be from 0 to π")
     return phi
 
 

@@ -197,7 +197,9 @@ def solve_profiles(
         levels, east, north, up = _recorded(mooring, u)
         return batch.solve(east, north, levels, up, workers=workers)
     if v is None or depth is None:
-        raise TypeError("u needs v and depth, unless it is a path, a dataset or a table")
+        raise TypeError(
+            "v or depth is missing; they can only be omitted if u is a path, a dataset or a table"
+        )
     return batch.solve(cast("ArrayLike", u), v, depth, w, workers=workers)
 
 

@@ -29,8 +29,8 @@ MOST_COUNT = 1000
 Parts = tuple[Piece | Clamp, ...]
 
 _ANCHOR_WEIGHT = (
-    "the weight that the anchor needs follows from its load: `calm run` prints the weight "
-    "required, and `calm check` the largest of all situations"
+    "the required weight of an anchor follows from its load: `calm run` prints it for one "
+    "environment, and `calm check` for the worst of all situations"
 )
 
 
@@ -208,8 +208,10 @@ def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece
 
 def _refuse_several_items(pieces: list[Piece]) -> None:
     if len({piece.place.item for piece in pieces}) > 1:
-        named = pieces[0].label
-        raise LookupError(f"several items of the line have this label; name one: {named} …")
+        raise LookupError(
+            "several items of the line have this label; select one of them, such as "
+            f"`{pieces[0].label}`"
+        )
 
 
 _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}

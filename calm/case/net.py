@@ -90,7 +90,7 @@ def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | Non
         if length < dist(first, last):
             subject = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
             return Status.NO_EQUILIBRIUM.because(
-                f"{subject} {say('length', length)} long in all, but the ends are held "
+                f"{subject} {say('length', length)} long in total, but the ends are held "
                 f"{say('length', dist(first, last))} apart.",
                 advice="Lengthen a leg, or bring the ends closer together.",
             )

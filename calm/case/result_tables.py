@@ -232,7 +232,7 @@ def _planned(part: Piece | Clamp) -> float:
 class ComponentRow:
     """One piece of a solved line; a row of the table `Components`."""
 
-    part: Piece = column("the piece of the file", of_part=lambda piece: piece, in_repr=False)
+    part: Piece = column("piece as defined in the file", of_part=lambda piece: piece, in_repr=False)
     index: int = column(
         "number of the piece in the file, from 0",
         _OF_PIECES,
@@ -259,7 +259,7 @@ class ComponentRow:
         at_anchor=lambda end: end.height,
     )
     cut_length: float = column(
-        "length before any load",
+        "unstretched length",
         FILES,
         found=lambda line: line.cut_length,
         at_anchor=lambda end: end.height,
@@ -346,7 +346,7 @@ class ComponentRow:
         at_anchor=lambda end: end.above.tension_bottom,
     )
     least_tension: float = column(
-        "minimum tension above the seabed; unknown for a piece entirely on the seabed",
+        "minimum tension in the suspended part; unknown if the whole piece lies on the seabed",
         title="minimum tension",
         unit="N",
         decimals=0,
@@ -361,7 +361,7 @@ class ComponentRow:
         at_anchor=lambda end: 0.0,
     )
     knockdown: float = column(
-        "depth of the upper end less its depth in still water",
+        "depth of the upper end minus its depth in still water",
         _IN_BATCHES | Output.MOORING_TABLE | Output.NET_TABLE,
         place=6,
         found=lambda line: line.knockdown,
@@ -408,7 +408,7 @@ class ClampRow:
 
     prefix: ClassVar[str] = "clamp_"
 
-    part: Clamp = column("the clamp of the file", of_part=lambda clamp: clamp, in_repr=False)
+    part: Clamp = column("clamp as defined in the file", of_part=lambda clamp: clamp, in_repr=False)
     index: int = column(
         "number of the piece with the clamp, from 0",
         _OF_PIECES,
@@ -459,7 +459,7 @@ class ClampRow:
         at_anchor=lambda on: on.anchor.tilt,
     )
     knockdown: float = column(
-        "depth of the clamped instrument less its depth in still water",
+        "depth of the clamped instrument minus its depth in still water",
         _IN_BATCHES,
         found=lambda held: held.knockdown,
         at_anchor=lambda on: on.anchor.knockdown,
@@ -572,7 +572,7 @@ class Shape:
     prefix: ClassVar[str] = "shape_"
 
     depth: Floats = column(
-        "depth of the line",
+        "depth of the node",
         _OF_NODES,
         found=lambda nodes: -nodes.position[:, 2],
         attributes=_LEVEL,
@@ -587,7 +587,7 @@ class Shape:
         _OF_NODES,
         found=lambda nodes: nodes.position[:, 1],
     )
-    tension: Floats = column("tension of the line", _OF_NODES, found=lambda nodes: nodes.tension)
+    tension: Floats = column("tension at the node", _OF_NODES, found=lambda nodes: nodes.tension)
     tilt: Floats = column(
         "angle between the vertical and the segment that ends at the node",
         _OF_NODES,
@@ -656,7 +656,7 @@ class Top:
     x: float = column(f"{_EAST}, at the free end", Output.JSON)
     y: float = column(f"{_NORTH}, at the free end", Output.JSON)
     knockdown: float | None = column(
-        "depth of the free end less its depth in still water", Output.JSON
+        "depth of the free end minus its depth in still water", Output.JSON
     )
     used_buoyancy: float = column(
         "used fraction of the buoyancy of the float at the surface; 1 if the float is submerged",
@@ -692,7 +692,9 @@ class TowPoint:
     """The load of a towed line on the ship."""
 
     tension: float = column("tension of the line at the ship", Output.JSON)
-    angle: float = column("angle of the line at the ship below the horizontal", Output.JSON)
+    angle: float = column(
+        "angle between the horizontal and the line at the ship, positive down", Output.JSON
+    )
     vertical: float = column("downward pull on the ship", Output.JSON)
     horizontal: float = column("backward pull on the ship", Output.JSON)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import hypot
 from typing import Protocol
 
@@ -198,13 +198,7 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
     """Warn about fast flow past a tow, because the design check does not cover tows."""
     fast = fast_pieces(result)
     if fast:
-        row, limit = fast[0]
-        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
-        yield (
-            f"Reynolds number above {power_text(limit)} ({row.label}: "
-            f"{power_text(row.reynolds)}{others}), outside the valid range of the drag "
-            "coefficient. Check the coefficient."
-        )
+        yield f"{fast_text(fast)} Check the coefficient."
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
@@ -222,6 +216,16 @@ def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
     ]
     fast = [(row, limit) for row, limit in rows if row.reynolds > limit]
     return sorted(fast, key=lambda entry: -entry[0].reynolds / entry[1])
+
+
+def fast_text(fast: Sequence[tuple[ComponentRow, float]]) -> str:
+    """Describe the first of the pieces from `fast_pieces`, and the number of these pieces."""
+    row, limit = fast[0]
+    count = f" ({len(fast)} pieces exceed the limits of their coefficients)"
+    return (
+        f"The Reynolds number of {row.label} is {power_text(row.reynolds)}; the drag coefficient "
+        f"is valid up to {power_text(limit)}{count if len(fast) > 1 else ''}."
+    )
 
 
 def power_text(number: float) -> str:

@@ -74,7 +74,10 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
-        message = f"No piece above {piece.label} is buoyant: after release, it stays on the seabed."
+        message = (
+            f"No piece above {piece.label} is buoyant, so the release stays on the seabed when it "
+            "opens."
+        )
         yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
         return
     doubts = []

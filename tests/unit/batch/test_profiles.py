@@ -225,7 +225,7 @@ def test_a_record_is_solved_from_its_file_a_dataset_or_a_table(
 
 
 def test_a_record_and_arrays_are_not_mixed(subsurface: Design) -> None:
-    with pytest.raises(TypeError, match="u needs v and depth"):
+    with pytest.raises(TypeError, match="v or depth is missing"):
         solve_profiles(subsurface, np.zeros((2, 3)))
     with pytest.raises(TypeError, match="contains the whole current"):
         solve_profiles(subsurface, "record.nc", np.zeros((2, 3)), np.zeros(3))

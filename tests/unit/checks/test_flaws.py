@@ -558,7 +558,7 @@ FLAWS = (
         "release-present",
         "release",
         "fail",
-        "No piece above release is buoyant: after release, it stays on the seabed.",
+        "No piece above release is buoyant, so the release stays on the seabed when it opens.",
     ),
     Flaw(
         "a release that is clamped",
