@@ -328,7 +328,7 @@ def test_the_count_of_an_assembly_is_found_by_the_label_of_its_item(mooring, cou
 
 @pytest.mark.parametrize("change", ["block.weight", "anchor.weight", "block.buoyancy"])
 def test_the_weight_of_an_anchor_follows_from_its_load(mooring, change):
-    with pytest.raises(UsageError, match="`calm run` prints the weight required"):
+    with pytest.raises(UsageError, match="`calm run` prints it for one environment"):
         size(mooring(), "tilt(thread) <= 2 deg", change)
 
 
