@@ -252,7 +252,7 @@ class Leg:
             return too_heavy(lift)
         pulls = "pulls the top of the line under water and " if floats_at_rest else ""
         return Status.GROUNDED.because(
-            f"The current {pulls}puts {label} on the seabed. Only the chain of a sub-surface line "
+            f"The current {pulls}puts {label} on the seabed. In a sub-surface mooring, only chain "
             "may lie on the seabed."
         )
 

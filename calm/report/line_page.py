@@ -107,8 +107,8 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Rise {unit}", lambda group: _force(
             max((one.rise_tension or 0.0 for one in group), default=None))),
         note=(
-            "Capacity is the smaller of the working load and the breaking load over its safety "
-            "factor; the launch columns use the factors for the launch. – not judged, ? no "
+            "Capacity is the smaller of the working load and the breaking load divided by its "
+            "safety factor; the launch columns use the factors for the launch. – not judged, ? no "
             "published load, ≈ estimated, ○ accepted. The code of the load case follows the "
             "tension. Equal pieces share a row: tension, capacity and use are those of the piece "
             "with the highest use; minimum, tilt and rise cover all of them."
