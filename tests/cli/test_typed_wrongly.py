@@ -34,7 +34,7 @@ def test_a_command_line(calm, named, words, says):
 @pytest.mark.parametrize(
     ("right", "wrong", "says"),
     [
-        ("toward: 90 deg", "from: 270 deg", "unknown key `from`; the key is `toward`, the direc"),
+        ("toward: 90 deg", "from: 270 deg", "unknown key `from`; use `toward`, and turn the dir"),
         ("toward: 90 deg", "toward: E", "did you mean `toward: 90 deg`?"),
         ("{speed: 0.5 m/s, toward: 90 deg}", "0.5 m/s", "as `current: {speed: 0.5 m/s, toward: "),
         ("{use: weight}", "use weight", "is not an item; write `{use: weight}`"),

@@ -73,7 +73,7 @@ GAPS = {
     table([10, 0.5, 0], [180, 0.1, 0]): "",
     table([0, 0.5, 0]): "",
     table([0, 0.5, 0], [20, 0.4, 0]): "below 20.0 m",
-    table([100, 0.5, 0]): "above 100.0 m and below 100.0 m",
+    table([100, 0.5, 0]): "above 100.0 m or below 100.0 m",
     table([120, 0.5, 0], [200, 0.4, 0]): "above 120.0 m",
 }
 
@@ -84,7 +84,7 @@ def test_a_profile_that_does_not_cover_the_line_is_told(current, tmp_path):
     assert len(found) == bool(GAPS[current])
     if found:
         assert found[0].startswith(
-            f"The current is not given {GAPS[current]}: the value of the nearest"
+            f"The current has no level {GAPS[current]}, so the value of the nearest"
         )
 
 
