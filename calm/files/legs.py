@@ -29,8 +29,9 @@ ONE_LEG_ONLY = (
     "drop, make a file of its most loaded leg alone"
 )
 NET_SURE = (
-    "single lines; for the effect of drag, buoyancy or current on a net, use `calm run --explain`, "
-    "or solve the net with other values, in a copy of its file or by `with_` in Python"
+    "single lines; to see the effect of drag, buoyancy or current on a net, use `calm run "
+    "--explain`, or change the values in a copy of its file, or with `with_` in Python, and solve "
+    "the net again"
 )
 
 _Offset = Annotated[float, QuantityField("length")]

@@ -320,7 +320,7 @@ class LineReader:
             wanted = f"{total * count} number{'s' * (total * count != 1)}"
             message = f"`serial` must have {wanted} for {named}, not {len(numbers)}"
             if not own:
-                message = "`serial`: no part is an instrument, a release or a float"
+                message = "`serial`: this item contains no instrument, release or float"
             item.refuse(("serial",), message)
             return pieces
         mine = {

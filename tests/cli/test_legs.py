@@ -855,7 +855,7 @@ def test_an_export_says_that_its_seabed_is_level(
     file.write_text(SLOPE)
     assert run("export", file, "--to", "moordyn", "-o", tmp_path / "slope.txt") == 0
     told = capsys.readouterr().err
-    assert "not exported: the slope of the seabed: it is level" in told
+    assert "not exported: the slope of the seabed: the exported seabed is level" in told
     depths = [anchor.depth for anchor in load(file).solve().anchors]
     written = (tmp_path / "slope.txt").read_text()
     deepest = next(line for line in written.splitlines() if "WtrDpth" in line)
