@@ -47,7 +47,7 @@ class Limit:
 _UFC = "UFC 4-159-03, table 3-7: a factor of 3 on the breaking strength of new chain and wire"
 _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
 _DEWEY = RULES["anchor-weight"].source
-_NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
+_NO_FIGURE = "practice of mooring groups: 50 to 100 kgf above the release; no value is published"
 _BERTEAUX = (
     "Berteaux, Prindle & May, OCEANS '87: fish attack ropes from the surface to 1000 m and deeper"
 )

@@ -130,8 +130,8 @@ class Rigid(definition.Definition):
         "follows",
     )
     rao: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_rao)] = optional(
-        "response of a float by angular frequency in rad/s: heave per metre of elevation and "
-        "its phase; with pitch, also pitch per metre of elevation and its phase",
+        "response of a float at each angular frequency in rad/s: heave per metre of wave elevation "
+        "and phase of the heave; optionally also pitch per metre and phase of the pitch",
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
     )
     centre_of_mass: Annotated[float | None, _REACH] = optional(
@@ -319,8 +319,8 @@ class Profiler(Shaped):
 
     kind: Literal["profiler"] = Field(description="kind of the component")
     between: Annotated[tuple[definition.Text, ...] | None, BeforeValidator(_two_stops)] = optional(
-        "labels of its upper and its lower stop: clamps on its wire, or pieces at the "
-        "ends of the wire",
+        "labels of the upper and the lower stop, which are clamps on the wire, or pieces at "
+        "the ends of the wire",
         ["upper bumper", "lower bumper"],
     )
     minimum_tension: Annotated[float, definition.POSITIVE_FORCE] = described(

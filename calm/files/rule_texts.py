@@ -93,9 +93,8 @@ RULES = {
         "Static load and opening load given by the manufacturer",
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Clamp grip", "load",
-        "load on every clamp from its weight in water and its drag, in the current, the anchor "
-        "drop "
-        "and the ascent",
+        "load on every clamp from its weight in water and its drag: in the current, during the "
+        "anchor drop and during the ascent",
         "`grip` of the clamp, or its `breaking_load`; not judged if neither is given",
         "Values given by the manufacturer of the clamp",
         "the result does not contain the current at each clamp", figures=("grip",)),

@@ -537,7 +537,7 @@ def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     """The angle of friction of 0.6 is 31 degrees."""
     text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
     with pytest.raises(
-        InputError, match=r"slides by its own weight .* it holds on slopes of less than 31°"
+        InputError, match=r"slides under its own weight .* it holds on slopes of less than 31°"
     ):
         load(tmp_path / "slope.yaml", text=text)
 
