@@ -166,7 +166,8 @@ class LineReader:
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
             message = (
-                "`length_at` is for cables and chains; this piece has the length in its definition"
+                "`length_at` is for cables and chains; this piece has the length given in its "
+                "definition"
             )
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
