@@ -145,7 +145,8 @@ RULES = {
         "depth; a warning if the rope is measured under more than its working load, or a "
         "fifth of its breaking load",
         "CALM's own limit: soundings have a similar error, and ropes are measured under a small "
-        "load"),
+        "load",
+        "`calm check` checks this in each environment"),
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
