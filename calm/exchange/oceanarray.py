@@ -32,8 +32,8 @@ ROPE = "rope"
 """Name of the rope inserted between pieces."""
 # keys that may name a component
 _NAMES = ("component_id", "label", "hardware_type", "category", "instrument")
-_CLOSE = 0.05  # m between pieces that touch
-# relative difference, and difference in metres, allowed between heights: most are whole metres
+_CLOSE = 0.05  # m: maximum distance between pieces that touch
+# relative and absolute [m] tolerance of heights, most of which are given in whole metres
 _OFF, _ROUNDED = 0.02, 0.5
 _MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
 # prefixes of the keys of a position, the most accurate first

@@ -123,10 +123,10 @@ class WordIndex:
     def suggested(self, text: str, near: str | None) -> list[str]:
         """Return up to three suggested ids for a text that is not an id.
 
-        `near` is the id with the most similar spelling. It is the only suggestion if the text
-        contains a digit, such as in a size, or if no component contains every word of the text.
-        Otherwise, the suggestions are the components that contain every word, and those used most
-        often in the shipped lines come first.
+        `near` is the id with the most similar spelling. This id is the only suggestion if the text
+        contains a digit, because digits usually give a size, or if no component contains every word
+        of the text. Otherwise, the suggestions are the components that contain every word. The
+        components used most often in the shipped lines come first.
         """
         if near and any(map(str.isdigit, text)):
             return [near]
@@ -142,7 +142,7 @@ class WordIndex:
         first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
-        """Find the components that contain all words of a text and meet all its limits.
+        """Find the components that contain all words and meet all limits of a text.
 
         A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
         spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another

@@ -193,7 +193,7 @@ class LimitKey:
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
     source : source of the default
-    backed : whether the design gives a source for the value that it sets
+    backed : False if an item of the line overrides the default without giving a source
     share : whether the value is a fraction, which is displayed in percent
     """
 

@@ -205,7 +205,7 @@ class Chain(Flexible):
 
 
 class Anchor(definition.Definition):
-    """An anchor at the lower end of a line; its drag counts only while it falls."""
+    """An anchor at the lower end of a line; the drag of the anchor is used only during its fall."""
 
     role: definition.Role = "anchor"
     kind: Literal["anchor"] = Field(description="kind of the component")
@@ -340,7 +340,7 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the keys of a definition that an override invalidates, so that they are dropped.
+    """Return the keys of a definition that must be dropped because of an override.
 
     Parameters
     ----------
@@ -354,11 +354,11 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     ================ =========================== ==============================================
     body, profiler   a drag in another form      its drag keys, and the `kt` given with them
     rigid            `buoyancy`                  `volume`
-    rigid            `mass` or `volume`, both    `buoyancy`, which then follows from them
-                     being known
+    rigid            `mass` or `volume`, if both `buoyancy`, which then follows from them
+                     are known
     cable            `weight` or `buoyancy`      the other of the two
-    cable            `density`, or `mass` where  `weight`, `buoyancy`, which then follow
-                     a density is known
+    cable            `density`, or `mass` if a   `weight`, `buoyancy`, which then follow
+                     density is known
     cable            `stiffness`                 `elongation`, `permanent_elongation`
     cable            `elongation`                `stiffness`
     chain, anchor    `mass` or `density`         `weight`, which then follows

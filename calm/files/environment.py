@@ -331,7 +331,7 @@ STRONGEST_WIND = 75.0
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
     """Return remarks about implausible currents in a table of the file.
 
-    There are none for a current from a record, whose remarks are reported with it.
+    A current from a record gives no remarks here, because the record reports its own remarks.
     """
     if current.record is not None:
         return []

@@ -66,7 +66,8 @@ class Differences:
     Attributes
     ----------
     changed : changed values: first those outside the line, then those in the line from the top down
-    moved : parts that have moved within the line, each with the parts above it before and after
+    moved : parts that have moved within the line; each `Change` has the part above the moved part
+        in the first and in the second line
     removed, added : labels of removed and added pieces and clamps
     pairs : matched pieces and clamps, in the order of the first line
     """
@@ -286,10 +287,10 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """A part to be matched: its label without an added number, and keys of its content.
+    """A part to be matched: its label without an added number, and its content.
 
-    `contents` are comparison keys, from the strictest to the least strict. Parts whose keys are
-    equal are considered equal.
+    `contents` are the keys by which parts are compared, from the strictest to the least strict.
+    Parts with equal keys match.
     """
 
     label: str

@@ -65,7 +65,7 @@ _At = Annotated[
 
 
 class HeldKeys(Model):
-    """Position of a held end, such as at a ship, a pier or a platform."""
+    """Position of a held end, for instance at a ship, a pier or a platform."""
 
     depth: _Offset = Field(
         description="depth below the surface; negative above it, in air", examples=["2 m", "-10 m"]

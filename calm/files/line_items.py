@@ -26,7 +26,9 @@ _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count", "serial"})
 _NUMBERED = (("instrument", "release"), ("float",))
-"""Assembly parts that serial numbers refer to, by role: the first role present in the assembly."""
+"""Roles of the parts to which the serial numbers of an assembly refer; the second group is used if
+the assembly has no part of the first group.
+"""
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _Part = TypeVar("_Part", Piece, Clamp)

@@ -130,7 +130,7 @@ class SourceMapping:
         return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """Return a copy of this mapping with a base, whose keys in `dropping` are ignored."""
+        """Return a copy of this mapping with a base; keys of the base in `dropping` are ignored."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return replace(self, data={**kept, **self.data}, base=base)
 

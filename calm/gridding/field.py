@@ -7,9 +7,10 @@ an exponential function in time (Rasmussen and Williams, Gaussian Processes for 
 scales below the sensor spacing, and sensor noise.
 
 An error in the depth of the instruments causes an error that equals the depth error times the local
-gradient. It is added to the standard deviation of the result without averaging over instruments,
-because it may be common to the line for the whole record. Half of its variance also counts as
-independent noise of each instrument, which gives more weight to instruments of well-known depth.
+gradient. This error is added to the standard deviation of the result without averaging over
+instruments, because it may be common to the line for the whole record. Half of its variance also
+counts as independent noise of each instrument, which gives more weight to instruments of well-known
+depth.
 """
 
 from __future__ import annotations

@@ -88,7 +88,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append derivatives with respect to the datum and the offsets to those of the factors.
+    """Append the derivatives for the datum and the offsets to the derivatives for the factors.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ class LinearLaw:
 
 
 MISHUNG = -1
-"""Code of a sensor that hangs elsewhere throughout, in place of a time."""
+"""Code, instead of the index of a time, for a sensor that is misplaced during the whole record."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
 """Share of the record over which a drift lasts, by the code that `moved_by` takes."""
 

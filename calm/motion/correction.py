@@ -85,7 +85,7 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the depths in the block of times that begins at `start`, ready to be written.
+    """Estimate the depths in the block of times that begins at `start`, and pack them for writing.
 
     The smallest and the largest of these depths [m] are appended to `extent`.
     """

@@ -132,7 +132,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for faults in a record, by the likelihood of the pressures with each fault."""
+    """Search for faults in a record; the likelihood of the pressures decides between faults."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -161,9 +161,9 @@ class Diagnosis:
     def _at(self, late: float) -> Floats:
         """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
-        Between the times of the record, the interpolation takes the slope and a quarter of the
-        curvature. It neither amplifies nor smooths noise; either would by itself favour a clock
-        error.
+        Between the times of the record, the interpolation uses the slope and a quarter of the
+        curvature. The interpolation therefore neither amplifies nor smooths noise; either would
+        favour a clock error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0

@@ -347,8 +347,8 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order. Each match is returned as its cost, and the index in `many` for each
-    of `few`. The second-cheapest match is None if there is only one match.
+    Matches preserve the order. Each match is returned as its cost and a list, which has an index in
+    `many` for each of `few`. The second-cheapest match is None if there is only one match.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ and RAPID's depths without currents up to 26 % worse.
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""
 TIDE_HOURS = 2.4
-"""Correlation time of the tide [h]: the autocorrelation of a semidiurnal tide falls to 1/e."""
+"""Time in which the autocorrelation of a semidiurnal tide falls to 1/e [h]."""
 STEP = 0.02
 """Typical hourly step of the datum and offsets [m].
 
@@ -99,10 +99,7 @@ These steps and the initial values have Student's t distribution with one degree
 allows rare steps that are many times as large.
 """
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
-"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom.
-
-A place of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations.
-"""
+"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom."""
 ZEROS = 2.0
 """Variance of Student's law with four degrees of freedom over that of a normal law."""
 SETTLED = 6
@@ -753,8 +750,8 @@ class CurrentSmoother:
         """Return a linear model of the pressures at several times, with currents from meters alone.
 
         The model is linearised about the smoothed currents of the meters. Also return these
-        currents at the knots, and the line in these currents with its slopes with respect to the
-        logarithm of a factor on all speeds.
+        currents at the knots, and the depths of the line in these currents. The slopes of the
+        depths are derivatives with respect to the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

@@ -45,11 +45,10 @@ class Fault:
     ----------
     label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : size of the fault, and the limits of its 95 % interval. The size of a `clock`
-        fault is the lag [h]; of a `gain`, the gain; of an `offset` or `moved`, the excess depth
-        [m]; of a `drift`, the excess depth at the end of the drift [m]; of a `slip`, the distance
-        moved down the line [m]; of `exchanged`, 0; of a fault in `OF_LINE`, the factor on the value
-        in the file or on the reading of the meter
+    value, low, high : size of the fault, and the limits of its 95 % interval. Sizes are, by kind:
+        `clock`: lag [h]; `gain`: gain; `offset` and `moved`: excess depth [m]; `drift`: excess
+        depth at the end of the drift [m]; `slip`: distance moved down the line [m]; `exchanged`: 0;
+        kinds in `OF_LINE`: factor on the value in the file or on the reading of the meter
     odds : odds in favour of this fault against all alternatives, including no fault
     since : start of a slip or drift; NaT for other faults
     until : end of a drift; NaT for other faults

@@ -218,7 +218,7 @@ class CellEditor(field.ScrolledEntry):
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:
-        """Accept a valid value when the focus moves elsewhere, such as after a mouse press."""
+        """Accept a valid value when the focus moves elsewhere, for instance by a mouse press."""
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:

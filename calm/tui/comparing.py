@@ -232,7 +232,7 @@ class ComparingScreen(line_screen.LineScreen):
 def changed_lines(before: str, after: str) -> list[str]:
     """Return the first lines that differ between two texts.
 
-    Removed lines begin with ``-``, added lines with ``+``.
+    Removed lines begin with ``-``, and added lines with ``+``.
     """
     diff = unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
     lines = [line for line in diff if not line.startswith(("---", "+++", "@@"))]

@@ -145,7 +145,7 @@ class Saving:
     def check_external_change(self) -> None:
         """Reload the file if another program has changed it.
 
-        If that would discard unsaved work, warn instead.
+        If there is unsaved work, show a warning instead.
         """
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):

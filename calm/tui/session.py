@@ -311,7 +311,7 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Pass the unsaved text to the working file, for the next backup copy; return this file."""
+        """Pass the unsaved text to the working file for its next backup copy; return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 

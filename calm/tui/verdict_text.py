@@ -191,8 +191,8 @@ def _holds(
 ) -> VerdictLine:
     """Return the verdict line on the required and the actual anchor weight.
 
-    Without an anchor, it gives the required weight only, which is the largest of all situations
-    once these are solved.
+    If the line has no anchor, the verdict line gives only the required weight. This weight is the
+    largest of all situations, once all situations are solved.
     """
     if worst is None:
         needed, when = result.anchor_load.required_weight, ""

@@ -25,7 +25,7 @@ PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
 
 
 class Kind(StrEnum):
-    """Origin of an expected value, which determines how strong an agreement is as evidence."""
+    """Origin of an expected value, which determines how much an agreement with CALM proves."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"

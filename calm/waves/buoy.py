@@ -69,10 +69,10 @@ class Buoy:
         [degrees/m] and phase [degrees] of pitch may follow
     follows : whether heave and pitch follow the motion of the water surface
     panels : (12, f) results of a panel method. Row 0 is the angular frequency ω [rad/s]. Rows 1 to
-        8 are added mass and radiation damping, in turn for heave, for surge, for the coupling of
-        surge with pitch, and for pitch about the surface. Rows 9 to 11 are the exciting forces per
-        metre of elevation in heave, surge and pitch; the last two are divided by ω². None means
-        that formulas are used instead
+        8 are four pairs of added mass and radiation damping: for heave, for surge, for the coupling
+        of surge with pitch, and for pitch about the surface. Rows 9 to 11 are the exciting forces
+        per metre of elevation in heave, surge and pitch; the forces in surge and pitch are divided
+        by ω². None means that formulas are used instead
     profile : (s, 2) radius of each horizontal section of the hull, and height of the section above
         the surface [m], from the keel up; None if the pitch is not computed
     centre : height of the centre of mass above the surface, for the float with all pieces on it [m]
@@ -110,9 +110,10 @@ class Buoy:
 
         The exciting force is per metre of wave elevation. Without a prescribed response or a panel
         method, the float is represented by a disc with radius R at the draft T. The Froude-Krylov
-        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³, and the acceleration
-        of the water at this draft excites it. The radiation damping follows from Haskind's
-        relation, k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
+        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³. The added mass times
+        the mean acceleration of the water over the disc is part of the exciting force. The
+        radiation damping follows from Haskind's relation, k ω |X|² / (2 ρ g²) in deep water (Newman
+        1977, 6.18).
 
         Parameters
         ----------
@@ -188,9 +189,9 @@ class Buoy:
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the righting moment of the float per radian of pitch [N m].
 
-        The righting moment is the sum of the moments of the waterplane, the buoyancy and the
-        weight, and of the pull of the line at the bail. For a free float it equals weight times
-        metacentric height.
+        The righting moment is the sum of four moments: of the waterplane, of the buoyancy, of the
+        weight, and of the pull of the line at the bail. For a free float, the righting moment is
+        the weight times the metacentric height.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -206,8 +207,9 @@ class Buoy:
 
         They are integrated over the sections of the hull. Exciting forces include the wave pressure
         on the hull and the inertia of the water, with the local acceleration: the added mass of the
-        sections is reduced by `END_LOSS`, that of the bottom follows from `DISC_TURNED`. Radiation
-        follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977, 6.18).
+        sections is reduced by `END_LOSS`, and that of the bottom follows from `DISC_TURNED`.
+        Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977,
+        6.18).
         """
         radius, height = profile.T
         area = pi * radius**2

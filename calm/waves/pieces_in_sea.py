@@ -80,9 +80,9 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state, computed up to three cut-off frequencies of the waves.
+    """Responses to a sea state for three cut-off frequencies of the waves.
 
-    These are the cut-off frequency itself, half this frequency, and twice this frequency.
+    The fields are the responses for the full, half and twice the cut-off frequency of the analysis.
     """
 
     full: WaveResponse

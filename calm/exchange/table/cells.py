@@ -87,7 +87,7 @@ SheetRows = list[list[str]]
 
 @dataclass(frozen=True)
 class ColumnUnit:
-    """The unit of a column: its factor to SI, and whether values are per metre.
+    """The unit of a column: its conversion factor to SI, and whether values are per metre.
 
     `by_mass` is true if forces are given in kilograms or pounds.
     """

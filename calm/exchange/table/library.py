@@ -19,16 +19,16 @@ from calm.whole_file import read_content
 
 # columns that an element does not have, whatever the headings are
 _NOT_THEIRS = ("at", "count", "height", "depth")
-_A_METRE = 1e-6  # m: tolerance of the length of 1 m to which a line's figures apply
+_A_METRE = 1e-6  # m: tolerance for the length of 1 m to which the values of a line refer
 _SHEETS = 3  # least number of sheets with headings in a library
 
 _LINES = ("wires", "chains")
-_NAME = 16  # bytes of a name if the file does not give them
-# numbers of figures behind a name: buoyancy, mass in air (newer versions), length, width, diameter,
+_NAME = 16  # bytes of a name, if the file does not give their number
+# numbers of values after a name: buoyancy, mass in air (newer versions), length, width, diameter,
 # Cd, material
 _FIGURES = (6, 7)
 _CENTIMETRE = 0.01
-_METRE = 100.0  # cm: the length of a line whose figures are per metre
+_METRE = 100.0  # cm: length of a line whose values are per metre
 
 
 Library = Mapping[str, ListRow]

@@ -30,7 +30,7 @@ from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list has no data on the water and little data on drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
-_NAMES = 3  # least number of names in a list that has only names
+_NAMES = 3  # minimum number of names in a list that has only names
 
 
 def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:

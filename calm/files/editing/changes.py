@@ -302,7 +302,7 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
 
     The index is None for an added line.
     """
-    # Comparing is slow, and most often only a line differs.
+    # Comparing is slow, and usually only one line differs.
     head = _common_start(old, new)
     tail = _common_start(old[head:][::-1], new[head:][::-1])
     middle = old[head : len(old) - tail], new[head : len(new) - tail]
