@@ -376,7 +376,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
     """Yield id and text of each definition; the id is None if it cannot be recognised.
 
-    Empty lines precede the text, so that its line numbers agree with the file.
+    Empty lines precede the text, so that the line numbers agree with those of the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0

@@ -144,7 +144,7 @@ class _Reader:
         start = mark.index + self._start
         place = mark.line + 1, mark.column + 1
         if isinstance(event, events.AliasEvent):
-            if event.anchor not in self._anchors:  # else the mistake is reported there
+            if event.anchor not in self._anchors:  # a known anchor has been reported already
                 raise MarkedYAMLError(None, None, f"found undefined alias '{event.anchor}'", mark)
             return Node("scalar", start, start, *place, "", None)
         if event.anchor is not None or event.tag not in _PLAIN_TAGS:

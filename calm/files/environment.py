@@ -164,8 +164,8 @@ class UniformCurrent(Model):
 class CurrentFile(Model):
     """A measured or modelled current at one time, in a CSV or NetCDF file.
 
-    `declination` [degrees, positive east] is the magnetic declination. It is given if directions
-    in the file are relative to magnetic north.
+    `declination` [degrees, positive east] is the magnetic declination, which is given if the
+    directions in the file are relative to magnetic north.
     """
 
     file: Text = described("CSV or CF NetCDF, in the folder of the mooring file", "adcp.nc")

@@ -150,8 +150,8 @@ def _known_clamps(
 ) -> list[Known]:
     """Return the contents of clamps, which match only if their pieces are matched.
 
-    `partner` gives the index of the matched piece in the other line; it is None for the clamps of
-    the second line.
+    `partner` gives the index of the matched piece in the other line. For the clamps of the second
+    line, `partner` is None.
     """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []

@@ -215,7 +215,7 @@ class LineReader:
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
         """Return the depth [m] that determines the length of a piece that is cut to fit.
 
-        It is the depth of the top of the line or, in a tow, of the lower end of the piece.
+        This is the depth of the top of the line or, in a tow, of the lower end of the piece.
         """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
@@ -460,7 +460,7 @@ class LineReader:
     ) -> None:
         """Record overrides that make the check more lenient.
 
-        They allow a component more load, depth or buoyancy, or give it less weight or drag.
+        Such overrides allow a component more load, depth or buoyancy, or less weight or drag.
         """
         loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")

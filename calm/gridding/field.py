@@ -86,7 +86,7 @@ class GriddedQuantity:
     noise : standard deviation of sensor noise, in the unit of the quantity
     in_time : whether the estimate at a time also uses the samples at the neighbouring times
     beyond : factor by which standard deviations are multiplied above the uppermost and below the
-        lowest sensor; it is found by withholding each sensor in turn
+        lowest sensor; the factor is found by withholding each sensor in turn
     """
 
     samples: Samples
@@ -387,8 +387,10 @@ MIN_RESIDUALS = 20
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Find the factor by which bands must be widened to cover 95 % of a sensor beyond all others,
-    if each sensor is withheld in turn.
+    """Find the factor by which 95 % intervals must be widened beyond the outermost sensors.
+
+    Each sensor is withheld in turn. The widened intervals cover 95 % of its values at times when
+    the sensor is above or below all others.
     """
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)

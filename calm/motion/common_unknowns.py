@@ -19,7 +19,7 @@ from calm.physics.line import Floats, Integers
 FURTHEST = 1.0
 """Limit on the logarithm of a factor."""
 REACH = 5.0
-"""Least distance from a sensor to the points between which its slope on the line is taken [m]."""
+"""Minimum distance from a sensor to the points above and below that give the slope there [m]."""
 
 
 @dataclass(frozen=True)
@@ -292,8 +292,8 @@ DATUM = 0.01
 OFFSET = 1.0
 """Prior deviation of the offset of a sensor [m]."""
 ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
-"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that it
-is misplaced from the start, and the probability that its clamp slips during the record.
+"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that a
+sensor is misplaced from the start, and the probability that its clamp slips during the record.
 """
 MOVED = 0.01
 """Probability that the whole mooring is moved to another depth during the record."""

@@ -52,8 +52,8 @@ LEAST = {
 }  # fmt: skip
 """Smallest faults that are reported.
 
-Units: m for `moved`, `offset`, `drift` and `slip`; for `clock` hours, and also time steps of the
-record; 1 for `gain`; otherwise the logarithm of a factor.
+Units: m for `moved`, `offset`, `drift` and `slip`; for `clock`, hours or time steps of the record,
+whichever are longer; 1 for `gain`; logarithm of a factor for the other kinds.
 """
 RIVALS = 3
 """Maximum number of rival explanations reported."""

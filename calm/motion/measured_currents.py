@@ -35,7 +35,7 @@ TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
 which the factors are updated.
 """
 FACTOR_STEP = 0.05
-"""Step of the logarithm of a factor for its slopes, and change above which slopes are renewed."""
+"""Step in the logarithm of a factor to find its slopes, and change that requires new slopes."""
 STALE = 0.03
 """Change in a current above which its slopes are renewed [m/s]."""
 LONGEST = 0.5
@@ -101,9 +101,9 @@ allows rare steps that are many times as large.
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
 """Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom."""
 ZEROS = 2.0
-"""Variance of Student's law with four degrees of freedom over that of a normal law."""
+"""Ratio of the variance of Student's law with four degrees of freedom to that of a normal law."""
 SETTLED = 6
-"""Number of steps before the line error is estimated, as it would absorb sensor steps."""
+"""Iterations before the line error is estimated, since it would absorb sensor steps at first."""
 LONGER = 30.0
 """Maximum factor by which a step of the line error is lengthened."""
 FURTHEST = 0.7
@@ -293,7 +293,7 @@ class CurrentSmoother:
         return np.interp(self.knots.depth, place[order], value[order])
 
     def _measured_state(self, place: Floats) -> Floats:
-        """Return (n, 2 K) measured currents less their mean, interpolated to the knots."""
+        """Return (n, 2 K) measured currents minus their mean, interpolated to the knots."""
         both = self.measured.u + 1j * self.measured.v
         known = np.flatnonzero(np.isfinite(both).any(axis=1))
         state = np.zeros((len(both), len(self.mean)))

@@ -23,16 +23,16 @@ OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
 LIKELY = 20.0
 """Odds above which a fault is reported."""
 FAR_OFFSET = 2.5
-"""Offset of all sensors above which it is reported, in prior standard deviations."""
+"""Common offset of all sensors above which the offset is reported, in prior deviations."""
 FAR_DATUM = 10.0
-"""Offset of all sensors that is always reported [m]."""
+"""Common offset of all sensors above which the offset is always reported [m]."""
 FAR_LENGTH = 5.0
-"""Error in length above which it is reported if currents were not measured, in prior deviations.
+"""Error in length above which the error is reported if no currents were measured.
 
-Inferred currents absorb much of an error in length.
+The unit is the prior deviation. Inferred currents absorb much of an error in length.
 """
 FAR_FACTOR = 3.0
-"""Distance of a drag factor from 1, in prior deviations, above which it absorbs another error."""
+"""Logarithm of a drag factor, in prior deviations, above which another error is suspected."""
 WORST = 0.3
 """Share of the knockdown above which the error of the line is reported."""
 
@@ -263,7 +263,7 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the 10 % of the times with the smallest knockdown, but of at least one time.
+    """Return a mask of the 10 % of the times with the smallest knockdown, and at least one time.
 
     Parameters
     ----------

@@ -244,9 +244,9 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
 CONSTANT = 1e-6
 """Range of depths up to which a sensor counts as constant [m]."""
 MISPLACED = 20.0
-"""Tolerance for the shallowest depth of a sensor against its place in still water [m].
+"""Distance by which readings may be shallower than the sensor in still water [m].
 
-A factor of two is also accepted.
+Readings deeper than half of the depth in still water are also accepted.
 """
 UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
 """Ratio of pressures with a confused unit to the true pressures."""
@@ -255,7 +255,7 @@ ALIKE, APART = 0.03, 3.0
 between exchanged sensors [m].
 """
 BELOW = 1.1
-"""Readings are too deep if they exceed the seabed by this factor and by `MISPLACED`."""
+"""Readings are too deep if they exceed the water depth by this factor and by `MISPLACED`."""
 
 
 def plausible(
@@ -266,9 +266,9 @@ def plausible(
     A reading is implausible if it is far below the seabed, if the sensor is stuck, or if the
     reading is far shallower than the sensor in still water. Such shallow readings are fill values,
     or were taken on deck. Only the first of several readings at the same time is kept. Depths are
-    corrected if the readings on deck show
-    that the pressures are absolute. If most readings are too shallow or too deep, no reading is
-    removed, because the sensor itself is wrong; `unusable` then reports the sensor.
+    corrected if the readings on deck show that the pressures are absolute. If most readings are too
+    shallow or too deep, no reading is removed, because the sensor itself is wrong; `unusable` then
+    reports the sensor.
 
     Parameters
     ----------

@@ -174,7 +174,7 @@ class CellEditor(field.ScrolledEntry):
     def text(self) -> str | None:
         """Text to write to the cell; None if the text is unchanged or invalid."""
         reading = self._check(self.value)
-        # an untouched value only gets its unit, no tidying
+        # an untouched value may get a unit, but is not tidied
         is_completed = reading.text.startswith(f"{self.value.strip()} ")
         return reading.text if reading.is_good and (self.is_typing or is_completed) else None
 

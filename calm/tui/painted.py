@@ -32,9 +32,9 @@ _TOKEN = re.compile(
 )
 """Pattern of a position, style, frame mark, text, or any other sequence or control character."""
 _INCOMPLETE = re.compile(r"\x1b(\[[\x20-\x3f]*|\][^\x07\x1b]*\x1b?)?$")
-"""Beginning of a sequence at the end of a text.
+"""Pattern of an incomplete sequence at the end of a text.
 
-On Windows, Textual writes 8192 characters at a time.
+On Windows, Textual writes 8192 characters at a time, and so cuts sequences.
 """
 _NEW_SCREENS = re.compile(r"\x1b\[(\?1049[hl]|[23]J)")
 

@@ -217,7 +217,7 @@ def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
 def _at_worst(worst: Finding, figure: str) -> str:
     """Return the text for a value in the situation of the most severe finding.
 
-    The text is "" if that is the mooring as given.
+    The text is "" if that situation is the mooring as given.
     """
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 

@@ -205,8 +205,8 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        They are integrated over the sections of the hull. Exciting forces include the wave pressure
-        on the hull and the inertia of the water, with the local acceleration: the added mass of the
+        All are integrated over the sections of the hull. Exciting forces include the wave pressure
+        on the hull and the inertia of the water, with the local acceleration. The added mass of the
         sections is reduced by `END_LOSS`, and that of the bottom follows from `DISC_TURNED`.
         Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977,
         6.18).
@@ -337,7 +337,7 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
 def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
     """Return the radius of a hull's waterplane [m], and its profile as in `Buoy`.
 
-    They are 0 and None if the hull is unknown.
+    The results are 0 and None if the hull is unknown.
     """
     if hull is None or draft <= 0.0:
         return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None

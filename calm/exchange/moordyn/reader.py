@@ -258,7 +258,7 @@ def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
 def _upper_end(top: _Row) -> model.ImportedPiece:
     """Convert the point at the upper end to a float.
 
-    It must be free, or be held at the surface with enough volume to float.
+    The point must be free, or be held at the surface with enough volume to float.
     """
     figures = _figures(top)
     if _lift(figures) <= 0.0:
@@ -361,9 +361,7 @@ def _heading(word: str, section: str) -> str:
 
 
 _ON_THE_BED = 0.05
-"""Maximum height of a fixed point above the seabed, relative to the water depth, at which the point
-is an anchor.
-"""
+"""Height above the seabed, relative to the water depth, up to which a fixed point is an anchor."""
 
 
 def _lay_net(file: _File, path: Path) -> None:

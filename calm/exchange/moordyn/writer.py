@@ -189,8 +189,8 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
 def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
     """Add a cable or chain from its lower end up, divided at its clamps.
 
-    It is also divided into short lengths, because MoorDyn starts from the shape of each length in
-    still water.
+    The cable or chain is also divided into short lengths, because MoorDyn starts from the shape of
+    each length in still water.
     """
     load = PartLoad(system.density)
     load.add(part)

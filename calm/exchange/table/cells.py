@@ -160,7 +160,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Parse a text as a unit of the quantity `what`; return None if it is no such unit."""
+    """Parse a text as a unit of the quantity `what`; return None if it is not such a unit."""
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),

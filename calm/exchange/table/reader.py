@@ -240,7 +240,7 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
     """Sort rows from the top of the line down, with clamps after their piece.
 
-    The list may have either direction.
+    The list may run from the top down or from the bottom up.
     """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:

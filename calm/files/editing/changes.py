@@ -39,7 +39,7 @@ class Page:
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """Return the patches that set the value at a location and add missing mappings above it."""
+        """Return the patches that set the value at a location; missing mappings above are added."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
@@ -292,7 +292,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
     text = ""
     for line, end in zip(lines, ends, strict=True):
         if text.endswith("\r") and not line and end == "\n":
-            end = "\r"  # both would become one line break
+            end = "\r"  # "\r" and "\n" would become one line break
         text += line + end
     return text
 

@@ -1,8 +1,8 @@
 """Write values as YAML in the style of a file, with keys in the order of the models.
 
-Text is written without quotes if it can be read back without them. A file is never written as a
-whole by a YAML library, because that would lose part of its layout, such as aligned columns and
-Windows line ends. This is true even of ruamel.yaml, which preserves most comments.
+Text is written without quotes if it can be read back without them. No YAML library writes a whole
+file, because the file would lose part of its layout, such as aligned columns and Windows line ends.
+Even ruamel.yaml, which preserves most comments, does not preserve all of the layout.
 """
 
 from __future__ import annotations
