@@ -419,7 +419,7 @@ class Wanted:
 def wanted(word: str) -> Wanted | None:
     """Parse a word of a search text as a limit; return None if it is a plain word.
 
-    A number without a unit is taken in the unit of its column.
+    A number without a unit has the unit of its column.
     """
     found = _LIMIT.fullmatch(word)
     if found is None:

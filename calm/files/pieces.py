@@ -23,8 +23,8 @@ STAND_IN = ""
 class Place:
     """Position of a piece or clamp in the file, used to identify the part after reading.
 
-    `Place(3)` is the fourth item of the line, whatever the `count` of items above it, and `Place(3,
-    clamp=0)` is the first clamp of the fourth item.
+    `Place(3)` is the fourth item of the line, regardless of the `count` of the items above it, and
+    `Place(3, clamp=0)` is the first clamp of the fourth item.
 
     Attributes
     ----------

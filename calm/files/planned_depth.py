@@ -62,8 +62,8 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 
     Parameters
     ----------
-    serial : serial number of the part, which is not taken for a depth
-    rating : depth rating of the component [m], which is not taken for a planned depth
+    serial, rating : serial number of the part, and depth rating of the component [m]; a number that
+        equals one of these is not a planned depth, unless the number follows ``@``
     """
     text = _NUMBERED.sub("|", label)
     if any(pattern.search(text) for pattern in (_LENGTHS, _RANGE, _DOUBTFUL)):

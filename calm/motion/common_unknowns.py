@@ -1,7 +1,7 @@
 """Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
 
 The linear model in this module also serves to weigh sensor faults (slips, drifts and common steps)
-by the evidence of many times.
+from the readings at many times.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def repeated(pull: Floats) -> float:
 
 
 FEWEST = 4
-"""Least number of readings of a sensor before and after a slip of its clamp."""
+"""Minimum number of readings of a sensor before and after a slip of its clamp."""
 
 
 ROBUST = 4.0
@@ -221,8 +221,8 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
     Parameters
     ----------
-    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong
-        place on the line throughout, or a key of `RAMPS` for a drift
+    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a sensor
+        that is misplaced during the whole record, or a key of `RAMPS` for a drift
     fall : (n,) increase in the depth of the sensor per metre that it slips down the line
     share : (n,) share of the record that has elapsed, 0 to 1
     """

@@ -253,7 +253,7 @@ class Task:
             depth, deviation = smoother.depth[times], smoother.deviation[times]
             read = smoother.read(times)
             surface = smoother.surface[times]
-        # inferred currents may exceed the limit of measured ones, which is for errors in files
+        # the limit finds errors in files of measured currents; inferred currents may exceed it
         limit = self.mooring.file.environment.maximum_speed
         share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(read.u, read.v), 1e-9))
         likely = forward.solve(read.level, share * read.u, share * read.v)

@@ -1,10 +1,10 @@
 """Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
 
-Each fault is an additional unknown, with its own prior, in the fit of the whole record. It is
-weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The misfit
-of each time follows Student's t distribution, and an error that lasts for several times counts
-once. The most likely fault is accepted, and the others are weighed again together with it, until no
-further fault is likely.
+Each fault is an additional unknown, with its own prior, in the fit of the whole record. The fault
+is weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The
+misfit at each time follows Student's t distribution, and an error that lasts for several times
+counts once. The most likely fault is accepted, and the other faults are weighed again together with
+this fault, until no further fault is likely.
 """
 
 from collections.abc import Iterator, Sequence
@@ -60,7 +60,7 @@ RIVALS = 3
 FINEST = 0.02
 """Uncertainty added to the lag of a clock, as a share of the time step of the record."""
 FEWEST = 20
-"""Least number of times for a diagnosis."""
+"""Minimum number of times for a diagnosis."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ Both are multiplied by a factor that depends on the quality flag.
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 """Default factors on the meter error, by quality flag."""
 FLAG_RANGE, FEWEST = (0.6, 15.0), 20
-"""Limits of the estimated factor on the meter error, and the least number of readings.
+"""Limits of the estimated factor on the meter error, and the minimum number of readings.
 
 The lower limit is above zero because the current at even a perfect meter differs from the current
 on the line around it.
@@ -68,7 +68,7 @@ STUDENT = 4.0
 ALIKE_HOURS = 1.0
 """Time over which the error of a meter persists [h]."""
 LEAST_SPREAD = 0.02
-"""Least deviation of a current about its mean [m/s]."""
+"""Minimum deviation of a current about its mean [m/s]."""
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Initial correlation time [h] and correlation depth [m] of the current."""
 HOURS = (4.0, 16.0)
@@ -277,7 +277,7 @@ class CurrentSmoother:
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
         step = np.diff(self.hours, prepend=self.hours[:1])
-        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # a zero is constant
+        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # zeros are constant
         self.usual = STEP**2 * step[:, None] * steps
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))

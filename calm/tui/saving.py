@@ -159,7 +159,7 @@ class Saving:
             if is_new:
                 session.history.saved("")
                 self._workspace.tell(_GONE, wrong=True)
-                self._workspace.edited()  # keep the draft like every change
+                self._workspace.edited()  # back up the draft, as after every change
         elif not (session.changed or screen.is_typing):
             self._reload(quietly=not is_new)
         elif is_new:

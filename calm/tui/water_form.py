@@ -346,7 +346,7 @@ class ProfileGrid(Grid):
             headings = water_tables.offered_headings(copied.headings, columns)
             water_tables.rows_in(columns, headings, copied.rows)
         except water_tables.UnknownColumns:
-            pass  # the user names the columns
+            pass  # the user can then name the columns
         except (NoTableError, water_tables.NoRows) as error:
             self.tell(f"Not pasted: {error}", wrong=True)
             return

@@ -23,7 +23,7 @@ _CURRENTS = "current_profile.txt"
 """Name of the current file, which MoorDyn reads from the folder of the input file."""
 
 _RIGID = 1e7  # N: EA of parts that do not stretch; stiffer lines need shorter time steps
-_SHORT = 0.5  # m: a shorter rigid part has a lower EA in proportion, for the same reason
+_SHORT = 0.5  # m: the EA of a shorter rigid part is reduced in proportion, for the same reason
 _OWN = 0.5  # share of the mass of a float that is assigned to the length below its point
 _LENGTH, _MOST = 20.0, 60  # length between two points [m]; maximum number of lengths of a cable
 _CLOSE = 0.5  # m: a clamp nearer to a point is moved to the point

@@ -279,7 +279,7 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
         Both the point and the comma are decimal symbols, or numbers such as `1,250` are ambiguous.
     """
     seen: dict[str, str] = {}
-    doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
+    doubtful: dict[str, tuple[str, str]] = {}  # position, and digits
     for place, cell in cells:
         found = None if isinstance(cell, WorkbookNumber) else _NUMERAL.match(_BEFORE.sub("", cell))
         if found is None or _RATIO.match(_BEFORE.sub("", cell)):

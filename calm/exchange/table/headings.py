@@ -210,7 +210,7 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     if any(_SPANISH.search(cell) for cell in plain):
-        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # a French count
+        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # in French, a count
     taken: set[int] = set()
     for what, heading in given.items():
         wanted = _plain(heading)

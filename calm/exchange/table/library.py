@@ -17,10 +17,10 @@ from calm.exchange.table.rows import ListRow, rows_of, weights_as_buoyancy
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
 
-# columns that an element does not have, whatever the headings are
+# columns that are ignored in a library, because an element has no such values
 _NOT_THEIRS = ("at", "count", "height", "depth")
 _A_METRE = 1e-6  # m: tolerance for the length of 1 m to which the values of a line refer
-_SHEETS = 3  # least number of sheets with headings in a library
+_SHEETS = 3  # minimum number of sheets with headings in a library
 
 _LINES = ("wires", "chains")
 _NAME = 16  # bytes of a name, if the file does not give their number

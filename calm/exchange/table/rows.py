@@ -19,15 +19,15 @@ _COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x 
 _LENGTHS = re.compile(r"^\(?\d+\s?[x\u00d7]\s?\d+([.,]\d+)?\s?m\b", re.I)  # 2 x 200 m wire
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
 _ENOUGH = {"length", "buoyancy", "weight"}  # a row with any of these keys is a piece
-_MOST = 1000  # largest count of a row
+_MOST = 1000  # maximum count of a row
 # m: largest diameter of a piece, and of a line, in a column without a unit
 _WIDEST, _WIDEST_LINE = 10.0, 0.5
-_FULL = 5.0  # largest area of a metre of line, in diameters
+_FULL = 5.0  # maximum ratio of the area of a line per metre to its diameter
 _METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
 # values that are per metre for a line
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")
 ROLES = ("float", "instrument", "release", "connector")
-_TALLEST = 20.0  # m: greatest length of a float, release or anchor
+_TALLEST = 20.0  # m: maximum length of a float, release or anchor
 _FEWEST = 4  # minimum number of pieces for which increasing lengths are not a coincidence
 _GROWN = 3.0  # m: longer than any usual fitting at the end of a line
 _SHARED = ("length", "buoyancy", "weight", "mass", "area", "drag_area", "tangential_area")
@@ -207,7 +207,7 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
     """Return messages about cumulative or implausibly large lengths.
 
-    Lengths that increase from piece to piece along the whole line are taken to be distances from an
+    Lengths that increase from piece to piece along the whole line are treated as distances from an
     end of the line.
     """
     pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
