@@ -83,7 +83,7 @@ class AnchoredKeys(Model):
 
 
 class EndKeys(Model):
-    """Connection of a leg end, given by at most one of these keys; a free end has none."""
+    """Connection of a leg end, given by one of these keys; a free end has none of the keys."""
 
     join: Text | None = optional("a node where legs meet", "A")
     anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})

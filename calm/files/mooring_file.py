@@ -46,7 +46,7 @@ class TowKeys(Model):
 
 
 class Solver(Model):
-    """Solver settings; `angle_step` is in radians, and `tolerance` relative to the water depth."""
+    """Solver settings; after the file is read, `angle_step` is in radians."""
 
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)

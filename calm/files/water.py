@@ -46,7 +46,7 @@ class TableKeys(Model):
 
 
 class SeaWaterKeys(Model):
-    """Temperature [°C] and practical salinity of sea water, each constant or a table over depth."""
+    """Temperature [°C] and practical salinity of sea water, each constant or tabulated by depth."""
 
     temperature: Annotated[
         Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]

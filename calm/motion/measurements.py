@@ -197,7 +197,7 @@ def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> F
 FAR_NEIGHBOURS = 4.0
 """Maximum span between the readings before and after a time, in steps of the record."""
 SPIKE, ALIKE = 6.0, 3.0
-"""Minimum relative deviation of a spike, and maximum relative deviation of all other sensors."""
+"""Minimum relative deviation of a spike, and maximum of all other sensors at the same time."""
 
 
 def without_spikes(

@@ -263,7 +263,7 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the 10 % of the times with the smallest knockdown, and at least one time.
+    """Return a mask of the 10 % of the times with the smallest knockdown (at least one time).
 
     Parameters
     ----------

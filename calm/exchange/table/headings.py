@@ -364,7 +364,8 @@ def cell_of(row: list[str], column: ListColumn | None) -> str:
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
     """Find the decimal symbol in the columns of numbers; also return a remark on the commas.
 
-    If no symbol fits all numbers, a message is added to `problems`, and both results are empty.
+    If the numbers are contradictory or ambiguous, a message is added to `problems`, and both
+    results are empty.
     """
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:

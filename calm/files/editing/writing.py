@@ -284,7 +284,10 @@ def line_start(text: str, place: int) -> int:
 
 
 def line_end(text: str, place: int) -> int:
-    """Return the index after the next line break from the position `place`, or the text length."""
+    """Return the index at which the line that contains the position `place` ends.
+
+    The index is after the line break.
+    """
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
