@@ -251,7 +251,7 @@ class _Parts:
         return self._named(entry.names, entry.instrument, entry.place, message)
 
     def rope(self, entry: _Entry, between: str) -> _Found | None:
-        """Find the rope that is inserted below an item, as `of` does."""
+        """Find the rope that is inserted below an item, and return it with a note on guesses."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(

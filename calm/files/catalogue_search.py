@@ -284,9 +284,9 @@ def _uses() -> Counter[str]:
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     """Return the rank of a match; a smaller rank is a better match.
 
-    In order of rank: exact id; start or end of the id; all words in the id, of which the first
-    begins the id; all words in the id; all words in other own texts; a match by a synonym or the
-    source. `others` are the words without sizes.
+    The matches, in order of rank, are: the exact id; the start or end of the id; all words in the
+    id, which begins with the first word; all words in the id; all words in the other own texts; a
+    match by a synonym or the source. `others` are the words without sizes.
     """
     if not words:
         return 0

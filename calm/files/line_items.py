@@ -351,7 +351,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Copy values of an assembly to those of its parts that lack them."""
+        """Copy values of an assembly to the parts of the assembly that lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:

@@ -125,7 +125,7 @@ class _ReadLine(NamedTuple):
 
 
 class MooringReader:
-    """Reader of a mooring file; it reads the line once and can then use several environments.
+    """Reader of a mooring file, which reads the line once for use in several environments.
 
     Parameters
     ----------

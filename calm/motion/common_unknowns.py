@@ -213,7 +213,7 @@ class LinearLaw:
 MISHUNG = -1
 """Code, instead of the index of a time, for a sensor that is misplaced during the whole record."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""Share of the record over which a drift lasts, by the code that `moved_by` takes."""
+"""Duration of a drift as a share of the record, by the code of the drift in `moved_by`."""
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:

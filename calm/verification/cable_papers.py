@@ -54,7 +54,7 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
     """Return the cable with three given quantities.
 
-    If there are several, the first is returned, which lies above A everywhere.
+    If there are several such cables, return the first, which lies above A everywhere.
     """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:

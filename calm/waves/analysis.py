@@ -38,8 +38,8 @@ number of elements or frequencies is doubled.
 """
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
-"""Longest initial elements, as a fraction of the depth; smallest number of frequencies; largest
-number of refinements of both.
+"""Initial length of the longest elements, as a fraction of the depth, initial number of
+frequencies, and maximum number of refinements of elements and frequencies.
 """
 
 SMALL = 0.05

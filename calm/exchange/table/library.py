@@ -38,7 +38,7 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    If several elements have the same name, the first of them is used.
+    If several elements have the same name, the first element is used.
 
     Raises
     ------

@@ -341,7 +341,7 @@ def _worded(snippets: Iterable[str]) -> Worded:
 
 
 class History:
-    """Undo history of a draft; it also remembers the last saved text.
+    """Undo history of a draft, with the last saved text.
 
     Parameters
     ----------
