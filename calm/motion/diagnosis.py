@@ -72,7 +72,8 @@ class _Found:
     log : logarithm of the likelihood
     value, deviation : size of the last fault, and its standard deviation
     left : (n, s) residuals [m]
-    pulls : (n,) derivative of the log-likelihood of each time by the size of the last fault
+    pulls : (n,) derivative of the log-likelihood at each time with respect to the size of the last
+        fault
     """
 
     log: float

@@ -42,12 +42,13 @@ LONGEST = 0.5
 """Maximum change in a current in one step [m/s]."""
 
 MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
-"""Number of levels up to which each is a knot, number of knots for more levels, and the distance
+"""Maximum number of levels if each level is a knot, number of knots for more levels, and distance
 below which levels share a knot [m].
 """
 ABOVE, BELOW = 5.0, 20.0
-"""Height of an additional knot above the top of a line that extends above the levels, and least
-distance from the lowest level to the seabed for a knot half-way [m].
+"""Heights for two additional knots [m]. If the line extends above the levels, a knot is added at
+the first height above the top of the line. If the lowest level is above the seabed by more than the
+second height, a knot is added half-way between them.
 """
 
 METER = 0.02, 0.10
@@ -360,7 +361,10 @@ class CurrentSmoother:
     def _with_slopes(
         self, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> tuple[Floats, Floats]:
-        """Return depths, and (n, p, 2 K + f) derivatives by currents and logarithms of factors."""
+        """Return depths, and their derivatives (n, p, 2 K + f).
+
+        The derivatives are with respect to the currents and the logarithms of the factors.
+        """
         flow = self.knot_depth[times], *self.currents(state)
         there, slopes = self.forward(factor).slopes(*flow)
         steps = FACTOR_STEP * np.eye(len(factor))

@@ -113,7 +113,7 @@ class EditableTable(Vertical):
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Cancel editing; show the `reason` why an invalid text was discarded, if there is one."""
+        """Cancel editing; if a `reason` is given, show why an invalid text was discarded."""
         self.leave_cell()
         self.abandoned()
         if reason:

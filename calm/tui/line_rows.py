@@ -99,7 +99,7 @@ def _figures(
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return component, label, and whether it is clamped, to identify a row in another text."""
+    """Return component, label, and whether the row is a clamp, to find the row in another text."""
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")

@@ -35,9 +35,11 @@ disc (Lamb 1932).
 """
 
 END_LOSS = 0.42
-"""Ratio of length to radius for the reduction of added mass in surge by flow around the keel: the
-added mass of a section at height h above the keel is multiplied by 1 - e^(-h/0.42R). Cylinders with
-a draft of 0.6 to 10 radii then have the added mass of a panel method (Capytaine 3) within 4 %.
+"""Length scale, in radii R, over which the flow around the keel reduces the added mass in surge.
+
+The added mass of a section at height h above the keel is multiplied by 1 - e^(-h/0.42R). For
+cylinders with a draft of 0.6 to 10 radii, the added mass then agrees with that of a panel method
+(Capytaine 3) within 4 %.
 """
 
 SECTIONS = 46
