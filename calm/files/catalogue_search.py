@@ -36,16 +36,16 @@ inches.
 _USE_KEY = re.compile(r"\buse: *([\w-]+)")
 _MIN_SIMILARITY = 0.8
 """Similarity above which an unknown word is treated as misspelt: `releese` and `release`
-have 0.86.
+have a similarity of 0.86.
 """
 _MIN_SIMILARITY_SHORT = 0.75
 """Similarity above which a word of `_SHORT_WORD` letters is treated as misspelt, if its first
-letter is right: `wyre` is `wire`, but `back` is not `pack`.
+letter is right: `wyre` is read as `wire`, but `back` is not read as `pack`.
 """
 _SHORT_WORD = 4
 """Number of letters below which an unknown word is never treated as misspelt."""
 _SUGGESTED = 3
-"""Number of components that are suggested for an unknown one."""
+"""Number of components that are suggested for an unknown component."""
 
 
 @dataclass(frozen=True)

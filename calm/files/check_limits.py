@@ -177,8 +177,9 @@ LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Component weight and drag, for which a smaller value makes the check more lenient, except for
-anchors.
+"""Component weight and drag, for which a smaller value makes the check more lenient.
+
+Anchors are an exception.
 """
 
 

@@ -381,7 +381,7 @@ def is_in_air(info: ValidationInfo) -> bool:
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
     """Compute the displaced volume [m³] from mass [kg] and net buoyancy [N].
 
-    With values per metre, the volume is per metre as well. Return None if the mass is unknown.
+    If the values are per metre, the volume is also per metre. Return None if the mass is unknown.
     """
     if mass is None:
         return None

@@ -259,7 +259,7 @@ def _of_current(table: CurrentTable) -> ComparedValue:
 
 
 def _value_text(value: Any) -> str:
-    """Return a value that is neither a number nor None as text."""
+    """Convert a value that is neither a number nor None to text."""
     if isinstance(value, BaseModel) or is_dataclass(value):
         given = {name: one for name, one in _fields(value).items() if one is not None}
         value = {name: one for name, one in given.items() if not isinstance(one, tuple) or one}

@@ -306,8 +306,8 @@ class LineReader:
         """Distribute the serial numbers of an item over the parts of its assembly.
 
         The numbers are those of the instruments and releases of the assembly or, if it has none, of
-        its floats. They are listed in order, one for each item of a component, one assembly after
-        another.
+        its floats. The numbers are listed in order: one for each item of a component, and one
+        assembly after another.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:

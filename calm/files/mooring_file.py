@@ -82,13 +82,13 @@ class MooringFile:
     `pieces` are listed from the top of a mooring to its anchor, or in a tow (if `tow` is not None)
     from the ship to the towed body. If there are `legs`, the pieces are listed leg by leg.
 
-    `notices` are remarks for the user, for instance that a component of the user hides one in the
-    shipped catalogue, or that levels of a measured current were discarded. `variants` are the named
-    environments before validation. `accepts` are the accepted findings of the design check, and
-    `uncertainty` is the uncertainty of the inputs. `looser` are the limits for which an item of
-    the line has a less strict value than the definition of its component. `document` is the title
-    block, `releases` are the releases with their codes, `deployed` is the deployment, and `units`
-    are the display units.
+    `notices` are remarks for the user, for instance that a component of the user hides a component
+    of the shipped catalogue, or that levels of a measured current were discarded. `variants` are
+    the named environments before validation. `accepts` are the accepted findings of the design
+    check, and `uncertainty` is the uncertainty of the inputs. `looser` are the limits for which an
+    item of the line has a less strict value than the definition of its component. `document` is the
+    title block, `releases` are the releases with their codes, `deployed` is the deployment, and
+    `units` are the display units.
     """
 
     path: str

@@ -42,7 +42,7 @@ _LENGTHS = re.compile(
 )
 _RANGE = re.compile(r"(?<![A-Za-z0-9])[\d.]+\s*(?:m\s*)?(?:-|–|\.\.|to)\s*[\d.]+\s*(?:m|ft)\b")
 _DOUBTFUL = re.compile(r"(?<![\w.])\d{1,3} \d{3}\s*(?:m|ft)\b|\d[eE]\d|\d\s*[x×*]\s*\d")
-"""A number of two words, a power of ten or a product."""
+"""Pattern of a number that is written as two words, as a power of ten or as a product."""
 _WITH_UNIT = re.compile(
     r"(@\s*)?(?<![\d.,])(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)\s*(m|met(?:er|re)s?|ft|feet)"
     r"(?![A-Za-z0-9²³^]|\s*/\s*(?:s|min|h)\b)"

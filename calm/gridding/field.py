@@ -319,7 +319,8 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at some times.
 
     A weak prior determines scales that the record does not constrain: a quarter of the line, six
-    time steps, and 2 % uncorrelated variance, each within a factor of about five.
+    time steps, and 2 % uncorrelated variance. The standard deviation of the prior is a factor of
+    about five for each scale.
     """
     from scipy.optimize import minimize
 
@@ -383,7 +384,7 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
 
 
 MIN_RESIDUALS = 20
-"""Minimum number of residuals of a sensor for a factor."""
+"""Minimum number of residuals of a sensor from which a factor is computed."""
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:

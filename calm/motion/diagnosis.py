@@ -35,7 +35,7 @@ from calm.physics.line import Floats
 LIKELY_ALONE = 1000.0
 """Odds above which a fault is reported if currents were not measured.
 
-They are higher because an error of the line may be the cause instead.
+These odds are higher because an error of the line may be the cause instead.
 """
 MOST = 8
 """Maximum number of faults."""

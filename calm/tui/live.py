@@ -378,7 +378,7 @@ def rows_of(
 
 
 def _lacks_strength(finding: Finding) -> bool:
-    """Return whether a finding shows that the rule `strength` lacks a value, accepted or not."""
+    """Return whether a finding, accepted or not, shows that the rule `strength` lacks a value."""
     if finding.missing is not None:
         return strength.name in finding.missing.needed_by
     lacks = finding.lacks is not None and finding.utilisation is None

@@ -247,7 +247,7 @@ def _found(
 ) -> Iterator[VerdictLine]:
     """Yield failures and warnings with reason and remedy, then summaries of unknowns and passes.
 
-    A rule passes if every component passes; with a missing value its state is unknown.
+    A rule passes if every component passes. If a value is missing, the state is unknown.
     """
     from calm.checks.finding import governing
     from calm.report.check_tables import named, named_components

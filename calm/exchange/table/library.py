@@ -98,7 +98,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
 
 def _of_matrices(path: Path) -> list[ListRow]:
-    """Return the elements in character matrices, one in each row, as in `mdcodes.mat`."""
+    """Return the elements in character matrices with one element per row, as in `mdcodes.mat`."""
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
         entry
