@@ -402,7 +402,7 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check an environment that may have a base or be one.
+    """Check an environment that may have a base or be a base.
 
     Its water depth may therefore be missing.
     """

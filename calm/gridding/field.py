@@ -3,14 +3,14 @@
 The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
 of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
 an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
-2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). Part of the variance is uncorrelated:
-scales below the sensor spacing, and sensor noise.
+2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). The uncorrelated part of the variance
+is due to scales below the sensor spacing, and to sensor noise.
 
-An error in the depth of the instruments causes an error that equals the depth error times the local
-gradient. This error is added to the standard deviation of the result without averaging over
-instruments, because it may be common to the line for the whole record. Half of its variance also
-counts as independent noise of each instrument, which gives more weight to instruments of well-known
-depth.
+An error in the depth of an instrument causes an error in its values, which equals the depth error
+times the local gradient. This error is added to the standard deviation of the result without
+averaging over instruments, because it may be common to all instruments for the whole record. Half
+of its variance also counts as independent noise of each instrument, which gives more weight to
+instruments of well-known depth.
 """
 
 from __future__ import annotations

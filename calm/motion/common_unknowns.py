@@ -19,7 +19,7 @@ from calm.physics.line import Floats, Integers
 FURTHEST = 1.0
 """Limit on the logarithm of a factor."""
 REACH = 5.0
-"""Minimum distance from a sensor to the points above and below that give the slope there [m]."""
+"""Minimum distance from a sensor to the two points that give the slope of the line there [m]."""
 
 
 @dataclass(frozen=True)
@@ -302,7 +302,8 @@ FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.
 DRIFT, DRIFTS = 5.0, 0.01
 """Prior deviation of the drift over the record [m], and the probability of a drift."""
 TIDE = 1.0
-"""Deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`."""
+"""Deviation of tide and air pressure if the sea level is not given [m]."""
 RESIDUAL_TIDE = 0.15
+"""Deviation of the unmeasured part of tide and air pressure if the sea level is given [m]."""
 NOISE = 0.2
 """Deviation of a depth from pressure at one time [m]."""

@@ -66,7 +66,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ),
     ),
 }
-"""Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
+"""Variables added to a batch result: dimensions other than time, unit, meaning and attributes."""
 OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
 """Variables of `OF_MOTION` that need a measured current."""
 MEASURED, ESTIMATED, MISSING = 1, 8, 9

@@ -86,8 +86,8 @@ STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
 """Number of stretches with separate errors in knockdown, their correlation length as a share of the
 line, and the local error of a point as a share of its own knockdown.
 
-Without the local error, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse,
-and RAPID's depths without currents up to 26 % worse.
+Without the local error, the depths of dune2 would be 8 % better, but those of synthetic moorings
+with ten-minute meters would be 3 % worse, and those of RAPID without currents up to 26 % worse.
 """
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""

@@ -258,8 +258,8 @@ class Session:
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
         """Paste the copied rows next to a row.
 
-        Return the last pasted row if pasted below, and the first if pasted above. Return None if
-        the clipboard is empty.
+        Return the last pasted row if the rows are pasted below, and the first pasted row if they
+        are pasted above. Return None if the clipboard is empty.
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
