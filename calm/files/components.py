@@ -1,8 +1,8 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
 Some values are alternatives: the drag of a body is given as `kn`, or as `drag_area` and `cd`; a net
-force is given, or is computed from mass and volume. If an override gives one alternative, the
-others are removed from the definition; values that do not contradict the override are kept.
+force is given, or is computed from mass and volume. If an override gives one alternative, the other
+alternatives are removed from the definition; values that do not contradict the override are kept.
 Lengths, masses and forces of cables and chains are per metre.
 """
 
@@ -289,7 +289,7 @@ _ESSENTIAL = {
 class Outline(definition.Definition):
     """A product for which no source publishes some required values.
 
-    The mooring file that uses the product must supply them.
+    The mooring file that uses the product must supply these values.
     """
 
     model_config = ConfigDict(extra="allow")

@@ -520,7 +520,7 @@ class LineReader:
 
 
 def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
-    """Set a value of a piece, and of the clamps on it, if they lack the value and need it."""
+    """Set a value of a piece and of its clamps, if they need the value but lack it."""
 
     def filled(part: _Part) -> _Part:
         component: Component = part.component

@@ -27,7 +27,7 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saves the file of a workspace, asks before overwriting, and watches for external changes.
+    """Saver of the file of a workspace, which asks before it overwrites, and watches for changes.
 
     Parameters
     ----------

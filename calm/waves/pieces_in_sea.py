@@ -82,7 +82,8 @@ with the largest standard deviation.
 class CutOffs(NamedTuple):
     """Responses to a sea state for three cut-off frequencies of the waves.
 
-    The fields are the responses for the full, half and twice the cut-off frequency of the analysis.
+    The fields are the responses for the cut-off frequency of the analysis, for half this frequency,
+    and for twice this frequency.
     """
 
     full: WaveResponse
