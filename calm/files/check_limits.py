@@ -113,7 +113,7 @@ class Checks(definition.Model):
         "minimum ratio of breaking load to tension during the anchor drop", 2, default=2.0
     )
     launch_working_factor: Annotated[float, _FACTOR, Limit()] = definition.described(
-        "minimum ratio of working load to tension during the anchor drop", 1, default=1.0
+        "maximum ratio of tension to working load during the anchor drop", 1, default=1.0
     )
     waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = definition.described(
         "minimum ratio of breaking load to maximum tension in waves", 1.67, default=1.67

@@ -495,7 +495,7 @@ legs:
     assert run("run", file) == 3
     told = capsys.readouterr().err
     assert "no-equilibrium: Legs" in told
-    assert "140.00 m long in all, but the ends are held 200.00 m apart" in told
+    assert "140.00 m long in total, but the ends are held 200.00 m apart" in told
 
 
 SLOPE = """\
@@ -827,7 +827,7 @@ def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
             for one in (grid, plane)
         )
         assert there == pytest.approx(where, abs=0.3 + off)
-        said = [each for each in grid.warnings if "lies on the plane" in each]
+        said = [each for each in grid.warnings if "treated as a plane" in each]
         assert len(said) == (bowl > 0.0)
         told = float(re.search(r"up to ([\d.]+) m there", said[0])[1]) if said else 0.0
         assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
