@@ -1,9 +1,9 @@
 """Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
 In such a file, `inline` lists the pieces of the line and `clamp` the instruments clamped on it,
-both with heights above the seabed. Other values are mostly missing; they are read from an element
+both with heights above the seabed. The file lacks most other values, which are read from an element
 library or the catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length
-that their heights require.
+that the heights of the pieces require.
 """
 
 import re
@@ -32,8 +32,8 @@ ROPE = "rope"
 """Name of the rope inserted between pieces."""
 # keys that may name a component
 _NAMES = ("component_id", "label", "hardware_type", "category", "instrument")
-_CLOSE = 0.05  # m between pieces that touch
-# relative difference, and difference in metres, allowed between heights: most are whole metres
+_CLOSE = 0.05  # m: maximum distance between pieces that touch
+# relative and absolute [m] tolerance of heights, most of which are given in whole metres
 _OFF, _ROUNDED = 0.02, 0.5
 _MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
 # prefixes of the keys of a position, the most accurate first
@@ -246,13 +246,13 @@ class _Parts:
     def of(self, entry: _Entry) -> _Found | None:
         """Find the component of an item, and return it with a note on guesses.
 
-        Return None if there is none, which is recorded as a mistake.
+        If there is no such component, record a mistake and return None.
         """
         message = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, message)
 
     def rope(self, entry: _Entry, between: str) -> _Found | None:
-        """Find the rope that is inserted below an item, as `of` does."""
+        """Find the rope that is inserted below an item, and return it with a note on guesses."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
@@ -309,7 +309,7 @@ class _Parts:
 class _Strung:
     """Pieces of a line from the anchor up, with heights of their lower ends [m].
 
-    The height is `nominal` in the file, and `height` as it follows from the lengths.
+    `nominal` are the heights in the file, and `height` are the heights computed from the lengths.
     """
 
     items: list[model.ImportedPiece]
@@ -320,7 +320,7 @@ class _Strung:
 def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
     """Add the line to the design from the anchor up, with ropes inserted between pieces."""
     items: list[model.ImportedPiece] = []
-    nominal, height = [0.0], [0.0]  # lower ends; the last is for the next piece
+    nominal, height = [0.0], [0.0]  # lower ends; the last value is that of the next piece
     if not line[-1].is_anchor:
         items.append(
             model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))

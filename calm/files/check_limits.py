@@ -179,8 +179,9 @@ LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Component weight and drag, for which a smaller value makes the check more lenient, except for
-anchors.
+"""Component weight and drag, for which a smaller value makes the check more lenient.
+
+Anchors are an exception.
 """
 
 
@@ -195,7 +196,7 @@ class LimitKey:
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
     source : source of the default
-    backed : whether the design gives a source for the value that it sets
+    backed : False if an item of the line overrides the default without giving a source
     share : whether the value is a fraction, which is displayed in percent
     """
 

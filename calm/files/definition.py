@@ -1,7 +1,8 @@
 """Keys that every component may have, and the conventions for their values.
 
-A quantity is text with a unit in a file. Here it is an SI float, with angles in degrees, or None if
-it is not given. Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
+In a file, a quantity is text with a unit. In the models, a quantity is an SI float (angles in
+degrees), or None if the file does not give it. Net forces refer to sea water of `CATALOGUE_DENSITY`
+and to standard gravity.
 """
 
 from __future__ import annotations
@@ -204,8 +205,8 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 class EstimatedFigure(Model):
     """Estimate of a component value that no source publishes, with its lower bound `low`.
 
-    `low_in_waves` is a smaller lower bound for lines in waves. It is given if the values from which
-    the estimate is made apply only to steady loads.
+    `low_in_waves` is a smaller lower bound for lines in waves. This bound is given if the estimate
+    is made from values that apply only to steady loads.
     """
 
     quantity: Literal[
@@ -381,7 +382,7 @@ def is_in_air(info: ValidationInfo) -> bool:
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
     """Compute the displaced volume [m³] from mass [kg] and net buoyancy [N].
 
-    With values per metre, the volume is per metre as well. Return None if the mass is unknown.
+    If the values are per metre, the volume is also per metre. Return None if the mass is unknown.
     """
     if mass is None:
         return None

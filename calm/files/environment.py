@@ -164,8 +164,8 @@ class UniformCurrent(Model):
 class CurrentFile(Model):
     """A measured or modelled current at one time, in a CSV or NetCDF file.
 
-    `declination` [degrees, positive east] is the magnetic declination. It is given if directions
-    in the file are relative to magnetic north.
+    `declination` [degrees, positive east] is the magnetic declination, which is given if the
+    directions in the file are relative to magnetic north.
     """
 
     file: Text = described("CSV or CF NetCDF, in the folder of the mooring file", "adcp.nc")
@@ -331,7 +331,7 @@ STRONGEST_WIND = 75.0
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
     """Return remarks about implausible currents in a table of the file.
 
-    There are none for a current from a record, whose remarks are reported with it.
+    A current from a record gives no remarks here, because the record reports its own remarks.
     """
     if current.record is not None:
         return []

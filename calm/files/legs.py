@@ -66,7 +66,7 @@ _At = Annotated[
 
 
 class HeldKeys(Model):
-    """Position of a held end, such as at a ship, a pier or a platform."""
+    """Position of a held end, for instance at a ship, a pier or a platform."""
 
     depth: _Offset = Field(
         description="depth below the surface; negative above it, in air", examples=["2 m", "-10 m"]
@@ -84,7 +84,7 @@ class AnchoredKeys(Model):
 
 
 class EndKeys(Model):
-    """Connection of a leg end, given by at most one of these keys; a free end has none."""
+    """Connection of a leg end, given by one of these keys; a free end has none of the keys."""
 
     join: Text | None = optional("a node where legs meet", "A")
     anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})

@@ -125,7 +125,7 @@ class _ReadLine(NamedTuple):
 
 
 class MooringReader:
-    """Reader of a mooring file; it reads the line once and can then use several environments.
+    """Reader of a mooring file, which reads the line once for use in several environments.
 
     Parameters
     ----------
@@ -401,7 +401,7 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check an environment that may have a base or be one.
+    """Check an environment that may have a base or be a base.
 
     Its water depth may therefore be missing.
     """

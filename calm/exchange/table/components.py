@@ -11,7 +11,7 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
-_ROUND = 1.5  # times its diameter: a float no longer is a sphere
+_ROUND = 1.5  # maximum ratio of length to diameter of a float that is treated as a sphere
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
