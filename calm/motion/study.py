@@ -35,6 +35,7 @@ from calm.motion.remarks import (
     pchip,
     rms,
 )
+from calm.motion.sensors import metre_notes
 from calm.motion.suspects import meter_remarks
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.physics.line import Floats
@@ -227,14 +228,18 @@ def judged(
     plain = None if alone else np.asarray(result["plain_depth"].values, np.float64)
     down = knockdown(used)
     every = np.isfinite(down)
-    fit_of, plain_of = {}, {}
+    still = Forward(task.mooring, {}).still
+    fit_of, plain_of, at_rest = {}, {}, list[Floats]()
     for j, label in enumerate(used.label):
         calm = calm_times(down, every & np.isfinite(used.depth[:, j]))
         depth, _ = depths_at(result, int(used.point[j]))
         fit_of[label] = agreement(depth, used.depth[:, j], calm, every)
         if plain is not None:
             plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
-    still = Forward(task.mooring, {}).still
+        expected = np.full(len(down), still[used.point[j]]) if plain is None else plain[:, j]
+        both = np.stack([used.depth[:, j], expected])[:, calm & np.isfinite(expected)]
+        if both.size:
+            at_rest.append(both.mean(axis=1))
     hidden = [label for label in measured.label if label not in used.label]
     held = {}
     for label in hidden:
@@ -252,6 +257,10 @@ def judged(
         remarks += [*current_remarks(false, len(used.time)), *meter_remarks(used, names)]
     if not any(one.label == ALL and one.kind == "gain" for one in diagnosis):
         remarks += datum_remarks(task.common, float(task.mooring.water.depth))
+    position = task.mooring.file.position
+    if position is not None and at_rest:
+        mean, reference = np.transpose(at_rest)
+        remarks += metre_notes(mean, reference, position.latitude)
     of_line = any(one.kind in OF_LINE for one in diagnosis)
     fits = not (of_line or unfit)
     return MotionEstimate(
